@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/slip.hpp"
+#include "tribofit/kinematics/motion.hpp"
+#include "tribofit/segmentation/cycles.hpp"
+
+namespace tribofit {
+
+/// The samples over which an error is taken: those of every slip, and one break-away per cycle.
+///
+/// This is the definition for the whole house: rigid-stick laws are judged over the slip samples plus one break-away
+/// residual per cycle (in rigid stick mu is set by the spring, not by the law). The unit of evidence is the cycle, or a
+/// stretch of equal length where nothing sticks.
+///
+/// Samples may be means over `samples_per_value` neighbours, which keeps what a fit needs: at 200 values a slip the curvature of
+/// mu(v) within one mean is below 1e-4 of mu.
+struct Observations {
+  struct Range {
+    std::size_t begin = 0, end = 0;  ///< values of this slip
+    Span samples;                    ///< the same in samples of the Motion
+    std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
+    bool from_stick = false;
+    double break_away_time = 0;      ///< [s]
+    double stick_time = 0;           ///< [s], NaN when not recorded
+    double stick_slope = 0;          ///< d mu/dt in the stick before [1/s]
+    double direction = 1;
+    double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
+    double break_away_std_error = 0;
+  };
+
+  std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]
+  std::vector<double> weight;                    ///< samples behind each value
+  std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
+  std::vector<Range> slips;
+  std::size_t cycles = 0;             ///< units of evidence
+  std::size_t samples_per_value = 1;
+  double mean_load = 1;               ///< N0 [N]
+  double mean_temperature = 0;        ///< T0 [degC]
+  double fastest = 0;                 ///< largest |v_r| [m/s]
+  double largest_friction = 0;        ///< largest |mu|, the scale for bounds where friction is a force
+
+  std::size_t size() const { return time.size(); }
+  /// A slip as the friction room sees it.
+  Slip slip(const Range& range) const;
+};
+
+/// Builds the observations of a trace with the channels `needs` names.
+/// values_per_slip: means are taken so that the median slip has about this many; 0 keeps every sample.
+Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs = {},
+                     std::size_t values_per_slip = 200);
+
+}  // namespace tribofit

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tribofit {
+
+/// Residuals r(p) of a least-squares problem with their derivatives.
+class Residuals {
+ public:
+  virtual ~Residuals() = default;
+  virtual std::size_t count() const = 0;
+  virtual std::size_t parameter_count() const = 0;
+  /// Writes count() residuals and, unless `jacobian` is null, count() x parameter_count() derivatives by rows.
+  /// Returns false where the model is not finite at p.
+  virtual bool evaluate(const double* p, double* residual, double* jacobian) const = 0;
+};
+
+struct SolverOptions {
+  int max_iterations = 5000;
+  double relative_step = 1e-12;  ///< stop when a step changes p by less than this part
+  double relative_cost = 1e-15;  ///< stop when a step lowers the cost by less than this part
+  double trust_radius = 1e4;     ///< of the first step
+  /// Take the last digits by plain Gauss-Newton steps, which the rounding of the cost does not stop, and start again with short
+  /// steps where a parameter ran away. Costs a few more evaluations.
+  bool careful = true;
+};
+
+struct SolverResult {
+  std::vector<double> p;
+  double cost = 0;  ///< half the sum of squares
+  bool converged = false;
+  int iterations = 0;
+  std::string message;  ///< of the solver, for a person
+};
+
+/// Least squares by Levenberg-Marquardt (Ceres, dense QR), within bounds where they are given.
+/// Parameters with lower == upper are held. A problem that cannot be solved is a result with converged == false.
+SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
+                      std::span<const double> upper = {}, const SolverOptions& options = {});
+
+/// Covariance of the parameters if the residuals were independent with one variance: s^2 (J'J)^-1 at p, row by row,
+/// s^2 the residual sum of squares over the degrees of freedom. Samples of a trace are not independent: fits of traces take their
+/// errors from cycles instead (fit.hpp). Directions the data do not determine get what rounding leaves, not an error.
+std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p);
+
+}  // namespace tribofit

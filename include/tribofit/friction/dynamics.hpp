@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tribofit/friction/model.hpp"
+#include "tribofit/friction/slip.hpp"
+
+namespace tribofit {
+
+/// A friction model with its parameters, instant by instant, as a simulation needs it.
+///
+/// The memories of the model are states beside those of the block: d phi/dt = rate (target - phi).
+/// What sensors do to the reading is not part of it. One object must not be used from two threads at once.
+class FrictionDynamics {
+ public:
+  /// p: parameters in SI, in the order of model.parameters(). Throws std::invalid_argument on a wrong count.
+  FrictionDynamics(FrictionModel model, std::vector<double> p);
+
+  const FrictionModel& model() const { return model_; }
+  std::span<const double> parameters() const { return p_; }
+  std::size_t state_count() const { return model_.state_count(); }
+  bool acts_in_stick() const { return model_.acts_in_stick(); }
+
+  /// Opens a slip: levels of the law for the stick time before it and its direction (+1, -1), plus `offset` on mu_s
+  /// (the scatter of this break-away [1]). Models that act in stick keep one law from begin_slip to the next.
+  void begin_slip(double stick_time, double direction, double offset = 0);
+
+  /// |mu| at which this slip breaks away, at rest, at the instant `at` (its velocity is ignored) [1].
+  double break_away_friction(const Instant<double>& at) const;
+
+  /// Memory states at break-away of a rigid stick.
+  void states_at_break_away(std::span<double> state) const;
+
+  /// Signed mu at an instant [1].
+  double friction(const Instant<double>& at, std::span<const double> state) const;
+
+  /// d state/dt [1/s each].
+  void rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const;
+
+ private:
+  double run(const Instant<double>& at, std::span<const double> state, std::span<double> rate, bool want_rates) const;
+
+  FrictionModel model_;
+  std::vector<double> p_;
+  LawParameters<double> law_{};
+  double direction_ = 1;
+};
+
+}  // namespace tribofit

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tribofit/friction/law.hpp"
+#include "tribofit/friction/parameter.hpp"
+#include "tribofit/friction/slip.hpp"
+
+namespace tribofit {
+
+/// How to add an effect
+/// --------------------
+/// 1. One header in friction/effects/: a small value type with a static `info()` and the hooks below that it needs.
+/// 2. Its name in the list of friction/effects/all.hpp.
+/// 3. One test in tests/friction/.
+/// The command line, the help, the JSON, the bounds, the contract tests and the diagnosis find it through the list.
+///
+/// An effect is one physical statement. It changes friction at one or more of these places, in this order; every
+/// hook is a const member template over the number type T (double, or a dual number for derivatives), takes its own
+/// parameters p in SI and is left out where it has nothing to say:
+///
+///   void adjust(p, const Slip&, LawParameters<T>&)        levels of the base law for a whole slip
+///   T    reduce(p, const T& x)                            reduced speed x = decay v of the base law
+///   T    steady(p, const Instant<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
+///   Relaxation<T> relaxation(p, const Instant<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
+///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
+///   T    start(p, const Slip&, const T& velocity, const T& steady)    phi at the first slipping sample, where the memory acts
+///                                                          in stick (default: phi = steady at rest at break-away)
+///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick
+///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
+///   void sense(p, const Slip&, std::span<T> mu)           what the sensor reads of it, a whole slip at a time
+///
+/// All memories of the catalogue are linear in their state, which makes a step over any interval exact and stable.
+
+/// Channels that an effect needs to see.
+struct Channels {
+  bool acceleration = false, angle = false, distance = false, load = false, temperature = false, stick_time = false;
+};
+
+/// What an effect says about itself.
+struct EffectInfo {
+  std::string key;         ///< name on the command line and in JSON
+  std::string statement;   ///< physical meaning in one sentence
+  std::string equation;    ///< in plain text
+  std::string source;      ///< with DOI where there is one
+  std::string experiment;  ///< which test shows it best
+  std::vector<Parameter> parameters;
+  Channels needs = {};
+};
+
+/// A first-order memory: d phi/dt = rate (target - phi).
+template <class T>
+struct Relaxation {
+  T rate;    ///< [1/s], >= 0
+  T target;  ///< what phi would become if nothing changed
+};
+
+}  // namespace tribofit

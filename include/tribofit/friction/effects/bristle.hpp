@@ -1,0 +1,54 @@
+#pragma once
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// The LuGre model: contacts bend like bristles before and while they slide.
+///
+/// With F = sigma0 z the model reads dF/dt = (sigma0 |v|/f)(f sign(v) - F): friction relaxes towards its steady value over the
+/// distance f/sigma0, and moves elastically while F is small. It acts in stick too: the block creeps there.
+struct Bristle {
+  static constexpr bool acts_in_stick = true;
+
+  static EffectInfo info() {
+    return {.key = "bristle",
+            .statement = "the contacts bend like bristles before they slide, so the block creeps in stick and "
+                         "friction is rounded at break-away",
+            .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
+            .source = "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
+                      "(1995) 419, doi:10.1109/9.376053",
+            .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
+            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0.0}}};
+  }
+
+  template <class T>
+  Relaxation<T> relaxation(const T* p, const Instant<T>& x, const T& steady) const {
+    using std::abs;
+    return {p[0] * abs(x.velocity) / steady, scalar_part(x.velocity) < 0 ? T(-steady) : steady};
+  }
+
+  /// sigma1 dz/dt = sigma1 v (1 - F/(f sign v)), written with F = sigma0 z.
+  template <class T>
+  T output(const T* p, const Instant<T>& x, const T& steady, const T& force) const {
+    const double sign = scalar_part(x.velocity) < 0 ? -1.0 : 1.0;
+    return force + p[1] * x.velocity * (1.0 - sign * force / steady);
+  }
+
+  /// F at the first slipping sample. Until inertia matters the spring imposes dF/dt, and dF/dt = sigma0 v (1 - F/f).
+  template <class T>
+  T start(const T* p, const Slip& slip, const T& velocity, const T& steady) const {
+    using std::abs;
+    const T level = steady * (1.0 - std::abs(slip.stick_slope) / (p[0] * abs(velocity)));
+    const T clipped = scalar_part(level) > 0 ? level : T(0.0 * level);
+    return slip.direction < 0 ? T(-clipped) : clipped;
+  }
+
+  /// v_r [m/s] in stick while the spring raises friction from `mu` at `slope` [1/s]: dF/dt = sigma0 v (1 - F/mu_s).
+  template <class T>
+  T creep(const T* p, const T& mu_s, double mu, double slope) const {
+    return slope / (p[0] * (1.0 - mu / mu_s));
+  }
+};
+
+}  // namespace tribofit

@@ -1,0 +1,194 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "tribofit/friction/model.hpp"
+
+namespace tribofit {
+
+namespace hooks {
+
+template <class E, class T>
+concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T>& l) { e.adjust(p, s, l); };
+template <class E, class T>
+concept Reduces = requires(const E e, const T* p, const T& x) { e.reduce(p, x); };
+template <class E, class T>
+concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.steady(p, x, mu); };
+template <class E, class T>
+concept Remembers = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.relaxation(p, x, mu); };
+template <class E, class T>
+concept Outputs = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.output(p, x, mu, mu); };
+template <class E, class T>
+concept Modulates = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.modulate(p, x, mu); };
+template <class E, class T>
+concept ModulatesAll = requires(const E e, const T* p, const Slip& s, std::span<const T> v, std::span<T> mu) {
+  e.modulate_all(p, s, v, mu);
+};
+template <class E, class T>
+concept Senses = requires(const E e, const T* p, const Slip& s, std::span<T> mu) { e.sense(p, s, mu); };
+template <class E>
+concept ActsInStick = requires { requires E::acts_in_stick; };
+
+}  // namespace hooks
+
+/// Calls visit(effect, parameters of that effect) for every effect of the model, in order.
+template <class T, class Visitor>
+void for_each_effect(const FrictionModel& model, const T* p, Visitor&& visit) {
+  for (std::size_t k = 0; k < model.effects().size(); ++k) {
+    std::visit([&](const auto& effect) { visit(effect, p + model.offset(k)); }, model.effects()[k]);
+  }
+}
+
+/// Levels of the base law for one slip, after every effect that adjusts them. `mu_s` is what the model says friction reaches at
+/// break-away.
+template <class T>
+LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& slip) {
+  LawParameters<T> law = model.base(p);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Adjusts<E, T>) effect.adjust(q, slip, law);
+  });
+  return law;
+}
+
+/// Steady friction f(v) [1] at one instant, >= 0, before any memory.
+template <class T>
+T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Instant<T>& at) {
+  using std::abs;
+  T x = law.decay * abs(at.velocity);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Reduces<E, T>) x = effect.reduce(q, x);
+  });
+  T mu = law.mu_k + (law.mu_s - law.mu_k) * stribeck_shape(model.law(), x);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Steadies<E, T>) mu = effect.steady(q, at, mu);
+  });
+  return mu;
+}
+
+namespace detail {
+
+/// Carries one memory through a slip, in place: steady[i] becomes the friction after the memory.
+///
+/// Over each interval the exponent A (the mean rate times the interval) and a target linear in A give the exact solution
+/// phi+ = e phi + (1-e) g0 + (1 - (1-e)/A) (g1 - g0), e = exp(-A).
+template <class E, class T>
+void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, std::span<const T> velocity,
+              std::span<T> steady) {
+  using std::exp;
+  if (slip.size() == 0) return;
+  constexpr bool in_stick = hooks::ActsInStick<E>;
+  const bool begins_at_rest = slip.from_stick && !in_stick;
+  Relaxation<T> before = effect.relaxation(q, slip.at(0, velocity[0]), steady[0]);
+  T phi = before.target;
+  double previous = slip.time[0];
+  if (begins_at_rest) {
+    phi = at_rest;
+    previous = slip.break_away_time;
+    before = effect.relaxation(q, slip.at(0, T(0.0 * velocity[0])), at_rest);
+  } else if constexpr (in_stick) {
+    if (slip.from_stick) phi = effect.start(q, slip, velocity[0], steady[0]);
+  }
+  for (std::size_t i = 0; i < slip.size(); ++i) {
+    const Instant<T> at = slip.at(i, velocity[i]);
+    const Relaxation<T> now = effect.relaxation(q, at, steady[i]);
+    const double interval = slip.time[i] - previous;
+    if (interval > 0) {
+      const T a = 0.5 * interval * (before.rate + now.rate);
+      const T e = exp(-a);
+      // (1-e)/A loses its digits for small A, where it is 1 - A/2.
+      const T mean = scalar_part(a) > 1e-5 ? T((1.0 - e) / a) : T(1.0 - 0.5 * a);
+      phi = e * phi + (1.0 - e) * before.target + (1.0 - mean) * (now.target - before.target);
+    }
+    previous = slip.time[i];
+    before = now;
+    if constexpr (hooks::Outputs<E, T>) {
+      steady[i] = effect.output(q, at, steady[i], phi);
+    } else {
+      steady[i] = phi;
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Steady friction f(v) [1] at every sample of a slip: as above, each effect visited once.
+template <class T>
+void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
+                     std::span<const T> velocity, std::span<T> mu) {
+  using std::abs;
+  const std::size_t n = slip.size();
+  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * abs(velocity[i]);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Reduces<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.reduce(q, mu[i]);
+    }
+  });
+  const T drop = law.mu_s - law.mu_k;
+  for (std::size_t i = 0; i < n; ++i) mu[i] = law.mu_k + drop * stribeck_shape(model.law(), mu[i]);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Steadies<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.steady(q, slip.at(i, velocity[i]), mu[i]);
+    }
+  });
+}
+
+/// |mu| that the model expects at the break-away which begins `slip` [1]: mu_s after every effect on the level.
+template <class T>
+T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
+  Slip first = slip;
+  for (auto* channel : {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.load,
+                        &first.temperature}) {
+    if (!channel->empty()) *channel = channel->first(1);
+  }
+  first.time = {&slip.break_away_time, 1};
+  Instant<T> at = first.at(0, T(0.0 * p[0]));
+  at.acceleration = 0;
+  T mu = slip.direction * law_for(model, p, slip).mu_s;
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
+    if constexpr (hooks::ModulatesAll<E, T>) {
+      effect.modulate_all(q, first, std::span<const T>(&at.velocity, 1), std::span<T>(&mu, 1));
+    }
+  });
+  return slip.direction * mu;
+}
+
+/// Friction of the model at every sample of a slip, signed as v_r is.
+///
+/// p: parameters in SI, model.parameters().size() of them; velocity: v_r [m/s]; mu: one value a sample, written.
+/// Cost: linear in samples; one pass per memory.
+template <class T>
+void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) {
+  const LawParameters<T> law = law_for(model, p, slip);
+  const std::size_t n = slip.size();
+  steady_friction(model, p, law, slip, velocity, mu);
+  bool is_signed = false;
+  if (model.state_count() > 0 && n > 0) {
+    const T at_rest = law.mu_s;
+    for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+      if constexpr (hooks::Remembers<E, T>) {
+        detail::remember(effect, q, slip, at_rest, velocity, mu);
+        is_signed = hooks::ActsInStick<E>;
+      }
+    });
+  }
+  if (!is_signed) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (scalar_part(velocity[i]) < 0) mu[i] = T(-mu[i]);
+    }
+  }
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Modulates<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.modulate(q, slip.at(i, velocity[i]), mu[i]);
+    }
+    if constexpr (hooks::ModulatesAll<E, T>) effect.modulate_all(q, slip, velocity, mu);
+    if constexpr (hooks::Senses<E, T>) effect.sense(q, slip, mu);
+  });
+}
+
+}  // namespace tribofit

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+namespace tribofit {
+
+/// One instant as a friction law may see it. SI.
+template <class T>
+struct Instant {
+  T velocity;               ///< v_r [m/s], signed
+  double acceleration = 0;  ///< of the block [m/s^2]
+  double time = 0;          ///< from the trace's first sample [s]
+  double angle = 0;         ///< of the disc [rad]
+  double distance = 0;      ///< slid since the trace's first sample [m]
+  double stick_time = 0;    ///< of the stick before this slip [s]
+  double load = 0;          ///< normal force [N]
+  double mean_load = 1;     ///< N0 [N]
+  double temperature = 0;   ///< [degC]
+  double mean_temperature = 0;  ///< T0 [degC]
+};
+
+/// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
+struct Slip {
+  std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
+  bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
+  double break_away_time = 0;  ///< [s], where from_stick
+  double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded
+  double stick_slope = 0;      ///< d mu/dt imposed by the spring before break-away [1/s]
+  double direction = 1;        ///< sign of v_r
+  double mean_load = 1;        ///< N0 [N]
+  double mean_temperature = 0; ///< T0 [degC]
+
+  std::size_t size() const { return time.size(); }
+
+  template <class T>
+  Instant<T> at(std::size_t i, const T& v) const {
+    const auto value = [i](std::span<const double> channel, double otherwise) {
+      return channel.empty() ? otherwise : channel[i];
+    };
+    return {v,
+            value(acceleration, 0),
+            time[i],
+            value(angle, 0),
+            value(distance, 0),
+            std::isnan(stick_time) ? 0 : stick_time,
+            value(load, mean_load),
+            mean_load,
+            value(temperature, mean_temperature),
+            mean_temperature};
+  }
+};
+
+/// The value of a number that may carry derivatives (a dual number with members a and v, such as a Ceres Jet).
+template <class T>
+double scalar_part(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return x;
+  } else {
+    return x.a;
+  }
+}
+
+}  // namespace tribofit

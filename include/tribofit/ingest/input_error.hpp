@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace tribofit {
+
+/// Where in the input something is wrong. Empty or zero means "does not apply".
+struct InputLocation {
+  std::string file;
+  std::size_t line = 0;  ///< 1-based line of the file
+  std::string column;    ///< name of the column as the file gives it
+};
+
+/// The one exception of the library: the input cannot be used.
+///
+/// what() reads "FILE:LINE: column NAME: PROBLEM; ADVICE". A fit that fails is not an exception
+/// but a result with a reason (see fit/fit.hpp).
+class InputError : public std::runtime_error {
+ public:
+  /// problem: what is wrong, as a sentence without a full stop; advice: what the user can do.
+  InputError(std::string problem, std::string advice, InputLocation where = {});
+
+  const std::string& problem() const noexcept { return problem_; }
+  const std::string& advice() const noexcept { return advice_; }
+  const InputLocation& where() const noexcept { return where_; }
+
+ private:
+  std::string problem_, advice_;
+  InputLocation where_;
+};
+
+}  // namespace tribofit

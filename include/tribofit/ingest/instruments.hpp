@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tribofit {
+
+/// A declared value with its standard uncertainty, in SI.
+struct Declared {
+  double value = 0;
+  double uncertainty = 0;
+};
+
+/// What the user knows about the instruments (`--instruments lab.json`). Absent means: not declared.
+/// What is declared is corrected (kinematics/motion.hpp) and its uncertainty carried into the systematic part of
+/// the result (fit/), not guessed again.
+struct Instruments {
+  struct Vibrometer {
+    std::optional<Declared> range;      ///< full scale [m/s]
+    std::optional<Declared> gain;       ///< reading over true velocity (cosine of the laser angle) [1]
+    std::optional<Declared> high_pass;  ///< first-order corner [Hz]
+    std::optional<Declared> low_pass;   ///< first-order corner [Hz]
+    std::optional<Declared> delay;      ///< reading later than the motion [s]
+    int sign = +1;                      ///< -1: the vibrometer points the other way
+  } vibrometer;
+  struct ForceSensor {
+    std::optional<Declared> bandwidth;   ///< second-order corner [Hz]
+    std::optional<Declared> zero;        ///< reading at no force, of mu [1] (or of Ft [N] when friction is a force)
+    std::optional<Declared> crosstalk;   ///< part of Fn that shows in Ft [1]
+    std::optional<Declared> mass_below;  ///< mass hanging below the sensor [kg]
+    std::optional<Declared> gain;        ///< reading over true friction [1]
+    bool load_measured = false;          ///< mu is Ft/Fn measured, not Ft over the nominal load
+  } force_sensor;
+  struct Rig {
+    std::optional<Declared> stiffness;       ///< pull test [N/m]
+    std::optional<Declared> ping_frequency;  ///< [Hz]
+    std::optional<Declared> pad_radius;      ///< [m]
+    std::optional<Declared> radius;          ///< friction radius [m]; its uncertainty is systematic
+    std::optional<Declared> speed;           ///< disc speed [rad/s]
+    std::optional<Declared> load;            ///< nominal load [N]
+  } rig;
+};
+
+/// Reads an instruments file (JSON; values as "0.5 Hz", ["0.5 Hz", "0.05 Hz"], or
+/// {"value": "0.5 Hz", "uncertainty": "0.05 Hz"}). Throws InputError naming the key for unknown keys (nearest known
+/// one offered), wrong units, values that cannot be.
+Instruments read_instruments(const std::string& path);
+
+}  // namespace tribofit

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tribofit/ingest/conditions.hpp"
+
+namespace tribofit {
+
+/// What the friction channel holds.
+enum class FrictionKind {
+  coefficient,  ///< mu [1]
+  force,        ///< tangential force [N] where no normal force is known
+};
+
+/// What the velocity channel holds.
+enum class VelocityKind {
+  block,       ///< v_b [m/s], v_r = omega r - v_b
+  relative,    ///< v_r [m/s] as measured
+  fixed_block  ///< no channel: the block stands still and v_r = omega r
+};
+
+/// A stretch of a trace with conditions of its own (a recipe step of a tribometer, a file of a split run).
+struct Step {
+  std::size_t begin = 0, end = 0;  ///< samples [begin, end)
+  std::string label;               ///< as the file names it
+  Conditions conditions;
+};
+
+/// One run as recorded, in SI units, with every sample checked to be finite.
+///
+/// Channels are empty when absent; those present all have the length of `time`.
+/// Time is in seconds from the first sample and strictly increasing; where a file restarts its
+/// clock at each step the steps follow one another.
+struct Trace {
+  std::string path;
+  std::uint64_t checksum = 0;  ///< of the bytes of the rows of the input file(s), by FNV-1a on words of eight bytes
+
+  std::vector<double> time;      ///< [s]
+  std::vector<double> friction;  ///< [1] or [N], see friction_kind
+  std::vector<double> velocity;  ///< [m/s], see velocity_kind; empty for a fixed block
+
+  std::vector<double> load;         ///< normal force [N]
+  std::vector<double> temperature;  ///< [degC]
+  std::vector<double> disc_speed;   ///< [rad/s]
+  std::vector<double> disc_angle;   ///< [rad], not wrapped
+
+  FrictionKind friction_kind = FrictionKind::coefficient;
+  VelocityKind velocity_kind = VelocityKind::block;
+
+  Conditions conditions;    ///< of the whole trace; radius unknown where the steps differ
+  std::vector<Step> steps;  ///< at least one; they cover the trace without gaps
+
+  std::vector<std::string> notes;     ///< what was assumed or handled while reading, for the report
+  std::vector<std::string> warnings;  ///< contradictions and defects that were handled
+
+  std::size_t size() const { return time.size(); }
+  double duration() const { return time.empty() ? 0 : time.back() - time.front(); }
+  /// Samples per second: (n-1)/duration.
+  double rate() const { return time.size() > 1 ? double(time.size() - 1) / duration() : 0; }
+};
+
+}  // namespace tribofit

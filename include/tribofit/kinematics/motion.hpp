@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tribofit/ingest/instruments.hpp"
+#include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/health.hpp"
+
+namespace tribofit {
+
+/// A trace turned into relative motion: instruments corrected, run-up trimmed, v_r computed.
+///
+/// v_r = omega r - v_b ([D] Eq 4). All vectors have the same length; optional channels are empty when absent.
+struct Motion {
+  double step = 0;                        ///< sampling interval [s]
+  std::vector<double> time;               ///< [s] from the trace's first sample (not from the trimmed start)
+  std::vector<double> friction;           ///< mu [1], or force [N] (see friction_kind); positive when v_r is
+  std::vector<double> relative_velocity;  ///< v_r [m/s]
+  std::vector<double> disc_velocity;      ///< omega r [m/s]; empty when it is constant
+  double constant_disc_velocity = 0;      ///< omega r [m/s] where disc_velocity is empty; 0 when v_r was measured without a speed
+
+  std::vector<double> load, temperature, disc_speed, disc_angle;  ///< as in Trace
+
+  FrictionKind friction_kind = FrictionKind::coefficient;
+  VelocityKind velocity_kind = VelocityKind::block;
+  Conditions conditions;   ///< speed and its source filled in, from the plateau where nobody said it
+  std::vector<Step> steps;  ///< in samples of this Motion
+
+  std::size_t trimmed = 0;     ///< samples of the run-up that were cut off
+  double velocity_noise = 0;   ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
+  double plateau_velocity = 0; ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
+  double high_pass = 0;        ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
+  double high_pass_std_error = 0;  ///< [Hz]
+  bool sticks = false;         ///< the trace has a plateau of stick
+
+  std::vector<HealthItem> health;  ///< in a fixed order, one per check
+  std::vector<std::string> notes;  ///< corrections made and conventions settled, for the report
+
+  std::size_t size() const { return time.size(); }
+  double disc_velocity_at(std::size_t i) const {
+    return disc_velocity.empty() ? constant_disc_velocity : disc_velocity[i];
+  }
+  double duration() const { return time.empty() ? 0 : time.back() - time.front() + step; }
+};
+
+struct MotionOptions {
+  bool trim = true;             ///< cut the run-up where the plateau is not within 2 % of its final value
+  bool undo_high_pass = true;   ///< undo a first-order high-pass found on the velocity
+};
+
+/// Computes the motion: declared instrument corrections first, then run-up, high-pass, speed, v_r, health.
+/// `trace` is consumed so that no channel is held twice. Throws InputError when no radius and no speed can make v_r.
+Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});
+
+/// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1 samples).
+std::vector<double> block_acceleration(const Motion& motion, std::size_t half_window = 10);
+
+/// Disc angle [rad] of every sample: measured where there is a channel, else the integral of the disc speed from
+/// the trace's first sample. Empty when neither is known.
+std::vector<double> disc_angle(const Motion& motion);
+
+/// Sliding distance [m]: the integral of |v_r| from the first sample, without stick (|v_r| below the noise).
+std::vector<double> sliding_distance(const Motion& motion);
+
+}  // namespace tribofit

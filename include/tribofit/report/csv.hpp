@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+namespace tribofit {
+
+struct Identification;  // pipeline.hpp
+
+/// Writes a result as CSV files for plotting, all of them or none; the folder is made when it is missing.
+///
+/// samples.csv  every sample with the best fit: time_s, relative_velocity_mm_s, mu, mu_model (empty outside slip),
+///              phase (stick|slip), cycle, held_out_fold (both from 0; empty outside the cycles that were fitted)
+/// cycles.csv   the measures of each cycle
+/// curves.csv   mu(v) of every fit with its 95 % band, to a quarter beyond the fastest slip
+/// errors.csv   residual and relative error ([D] Eq 5) of the best fit against time and v_r, slip samples only
+///
+/// Where friction is a force, mu and mu_model are in newtons, as "friction_unit" in the JSON says; other columns carry their unit
+/// in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in samples.
+void write_csv_folder(const std::string& folder, const Identification& result);
+
+}  // namespace tribofit

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tribofit {
+
+/// A file that appears whole or not at all: written beside its final name, then renamed onto it.
+///
+/// What is not a regular file (a terminal, a pipe, /dev/stdout) is written directly.
+/// Every function throws InputError with the file, what failed and what to do.
+class WholeFile {
+ public:
+  explicit WholeFile(std::string path);
+  /// Removes what was written unless commit() succeeded.
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  void write(std::string_view text);
+  /// Everything is on the disc when this returns, still under the temporary name.
+  void finish();
+  /// Gives the file its name (finishing it first).
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+  void flush();
+
+  std::string path_, target_, temporary_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+/// Writes `content` to `path`, whole or not at all (see WholeFile).
+void write_whole(const std::string& path, std::string_view content);
+
+}  // namespace tribofit

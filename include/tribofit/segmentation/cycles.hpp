@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit {
+
+/// A stretch of samples [begin, end).
+struct Span {
+  std::size_t begin = 0, end = 0;
+  std::size_t size() const { return end - begin; }
+};
+
+/// One slip with the stick before it. Quantities that the record does not show are NaN.
+struct Cycle {
+  Span stick;  ///< samples of the stick; empty where the record begins in slip or the motion only reverses
+  Span slip;   ///< samples of the slip: first sample after break_away_time to the last before restick_time. A sample
+               ///< within half an interval of restick_time, where friction jumps, belongs to neither phase.
+  bool stick_complete = false;  ///< the stick's beginning (a re-stick) is in the record
+  bool slip_complete = false;   ///< the slip ends in stick within the record
+  int direction = 1;            ///< sign of v_r in the slip
+
+  double break_away_time = 0;  ///< sub-sample [s]
+  double break_away_time_std_error = 0;  ///< [s]
+  double restick_time = 0;     ///< sub-sample [s]
+  double stick_time = 0;       ///< [s]
+  double slip_time = 0;        ///< [s]
+  double period = 0;           ///< from this break-away to the next of the same direction [s]
+
+  double break_away_friction = 0;  ///< friction at break_away_time, from a line through the stick before it (times direction) [1 or N]
+  double break_away_friction_std_error = 0;
+  double stick_slope = 0;          ///< d friction/dt of that line [1/s or N/s]
+  double stick_maximum = 0;        ///< largest sample in stick: static friction of [D] 3.2
+  double slip_minimum = 0;         ///< smallest sample in slip: kinetic friction of [D] 3.2
+  double peak_velocity = 0;        ///< largest |v_r| in the slip [m/s]
+  double plateau_velocity = 0;     ///< mean of v_r in the stick [m/s]
+};
+
+/// What kind of motion the record holds.
+enum class MotionKind {
+  stick_slip,       ///< sticks and slips
+  always_slipping,  ///< never sticks
+  always_sticking,  ///< never slips
+};
+
+/// Mean of a per-cycle measure with its standard error over cycles.
+struct Measure {
+  double value = 0, std_error = 0;
+};
+
+/// Stick and slip of a whole record.
+struct Segmentation {
+  MotionKind kind = MotionKind::stick_slip;
+  std::vector<Cycle> cycles;  ///< in order of time; a record that never sticks is one slip per direction and step
+  double slip_threshold = 0;  ///< |v_r| above which slip begins [m/s]
+  double stick_threshold = 0;  ///< |v_r| below which stick begins [m/s]
+
+  Measure frequency;  ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
+  Measure amplitude;  ///< of v_r: peak |v_r| over cycles [m/s]
+  Measure stick_time, slip_time;  ///< [s]
+  double rms_velocity = 0;        ///< of the block velocity [m/s]
+  std::vector<std::string> notes;  ///< what a person should know ("never sticks", "the first slip is cut off")
+};
+
+/// Finds stick and slip by hysteresis on |v_r| with thresholds from the trace's own noise.
+///
+/// Break-away is placed between samples by fitting the growth of v_r after it (v_r ~ exp(lambda t) - 1 - lambda t, the
+/// solution of m v_r' = k (omega r) t + |dmu/dv| N v_r near v_r = 0); re-stick by a line through v_r before it.
+/// Friction effects with creep before break-away (v_r small but not zero) stay in the stick.
+Segmentation find_cycles(const Motion& motion);
+
+}  // namespace tribofit

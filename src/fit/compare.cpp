@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "errors.hpp"
+#include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit {
+
+Comparison compare_held_out(const Fit& first, const Fit& second) {
+  Comparison comparison;
+  const std::size_t n = std::min(first.cycle_squares.size(), second.cycle_squares.size());
+  double counts = 0;
+  for (std::size_t c = 0; c < n; ++c) counts += first.cycle_counts[c];
+  if (n < 3 || counts <= 0) return comparison;
+  // Cycles weigh by their samples, so that the mean is the difference of the mean squared errors.
+  std::vector<double> difference(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    difference[c] = (first.cycle_squares[c] - second.cycle_squares[c]) * static_cast<double>(n) / counts;
+    comparison.difference += difference[c] / static_cast<double>(n);
+  }
+  const MeanError error = mean_error(difference);
+  comparison.std_error = error.std_error;
+  if (error.std_error > 0) {
+    comparison.p_value = t_p_value(comparison.difference / error.std_error, error.degrees_of_freedom);
+  }
+  comparison.first_better = comparison.difference < 0;
+  return comparison;
+}
+
+Curve law_curve(const Fit& fit, std::span<const double> velocity) {
+  Curve curve;
+  curve.velocity.assign(velocity.begin(), velocity.end());
+  const std::vector<double> p = fit.values();
+  const std::size_t n = p.size();
+  const auto steady = [&](const std::vector<double>& q, double v) {
+    Slip slip;
+    const LawParameters<double> law = law_for(fit.model, q.data(), slip);
+    Instant<double> at{};
+    at.velocity = v;
+    return steady_friction(fit.model, q.data(), law, at);
+  };
+  const double t = fit.parameters.empty() || !(fit.parameters[0].std_error > 0)
+                       ? 1.96
+                       : (fit.parameters[0].upper95 - fit.parameters[0].value) / fit.parameters[0].std_error;
+  for (const double v : velocity) {
+    const double mu = steady(p, v);
+    std::vector<double> slope(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      std::vector<double> q = p;
+      const double h = 1e-6 * std::max(std::abs(p[k]), 1e-6);
+      q[k] += h;
+      slope[k] = (steady(q, v) - mu) / h;
+    }
+    double variance = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) variance += slope[i] * slope[j] * fit.covariance[i * n + j];
+    }
+    const double half = t * std::sqrt(std::max(0.0, variance));
+    curve.mu.push_back(mu);
+    curve.lower95.push_back(mu - half);
+    curve.upper95.push_back(mu + half);
+  }
+  return curve;
+}
+
+std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+  std::vector<double> mu(motion.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> p = fit.values();
+  if (p.empty()) return mu;
+  const Observations observations = observe(motion, segmentation, fit.model.needs());
+  const FullRecord record(motion, observations, fit.model.needs());
+  for (const auto& range : observations.slips) {
+    const Slip slip = record.slip(range);
+    evaluate<double>(fit.model, p.data(), slip, slip.velocity,
+                     std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));
+  }
+  return mu;
+}
+
+}  // namespace tribofit

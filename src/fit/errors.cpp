@@ -1,0 +1,80 @@
+#include "errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit {
+
+FullRecord::FullRecord(const Motion& motion, const Observations& observations, const Channels& needs)
+    : motion_(motion), observations_(observations) {
+  if (needs.acceleration) acceleration_ = block_acceleration(motion);
+  if (needs.angle) angle_ = disc_angle(motion);
+  if (needs.distance) distance_ = sliding_distance(motion);
+}
+
+Slip FullRecord::slip(const Observations::Range& range) const {
+  const auto part = [&](const std::vector<double>& channel) {
+    return channel.empty() ? std::span<const double>()
+                           : std::span<const double>(channel).subspan(range.samples.begin, range.samples.size());
+  };
+  Slip slip = observations_.slip(range);
+  slip.time = part(motion_.time);
+  slip.velocity = part(motion_.relative_velocity);
+  slip.acceleration = part(acceleration_);
+  slip.angle = part(angle_);
+  slip.distance = part(distance_);
+  slip.load = part(motion_.load);
+  slip.temperature = part(motion_.temperature);
+  return slip;
+}
+
+SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
+                           const Observations& observations) {
+  SampleErrors out;
+  out.squares.assign(observations.cycles, 0.0);
+  out.counts.assign(observations.cycles, 0.0);
+  double relative = 0, relative_count = 0, sum = 0, sum_squares = 0, samples = 0;
+  std::vector<double> mu;
+  for (const auto& range : observations.slips) {
+    const Slip slip = record.slip(range);
+    mu.resize(slip.size());
+    evaluate<double>(model, p.data(), slip, slip.velocity, mu);
+    const double* measured = record.motion().friction.data() + range.samples.begin;
+    double squares = 0;
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const double r = measured[i] - mu[i];
+      squares += r * r;
+      const double level = measured[i] * range.direction;
+      sum += level;
+      sum_squares += level * level;
+      if (measured[i] != 0) {
+        const double e = std::abs(r / measured[i]);
+        relative += e;
+        relative_count += 1;
+        out.figures.max_relative = std::max(out.figures.max_relative, e);
+      }
+    }
+    samples += static_cast<double>(mu.size());
+    double count = static_cast<double>(mu.size());
+    if (range.from_stick) {
+      const double r = range.break_away_friction - break_away_level(model, p.data(), slip);
+      squares += r * r;
+      count += 1;
+    }
+    out.squares[range.cycle] += squares;
+    out.counts[range.cycle] += count;
+  }
+  double total = 0, count = 0;
+  for (std::size_t c = 0; c < out.squares.size(); ++c) {
+    total += out.squares[c];
+    count += out.counts[c];
+  }
+  if (count > 0) out.figures.rmse = std::sqrt(total / count);
+  if (relative_count > 0) out.figures.mean_relative = relative / relative_count;
+  if (samples > 0) out.constant_rmse = std::sqrt(std::max(0.0, sum_squares / samples - std::pow(sum / samples, 2)));
+  return out;
+}
+
+}  // namespace tribofit

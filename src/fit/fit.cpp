@@ -1,0 +1,303 @@
+#include "tribofit/fit/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "errors.hpp"
+#include "influence.hpp"
+#include "messages.hpp"
+#include "model_residuals.hpp"
+#include "profile.hpp"
+#include "starts.hpp"
+#include "stick.hpp"
+#include "systematic.hpp"
+#include "tribofit/fit/parallel.hpp"
+#include "tribofit/fit/uncertainty.hpp"
+
+namespace tribofit {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kFewestCycles = 3;
+
+std::vector<std::size_t> all_slips(const Observations& observations) {
+  std::vector<std::size_t> slips(observations.slips.size());
+  std::iota(slips.begin(), slips.end(), std::size_t{0});
+  return slips;
+}
+
+/// Evenly spread slips with about `values` values: enough to compare starts.
+std::vector<std::size_t> sample_of_slips(const Observations& observations, std::size_t values) {
+  const std::size_t every = std::max<std::size_t>(1, observations.size() / values);
+  std::vector<std::size_t> slips;
+  for (std::size_t k = 0; k < observations.slips.size(); k += every) slips.push_back(k);
+  return slips;
+}
+
+std::size_t fold_of_cycle(std::size_t cycle, std::size_t cycles, std::size_t folds) { return cycle * folds / cycles; }
+
+std::size_t fold_count(const Observations& observations, const FitOptions& options) {
+  return std::min(observations.cycles, static_cast<std::size_t>(std::max(2, options.folds)));
+}
+
+/// One fit in the making: what all its steps share.
+struct Job {
+  const FrictionModel& model;
+  const Motion& motion;
+  const Segmentation& segmentation;
+  const Observations& observations;
+  const Instruments& instruments;
+  const FitOptions& options;
+  Bounds bounds{};
+  ModelResiduals::Options loss{};
+
+  SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
+                     const SolverOptions& solver) const {
+    return minimize(ModelResiduals(model, observations, slips, loss), start, bounds.lower, bounds.upper, solver);
+  }
+};
+
+/// Mean of the per-cycle extremes and the influence of each cycle on it (scaled as influence() scales).
+struct ExtremeMean {
+  double value = 0;
+  Eigen::VectorXd influence;
+};
+
+ExtremeMean mean_extreme(const Observations& observations, const Segmentation& segmentation, bool static_friction) {
+  ExtremeMean out;
+  const auto cycles = static_cast<Eigen::Index>(observations.cycles);
+  out.influence = Eigen::VectorXd::Zero(cycles);
+  std::vector<std::pair<Eigen::Index, double>> values;
+  for (const auto& slip : observations.slips) {
+    for (const Cycle& cycle : segmentation.cycles) {
+      if (cycle.slip.begin != slip.samples.begin || cycle.stick.size() == 0 || !cycle.slip_complete) continue;
+      const double value = static_friction ? cycle.stick_maximum : cycle.slip_minimum;
+      if (std::isfinite(value)) values.emplace_back(static_cast<Eigen::Index>(slip.cycle), std::abs(value));
+    }
+  }
+  for (const auto& [cycle, value] : values) out.value += value / static_cast<double>(values.size());
+  const double scale = static_cast<double>(cycles) / static_cast<double>(std::max<std::size_t>(1, values.size()));
+  for (const auto& [cycle, value] : values) out.influence(cycle) = scale * (value - out.value);
+  if (values.size() < kFewestCycles) out.value = kNaN;
+  return out;
+}
+
+/// Best of several starts: compared on a part of the slips, then settled on all of them.
+SolverResult joint_estimate(const Job& job, Fit& fit, std::vector<double>& start) {
+  const auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
+  const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
+  SolverOptions quick;
+  quick.max_iterations = 40;
+  quick.relative_cost = 1e-8;
+  quick.relative_step = 1e-7;
+  quick.careful = false;
+  std::vector<SolverResult> tries;
+  for (const auto& s : starts) tries.push_back(job.solve(part, s, quick));
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < tries.size(); ++k) {
+    if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;
+  }
+  start = starts[0];
+  if (best != 0) fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
+  return job.solve(all_slips(job.observations), tries[best].p, SolverOptions());
+}
+
+/// [D] 3.2: levels from extremes, then the decay factor alone.
+SolverResult published_estimate(Job& job, std::vector<double>& start, std::vector<ExtremeMean>& extremes) {
+  extremes = {mean_extreme(job.observations, job.segmentation, true),
+              mean_extreme(job.observations, job.segmentation, false)};
+  start = start_from_data(job.model, job.observations, job.bounds);
+  SolverResult failed;
+  failed.p = start;
+  failed.message = "the published protocol needs at least three cycles that stick and slip";
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!std::isfinite(extremes[k].value)) return failed;
+    start[k] = job.bounds.lower[k] = job.bounds.upper[k] = extremes[k].value;
+  }
+  return job.solve(all_slips(job.observations), start, SolverOptions());
+}
+
+/// Influence of each cycle under the published protocol: the decay factor follows the two levels it was given.
+Eigen::MatrixXd published_influence(const NormalEquations& equations, const std::vector<bool>& free,
+                                    const std::vector<ExtremeMean>& extremes) {
+  Eigen::MatrixXd out = influence(equations, free);
+  for (Eigen::Index k = 0; k < 2; ++k) out.col(k) = extremes[static_cast<std::size_t>(k)].influence;
+  for (Eigen::Index d = 2; d < out.cols(); ++d) {
+    if (!(equations.total(d, d) > 0)) continue;
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      out.col(d) -= equations.total(d, k) / equations.total(d, d) * extremes[static_cast<std::size_t>(k)].influence;
+    }
+  }
+  return out;
+}
+
+/// Error on cycles that took no part: refits that leave out contiguous blocks of cycles.
+void hold_out(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
+  const std::size_t folds = fold_count(job.observations, job.options);
+  const std::vector<std::size_t> all = all_slips(job.observations);
+  fit.cycle_counts = errors.counts;
+  fit.cycle_squares = errors.squares;
+  fit.fold_parameters.assign(folds, p);
+  const ModelResiduals whole(job.model, job.observations, all);
+  std::vector<double> at_best(whole.count());
+  whole.evaluate(p.data(), at_best.data(), nullptr);
+  SolverOptions quick;
+  quick.max_iterations = 25;
+  quick.relative_cost = 1e-6;
+  quick.relative_step = 1e-6;
+  quick.careful = false;
+  run_tasks(folds, job.options.threads, [&](std::size_t fold) {
+    std::vector<std::size_t> kept, held;
+    for (const std::size_t s : all) {
+      const bool out = fold_of_cycle(job.observations.slips[s].cycle, job.observations.cycles, folds) == fold;
+      (out ? held : kept).push_back(s);
+    }
+    const std::vector<double> q = job.solve(kept, p, quick).p;
+    fit.fold_parameters[fold] = q;
+    // The squares on every sample at p are known; means over a few samples give their change exactly
+    // where the two curves differ by a nearly constant amount within such a mean.
+    const ModelResiduals residuals(job.model, job.observations, held);
+    std::vector<double> r(residuals.count()), at_p(residuals.count());
+    residuals.evaluate(q.data(), r.data(), nullptr);
+    residuals.evaluate(p.data(), at_p.data(), nullptr);
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      double change = 0;
+      for (std::size_t i = residuals.rows(k).begin; i < residuals.rows(k).end; ++i) change += r[i] * r[i] - at_p[i] * at_p[i];
+      if (const std::size_t b = residuals.break_away_row(k); b < r.size()) change += r[b] * r[b] - at_p[b] * at_p[b];
+      fit.cycle_squares[job.observations.slips[held[k]].cycle] += change;
+    }
+  });
+  const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
+  const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);
+  fit.error.held_out_rmse = std::sqrt(std::max(0.0, squares) / counts);
+}
+
+/// A value within a millionth of its range of a bound sits on it.
+bool on_bound(double value, double lower, double upper) {
+  const double tolerance = 1e-6 * (upper - lower);
+  return lower < upper && (value <= lower + tolerance || value >= upper - tolerance);
+}
+
+void fill_parameters(const Job& job, const SolverResult& solution, const std::vector<double>& start,
+                     const Eigen::MatrixXd& influences, Fit& fit) {
+  const Spread spread = spread_of(influences);
+  for (std::size_t k = 0; k < solution.p.size(); ++k) {
+    const auto& slot = job.model.parameters()[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    FitParameter out;
+    out.parameter = slot.parameter;
+    if (k < 2) {
+      out.parameter.lower = 0;
+      out.parameter.upper = job.bounds.upper[k];
+      if (job.motion.friction_kind == FrictionKind::force) out.parameter.unit = "N";
+    }
+    out.effect = slot.effect;
+    out.value = solution.p[k];
+    out.start = start[k];
+    out.std_error = spread.std_error(i);
+    const double half = t_quantile_95(spread.degrees_of_freedom(i)) * out.std_error;
+    out.lower95 = out.value - half;
+    out.upper95 = out.value + half;
+    out.profile_lower95 = out.profile_upper95 = kNaN;
+    out.at_bound = job.options.protocol == Protocol::joint && on_bound(out.value, job.bounds.lower[k], job.bounds.upper[k]);
+    fit.parameters.push_back(out);
+  }
+  fit.covariance.assign(spread.covariance.data(), spread.covariance.data() + spread.covariance.size());
+}
+
+void fill_floor(const Job& job, const NormalEquations& equations, const SampleErrors& errors, Fit& fit) {
+  fit.floor = estimate_floor(job.motion, job.segmentation);
+  const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
+  const double scatter = std::pow(fit.floor.scatter, 2) * equations.level_sensitivity / std::max(1.0, count);
+  fit.floor.rmse = std::sqrt(std::pow(fit.floor.noise, 2) + scatter);
+  const double above = std::pow(errors.constant_rmse, 2) - std::pow(fit.floor.rmse, 2);
+  const double left = std::pow(fit.error.rmse, 2) - std::pow(fit.floor.rmse, 2);
+  fit.explained = above > 0 ? std::clamp(1 - left / above, 0.0, 1.0) : 0;
+}
+
+Fit failed_fit(Fit fit, const std::string& why) {
+  fit.messages.insert(fit.messages.begin(), why);
+  fit.converged = false;
+  return fit;
+}
+
+}  // namespace
+
+std::string_view to_string(Protocol protocol) { return protocol == Protocol::published ? "published" : "joint"; }
+
+std::vector<double> Fit::values() const {
+  std::vector<double> p;
+  for (const FitParameter& parameter : parameters) p.push_back(parameter.value);
+  return p;
+}
+
+std::size_t Fit::fold_of(std::size_t cycle) const {
+  return cycles == 0 ? 0 : fold_of_cycle(cycle, cycles, fold_parameters.size());
+}
+
+Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
+              const Observations& observations, const Instruments& instruments, const FitOptions& options) {
+  Fit fit;
+  fit.model = model;
+  fit.protocol = options.protocol;
+  fit.cycles = observations.cycles;
+  fit.fastest = observations.fastest;
+  fit.stick_rmse = kNaN;
+  if (observations.cycles < kFewestCycles) {
+    return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
+  }
+  Job job{model, motion, segmentation, observations, instruments, options};
+  job.bounds = bounds_of(model, observations);
+  const Bounds given = job.bounds;
+  if (options.loss != Loss::squares) {
+    job.loss = {options.loss, options.loss_scale * estimate_floor(motion, segmentation).noise};
+  }
+
+  std::vector<double> start;
+  std::vector<ExtremeMean> extremes;
+  const bool published = options.protocol == Protocol::published;
+  const SolverResult solution =
+      published ? published_estimate(job, start, extremes) : joint_estimate(job, fit, start);
+  fit.converged = solution.converged;
+  fit.iterations = solution.iterations;
+  if (!solution.converged) fit.messages.push_back(solution.message);
+  if (published && !std::isfinite(extremes[0].value + extremes[1].value)) return fit;
+
+  const std::vector<double>& p = solution.p;
+  const ModelResiduals residuals(model, observations, all_slips(observations), job.loss);
+  const NormalEquations equations = normal_equations(residuals, observations, p);
+  const std::vector<bool> silent = equations.silent();
+  std::vector<bool> free(p.size()), inside(p.size());
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    free[k] = !silent[k] && job.bounds.lower[k] < job.bounds.upper[k];
+    inside[k] = free[k] && !on_bound(p[k], job.bounds.lower[k], job.bounds.upper[k]);
+  }
+  Eigen::MatrixXd influences =
+      published ? published_influence(equations, free, extremes) : influence(equations, inside);
+  if (!published && inside != free) {
+    // A parameter on its bound is fixed for the others; its own error is what it would have if it were not.
+    const Eigen::MatrixXd with_bound = influence(equations, free);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      if (free[k] && !inside[k]) influences.col(static_cast<Eigen::Index>(k)) = with_bound.col(static_cast<Eigen::Index>(k));
+    }
+  }
+  fill_parameters(job, solution, start, influences, fit);
+
+  const FullRecord record(motion, observations, model.needs());
+  const SampleErrors errors = sample_errors(model, p, record, observations);
+  fit.error = errors.figures;
+  fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
+  fill_floor(job, equations, errors, fit);
+  hold_out(job, p, errors, fit);
+  const std::vector<double> systematic = systematic_errors(model, p, motion, observations, instruments, inside);
+  for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
+  if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, segmentation);
+  if (options.profile && !published) add_profiles(residuals, given, inverse_over(equations.total, inside), fit);
+  add_messages(silent, fit);
+  return fit;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,110 @@
+#include "influence.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "tribofit/fit/uncertainty.hpp"
+
+namespace tribofit {
+
+std::vector<bool> NormalEquations::silent() const {
+  std::vector<bool> silent(static_cast<std::size_t>(total.rows()));
+  for (Eigen::Index k = 0; k < total.rows(); ++k) silent[static_cast<std::size_t>(k)] = !(total(k, k) > 0);
+  return silent;
+}
+
+NormalEquations normal_equations(const ModelResiduals& residuals, const Observations& observations,
+                                 const std::vector<double>& p) {
+  const auto n = static_cast<Eigen::Index>(p.size());
+  std::vector<double> r(residuals.count()), jacobian(residuals.count() * p.size());
+  NormalEquations equations;
+  equations.curvature.assign(observations.cycles, Eigen::MatrixXd::Zero(n, n));
+  equations.gradient.assign(observations.cycles, Eigen::VectorXd::Zero(n));
+  equations.total = Eigen::MatrixXd::Zero(n, n);
+  if (!residuals.evaluate(p.data(), r.data(), jacobian.data())) return equations;
+  using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+  const auto add = [&](std::size_t cycle, std::size_t begin, std::size_t count) {
+    const Rows j(jacobian.data() + begin * p.size(), static_cast<Eigen::Index>(count), n);
+    const Eigen::Map<const Eigen::VectorXd> residual(r.data() + begin, static_cast<Eigen::Index>(count));
+    equations.curvature[cycle].noalias() += j.transpose() * j;
+    equations.gradient[cycle].noalias() += j.transpose() * residual;
+  };
+  for (std::size_t k = 0; k < residuals.slips().size(); ++k) {
+    const std::size_t cycle = observations.slips[residuals.slips()[k]].cycle;
+    add(cycle, residuals.rows(k).begin, residuals.rows(k).size());
+    if (residuals.break_away_row(k) < residuals.count()) add(cycle, residuals.break_away_row(k), 1);
+  }
+  for (const Eigen::MatrixXd& c : equations.curvature) equations.total += c;
+  equations.level_sensitivity = equations.total(0, 0);
+  return equations;
+}
+
+Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bool>& free) {
+  std::vector<Eigen::Index> index;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k] && matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) > 0) {
+      index.push_back(static_cast<Eigen::Index>(k));
+    }
+  }
+  const auto m = static_cast<Eigen::Index>(index.size());
+  Eigen::VectorXd scale(m);
+  Eigen::MatrixXd scaled(m, m);
+  for (Eigen::Index i = 0; i < m; ++i) scale(i) = 1 / std::sqrt(matrix(index[std::size_t(i)], index[std::size_t(i)]));
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index j = 0; j < m; ++j) {
+      scaled(i, j) = scale(i) * matrix(index[std::size_t(i)], index[std::size_t(j)]) * scale(j);
+    }
+  }
+  // Eigenvalues at rounding level belong to combinations the data do not determine: no finite error is claimed less than that.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1e-14);
+  const Eigen::MatrixXd inverse =
+      eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index j = 0; j < m; ++j) {
+      out(index[std::size_t(i)], index[std::size_t(j)]) = scale(i) * inverse(i, j) * scale(j);
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bool>& free) {
+  const auto cycles = static_cast<Eigen::Index>(equations.curvature.size());
+  const auto n = static_cast<double>(cycles);
+  Eigen::MatrixXd out(cycles, equations.total.rows());
+  for (Eigen::Index c = 0; c < cycles; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const Eigen::MatrixXd inverse = inverse_over(equations.total - equations.curvature[i], free);
+    // (n-1) is the jackknife's; the rows then average to the error of the estimate.
+    out.row(c) = -(n - 1) * (inverse * equations.gradient[i]).transpose();
+  }
+  return out;
+}
+
+Spread spread_of(const Eigen::MatrixXd& influence) {
+  const Eigen::Index n = influence.cols();
+  const Eigen::Index cycles = influence.rows();
+  Spread spread;
+  spread.std_error.resize(n);
+  spread.degrees_of_freedom.resize(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::VectorXd column = influence.col(k);
+    const MeanError error = mean_error({column.data(), static_cast<std::size_t>(cycles)});
+    spread.std_error(k) = error.std_error;
+    spread.degrees_of_freedom(k) = error.degrees_of_freedom;
+  }
+  const Eigen::MatrixXd centred = influence.rowwise() - influence.colwise().mean();
+  const Eigen::MatrixXd plain = centred.transpose() * centred;
+  spread.covariance = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double size = std::sqrt(plain(i, i) * plain(j, j));
+      const double correlation = size > 0 ? plain(i, j) / size : (i == j ? 1.0 : 0.0);
+      spread.covariance(i, j) = correlation * spread.std_error(i) * spread.std_error(j);
+    }
+  }
+  return spread;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include "model_residuals.hpp"
+
+namespace tribofit {
+
+/// Normal equations of a fit, cycle by cycle, at one point p.
+struct NormalEquations {
+  std::vector<Eigen::MatrixXd> curvature;  ///< J'J of each cycle
+  std::vector<Eigen::VectorXd> gradient;   ///< J'r of each cycle
+  Eigen::MatrixXd total;                   ///< sum of the curvatures
+  double level_sensitivity = 0;            ///< sum of squares of d model/d mu_s over the rows, weighted by samples
+
+  /// Parameters the data say nothing about: their column of J is zero.
+  std::vector<bool> silent() const;
+};
+
+/// Evaluates the residuals and their derivatives once. Cost: one pass over the slips per four parameters.
+NormalEquations normal_equations(const ModelResiduals& residuals, const Observations& observations,
+                                 const std::vector<double>& p);
+
+/// Influence of each cycle on the free parameters: cycles x parameters, scaled so that the estimate's error is
+/// the mean over cycles. Row c is minus n (H - H_c)^-1 J_c' r_c, the jackknife pseudo-value of one Newton step.
+/// `free`: which parameters are estimated; the columns of the others are zero.
+Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bool>& free);
+
+/// What the influences say of the parameters.
+struct Spread {
+  Eigen::VectorXd std_error, degrees_of_freedom;
+  Eigen::MatrixXd covariance;
+};
+Spread spread_of(const Eigen::MatrixXd& influence);
+
+/// Inverse of the block of `matrix` over the free parameters, zeros elsewhere; stable when nearly singular.
+Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bool>& free);
+
+}  // namespace tribofit

@@ -1,0 +1,58 @@
+#include "messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribofit {
+
+namespace {
+
+constexpr double kStrongCorrelation = 0.9;
+
+void add_correlations(Fit& fit) {
+  const std::size_t n = fit.parameters.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double size = std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
+      const double correlation = size > 0 ? fit.covariance[i * n + j] / size : 0;
+      if (std::abs(correlation) >= kStrongCorrelation) fit.correlations.push_back({i, j, correlation});
+    }
+  }
+  std::sort(fit.correlations.begin(), fit.correlations.end(),
+            [](const Correlation& a, const Correlation& b) { return std::abs(a.value) > std::abs(b.value); });
+}
+
+}  // namespace
+
+void add_messages(const std::vector<bool>& silent, Fit& fit) {
+  add_correlations(fit);
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FitParameter& p = fit.parameters[k];
+    if (silent[k] && fit.protocol == Protocol::joint) {
+      fit.messages.push_back(fmt::format("{} was not moved: no sample depends on it", p.parameter.name));
+    } else if (p.at_bound) {
+      const bool low = std::abs(p.value / p.parameter.si - p.parameter.lower) <
+                       std::abs(p.value / p.parameter.si - p.parameter.upper);
+      fit.messages.push_back(fmt::format("{} sits at its {} bound of {:g} {}", p.parameter.name, low ? "lower" : "upper",
+                                         low ? p.parameter.lower : p.parameter.upper, p.parameter.unit));
+    }
+  }
+  for (const Correlation& c : fit.correlations) {
+    fit.messages.push_back(fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
+                                       fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name,
+                                       c.value));
+  }
+  const FrictionModel& model = fit.model;
+  if (model.law() == BaseLaw::coulomb || fit.parameters.size() < 3) return;
+  const double reached = stribeck_shape(model.law(), fit.parameters[2].value * fit.fastest);
+  const double drop = std::abs(fit.parameters[0].value - fit.parameters[1].value);
+  if (reached > 0.1 && drop > 0) {
+    fit.messages.push_back(fmt::format(
+        "mu_k is extrapolated: at the fastest slip ({:.1f} mm/s) {:.0f} % of the drop from mu_s is still to come",
+        fit.fastest * 1e3, 100 * reached));
+  }
+}
+
+}  // namespace tribofit

@@ -1,0 +1,101 @@
+#include "model_residuals.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Derivatives taken in one pass over the slips.
+constexpr int kStride = 4;
+using Dual = ceres::Jet<double, kStride>;
+
+/// sign(r) sqrt(rho(r^2)) for a residual of weight w (a mean of w samples) and the width s of a single sample.
+template <class T>
+T bend(const T& r, const ModelResiduals::Options& options, double root_weight) {
+  using std::abs;
+  using std::sqrt;
+  if (options.loss == Loss::squares || options.loss_width <= 0) return r;
+  const double s = options.loss_width * root_weight;
+  const T u = abs(r) / s;
+  T root = u;
+  if (options.loss == Loss::huber) {
+    if (scalar_part(u) > 1) root = sqrt(2.0 * u - 1.0);
+  } else if (scalar_part(u) > 1e-8) {
+    root = sqrt(2.0 * (sqrt(1.0 + u * u) - 1.0));
+  }
+  return scalar_part(r) < 0 ? T(-s * root) : T(s * root);
+}
+
+}  // namespace
+
+ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
+                               std::vector<std::size_t> slips, const Options& options)
+    : model_(model), observations_(observations), slips_(std::move(slips)), options_(options) {
+  for (const std::size_t s : slips_) {
+    const auto& range = observations_.slips[s];
+    rows_.push_back({count_, count_ + range.end - range.begin});
+    count_ = rows_.back().end;
+  }
+  const std::size_t breaks = static_cast<std::size_t>(std::count_if(
+      slips_.begin(), slips_.end(), [&](std::size_t s) { return observations_.slips[s].from_stick; }));
+  std::size_t next = count_;
+  count_ += breaks;
+  for (const std::size_t s : slips_) break_away_rows_.push_back(observations_.slips[s].from_stick ? next++ : count_);
+}
+
+ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
+                               std::vector<std::size_t> slips)
+    : ModelResiduals(model, observations, std::move(slips), Options()) {}
+
+/// Calls write(row, residual) for every row; false where the model is not finite.
+template <class T, class Write>
+bool ModelResiduals::run(const T* p, Write&& write) const {
+  std::vector<T> velocity, mu;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    const auto& range = observations_.slips[slips_[k]];
+    const Slip slip = observations_.slip(range);
+    velocity.resize(slip.size());
+    std::transform(slip.velocity.begin(), slip.velocity.end(), velocity.begin(), [](double v) { return T(v); });
+    mu.resize(slip.size());
+    tribofit::evaluate<T>(model_, p, slip, velocity, mu);
+    for (std::size_t i = 0; i < slip.size(); ++i) {
+      const double root_weight = std::sqrt(observations_.weight[range.begin + i]);
+      const T r = root_weight * (observations_.friction[range.begin + i] - mu[i]);
+      if (!std::isfinite(scalar_part(r))) return false;
+      write(rows_[k].begin + i, bend(r, options_, root_weight));
+    }
+    if (range.from_stick) {
+      const T r = range.break_away_friction - break_away_level(model_, p, slip);
+      if (!std::isfinite(scalar_part(r))) return false;
+      write(break_away_rows_[k], bend(r, options_, 1.0));
+    }
+  }
+  return true;
+}
+
+bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
+  if (jacobian == nullptr) return run<double>(p, [&](std::size_t row, double r) { residual[row] = r; });
+  const std::size_t n = parameter_count();
+  std::vector<Dual> dual(n);
+  for (std::size_t first = 0; first < n; first += kStride) {
+    const std::size_t last = std::min(n, first + kStride);
+    for (std::size_t k = 0; k < n; ++k) {
+      dual[k] = k >= first && k < last ? Dual(p[k], static_cast<int>(k - first)) : Dual(p[k]);
+    }
+    const bool finite = run<Dual>(dual.data(), [&](std::size_t row, const Dual& r) {
+      residual[row] = r.a;
+      for (std::size_t k = first; k < last; ++k) jacobian[row * n + k] = r.v[static_cast<Eigen::Index>(k - first)];
+    });
+    if (!finite) return false;
+  }
+  return true;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,153 @@
+#include "tribofit/fit/observations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tribofit {
+
+namespace {
+
+constexpr std::size_t kShortestSlip = 4;        ///< samples; less cannot show a curve
+constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
+
+/// Median number of samples of the slips.
+std::size_t median_size(const std::vector<Observations::Range>& slips) {
+  std::vector<std::size_t> sizes;
+  for (const auto& slip : slips) sizes.push_back(slip.samples.size());
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+/// One range per slip of the segmentation; slips without stick are cut into pieces of about equal length.
+std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Observations::Range> ranges;
+  std::size_t slipping = 0;
+  for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
+  const bool pieces = segmentation.kind == MotionKind::always_slipping;
+  const std::size_t piece = std::max<std::size_t>(kShortestSlip, slipping / kPiecesWithoutStick + 1);
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (cycle.slip.size() < kShortestSlip) continue;
+    const bool from_stick = cycle.stick.size() > 0 && std::isfinite(cycle.break_away_friction);
+    const std::size_t parts = pieces ? (cycle.slip.size() + piece - 1) / piece : 1;
+    for (std::size_t k = 0; k < parts; ++k) {
+      Observations::Range range;
+      range.samples = {cycle.slip.begin + k * cycle.slip.size() / parts,
+                       cycle.slip.begin + (k + 1) * cycle.slip.size() / parts};
+      if (range.samples.size() == 0) continue;
+      range.cycle = ranges.size();
+      range.direction = cycle.direction;
+      range.from_stick = from_stick && k == 0;
+      range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
+      range.break_away_time = motion.time[range.samples.begin];
+      range.stick_time = std::numeric_limits<double>::quiet_NaN();
+      if (range.from_stick) {
+        range.break_away_time = std::min(cycle.break_away_time, motion.time[range.samples.begin]);
+        range.stick_time = cycle.stick_time;
+        range.stick_slope = cycle.stick_slope;
+        range.break_away_friction = cycle.break_away_friction;
+        range.break_away_std_error = cycle.break_away_friction_std_error;
+      }
+      ranges.push_back(range);
+    }
+  }
+  return ranges;
+}
+
+/// Means of `channel` over each value of the observations.
+class Reducer {
+ public:
+  Reducer(const std::vector<Observations::Range>& slips, std::size_t per_value) : slips_(slips), per_value_(per_value) {}
+
+  template <class Write>
+  void each(Write&& write) const {
+    for (const auto& slip : slips_) {
+      for (std::size_t i = slip.samples.begin; i < slip.samples.end; i += per_value_) {
+        write(i, std::min(i + per_value_, slip.samples.end));
+      }
+    }
+  }
+
+  std::vector<double> means(const std::vector<double>& channel) const {
+    std::vector<double> out;
+    if (channel.empty()) return out;
+    each([&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) sum += channel[i];
+      out.push_back(sum / static_cast<double>(end - begin));
+    });
+    return out;
+  }
+
+ private:
+  const std::vector<Observations::Range>& slips_;
+  std::size_t per_value_;
+};
+
+double mean_of(const std::vector<double>& x, double otherwise) {
+  if (x.empty()) return otherwise;
+  double sum = 0;
+  for (const double value : x) sum += value;
+  return sum / static_cast<double>(x.size());
+}
+
+}  // namespace
+
+Slip Observations::slip(const Range& range) const {
+  const auto part = [&](const std::vector<double>& channel) {
+    return channel.empty() ? std::span<const double>()
+                           : std::span<const double>(channel).subspan(range.begin, range.end - range.begin);
+  };
+  Slip slip;
+  slip.time = part(time);
+  slip.velocity = part(velocity);
+  slip.acceleration = part(acceleration);
+  slip.angle = part(angle);
+  slip.distance = part(distance);
+  slip.load = part(load);
+  slip.temperature = part(temperature);
+  slip.from_stick = range.from_stick;
+  slip.break_away_time = range.break_away_time;
+  slip.stick_time = range.stick_time;
+  slip.stick_slope = range.stick_slope;
+  slip.direction = range.direction;
+  slip.mean_load = mean_load;
+  slip.mean_temperature = mean_temperature;
+  return slip;
+}
+
+Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
+                     std::size_t values_per_slip) {
+  Observations out;
+  out.slips = ranges_of(motion, segmentation);
+  out.cycles = out.slips.size();
+  if (values_per_slip > 0) {
+    out.samples_per_value = std::max<std::size_t>(1, median_size(out.slips) / values_per_slip);
+  }
+  const Reducer reduce(out.slips, out.samples_per_value);
+  for (auto& slip : out.slips) {
+    slip.begin = out.size();
+    out.time.resize(out.size() + (slip.samples.size() + out.samples_per_value - 1) / out.samples_per_value);
+    slip.end = out.size();
+  }
+  out.time = reduce.means(motion.time);
+  out.velocity = reduce.means(motion.relative_velocity);
+  out.friction = reduce.means(motion.friction);
+  reduce.each([&](std::size_t begin, std::size_t end) { out.weight.push_back(static_cast<double>(end - begin)); });
+  if (needs.acceleration) out.acceleration = reduce.means(block_acceleration(motion));
+  if (needs.angle) out.angle = reduce.means(disc_angle(motion));
+  if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
+  if (needs.load) out.load = reduce.means(motion.load);
+  if (needs.temperature) out.temperature = reduce.means(motion.temperature);
+  out.mean_load = mean_of(motion.load, motion.conditions.load.known() ? motion.conditions.load.value : 1);
+  out.mean_temperature = mean_of(motion.temperature, 0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
+    out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
+  }
+  return out;
+}
+
+}  // namespace tribofit

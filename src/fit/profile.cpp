@@ -1,0 +1,75 @@
+#include "profile.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+namespace tribofit {
+
+namespace {
+
+double residuals_cost(const ModelResiduals& residuals, const std::vector<double>& p) {
+  std::vector<double> r(residuals.count());
+  residuals.evaluate(p.data(), r.data(), nullptr);
+  double sum = 0;
+  for (const double x : r) sum += x * x;
+  return 0.5 * sum;
+}
+
+/// Sum of squares with parameter k held at `value`, the others refitted from `p` (updated).
+double profiled_squares(const ModelResiduals& residuals, const Bounds& bounds, std::size_t k, double value,
+                        std::vector<double>& p) {
+  Bounds held = bounds;
+  p[k] = held.lower[k] = held.upper[k] = value;
+  SolverOptions quick;
+  quick.max_iterations = 50;
+  quick.relative_cost = 1e-9;
+  quick.relative_step = 1e-9;
+  quick.careful = false;
+  const SolverResult result = minimize(residuals, p, held.lower, held.upper, quick);
+  p = result.p;
+  return 2 * result.cost;
+}
+
+/// Where the profile has risen by `rise` on the side `direction`; the bound where it does not reach that.
+double interval_end(const ModelResiduals& residuals, const Bounds& bounds, const std::vector<double>& best,
+                    std::size_t k, double half_width, double rise, double direction) {
+  const double base = 2 * residuals_cost(residuals, best);
+  const double limit = (direction < 0 ? best[k] - bounds.lower[k] : bounds.upper[k] - best[k]) / half_width;
+  // u: distance from the best value in half-widths of the symmetric interval
+  const auto excess = [&](double u) {
+    std::vector<double> p = best;
+    return profiled_squares(residuals, bounds, k, best[k] + direction * u * half_width, p) - base - rise;
+  };
+  double inner = 0, inner_excess = -rise;
+  for (double outer = std::min(1.0, limit);; outer = std::min(1.6 * outer, limit)) {
+    const double outer_excess = excess(outer);
+    if (outer_excess >= 0) {
+      std::uintmax_t iterations = 15;
+      const auto root = boost::math::tools::toms748_solve(excess, inner, outer, inner_excess, outer_excess,
+                                                          boost::math::tools::eps_tolerance<double>(10), iterations);
+      return best[k] + direction * 0.5 * (root.first + root.second) * half_width;
+    }
+    if (outer >= limit) return best[k] + direction * limit * half_width;
+    inner = outer;
+    inner_excess = outer_excess;
+  }
+}
+
+}  // namespace
+
+void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
+                  Fit& fit) {
+  const std::vector<double> best = fit.values();
+  for (std::size_t k = 0; k < best.size(); ++k) {
+    FitParameter& parameter = fit.parameters[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double half_width = parameter.upper95 - parameter.value;
+    if (!(inverse_curvature(i, i) > 0) || !(half_width > 0)) continue;
+    const double rise = half_width * half_width / inverse_curvature(i, i);
+    parameter.profile_lower95 = interval_end(residuals, bounds, best, k, half_width, rise, -1);
+    parameter.profile_upper95 = interval_end(residuals, bounds, best, k, half_width, rise, +1);
+  }
+}
+
+}  // namespace tribofit

@@ -1,0 +1,200 @@
+#include "tribofit/fit/solver.hpp"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace tribofit {
+
+namespace {
+
+/// All residuals of a problem as one cost; held parameters are left out of Ceres' parameter block.
+class Cost : public ceres::CostFunction {
+ public:
+  Cost(const Residuals& problem, std::vector<double> p, std::vector<std::size_t> free)
+      : problem_(problem), p_(std::move(p)), free_(std::move(free)) {
+    set_num_residuals(static_cast<int>(problem.count()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
+    if (free_.size() < p_.size()) all_.resize(problem.count() * p_.size());
+  }
+
+  bool Evaluate(const double* const* blocks, double* residuals, double** jacobians) const override {
+    for (std::size_t k = 0; k < free_.size(); ++k) p_[free_[k]] = blocks[0][k];
+    double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+    if (jacobian == nullptr || free_.size() == p_.size()) return problem_.evaluate(p_.data(), residuals, jacobian);
+    if (!problem_.evaluate(p_.data(), residuals, all_.data())) return false;
+    for (std::size_t i = 0; i < problem_.count(); ++i) {
+      for (std::size_t k = 0; k < free_.size(); ++k) jacobian[i * free_.size() + k] = all_[i * p_.size() + free_[k]];
+    }
+    return true;
+  }
+
+ private:
+  const Residuals& problem_;
+  mutable std::vector<double> p_;
+  std::vector<std::size_t> free_;
+  mutable std::vector<double> all_;
+};
+
+/// Ceres reports trouble through glog, on stderr; a fit reports it in its result.
+void keep_logging_quiet() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    FLAGS_minloglevel = 3;
+    FLAGS_logtostderr = false;
+  });
+}
+
+/// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must be
+/// shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
+void polish(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
+            std::span<const double> upper, SolverResult& result) {
+  constexpr int kSteps = 30;
+  const auto rows = static_cast<Eigen::Index>(problem.count()), all = static_cast<Eigen::Index>(result.p.size());
+  Eigen::VectorXd residual(rows);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full(rows, all);
+  double last = 1e-3;  // a longer step is no polish
+  for (int step = 0; step < kSteps; ++step) {
+    if (!problem.evaluate(result.p.data(), residual.data(), full.data())) return;
+    Eigen::MatrixXd jacobian(rows, static_cast<Eigen::Index>(free.size()));
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      jacobian.col(static_cast<Eigen::Index>(k)) = full.col(static_cast<Eigen::Index>(free[k]));
+    }
+    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    jacobian *= scale.asDiagonal();
+    const Eigen::VectorXd change = scale.asDiagonal() * jacobian.householderQr().solve(-residual).eval();
+    std::vector<double> p = result.p;
+    double length = 0;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const double moved = change(static_cast<Eigen::Index>(k));
+      p[free[k]] += moved;
+      length = std::max(length, std::abs(moved) / std::max(std::abs(p[free[k]]), 1e-300));
+      if (!lower.empty() && (p[free[k]] < lower[free[k]] || p[free[k]] > upper[free[k]])) return;
+    }
+    if (!(length < last)) return;
+    last = length;
+    if (!problem.evaluate(p.data(), residual.data(), nullptr)) return;
+    const double cost = 0.5 * residual.squaredNorm();
+    if (cost > result.cost * (1 + 1e-8)) return;
+    result.p = p;
+    result.cost = cost;
+    if (length < 1e-13) return;
+  }
+}
+
+std::string explain(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE: return "converged";
+    case ceres::NO_CONVERGENCE:
+      return "did not settle within " + std::to_string(summary.iterations.size()) + " iterations";
+    default: return "the solver failed: " + summary.message;
+  }
+}
+
+/// One descent from `start`.
+SolverResult descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
+                     std::span<const double> lower, std::span<const double> upper, const SolverOptions& options) {
+  SolverResult result;
+  result.p.assign(start.begin(), start.end());
+  std::vector<double> x;
+  for (const std::size_t k : free) x.push_back(start[k]);
+  ceres::Problem ceres_problem;
+  ceres_problem.AddResidualBlock(new Cost(problem, result.p, free), nullptr, x.data());
+  for (std::size_t j = 0; j < free.size() && !lower.empty(); ++j) {
+    const int index = static_cast<int>(j);
+    if (std::isfinite(lower[free[j]])) ceres_problem.SetParameterLowerBound(x.data(), index, lower[free[j]]);
+    if (std::isfinite(upper[free[j]])) ceres_problem.SetParameterUpperBound(x.data(), index, upper[free[j]]);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  solver.initial_trust_region_radius = options.trust_radius;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.relative_cost;
+  solver.parameter_tolerance = options.relative_step;
+  solver.gradient_tolerance = 0;  // residuals have no common scale; steps and cost decide
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &ceres_problem, &summary);
+
+  for (std::size_t j = 0; j < free.size(); ++j) result.p[free[j]] = x[j];
+  result.cost = summary.final_cost;
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.iterations = static_cast<int>(summary.iterations.size());
+  result.message = explain(summary);
+  if (options.careful && summary.IsSolutionUsable()) polish(problem, free, lower, upper, result);
+  return result;
+}
+
+/// A first step that was too long can throw a parameter so far out that no residual feels it any more; the cost is flat
+/// there and the solver calls it converged.
+bool runs_away(const Residuals& problem, std::span<const double> start, std::span<const double> end,
+               const std::vector<std::size_t>& free) {
+  const auto felt = [&](std::span<const double> p) {
+    std::vector<double> residual(problem.count()), jacobian(problem.count() * p.size());
+    std::vector<double> norms(p.size(), 0.0);
+    if (!problem.evaluate(p.data(), residual.data(), jacobian.data())) return norms;
+    for (std::size_t i = 0; i < jacobian.size(); ++i) norms[i % p.size()] += jacobian[i] * jacobian[i];
+    return norms;
+  };
+  const std::vector<double> before = felt(start), after = felt(end);
+  return std::any_of(free.begin(), free.end(), [&](std::size_t k) { return after[k] < 1e-12 * before[k]; });
+}
+
+/// What is returned where there is nothing to solve, or too little to solve it with.
+SolverResult unsolved(const Residuals& problem, std::span<const double> start, bool nothing_free) {
+  SolverResult result;
+  result.p.assign(start.begin(), start.end());
+  std::vector<double> r(problem.count());
+  const bool finite = problem.evaluate(result.p.data(), r.data(), nullptr);
+  for (const double x : r) result.cost += 0.5 * x * x;
+  result.converged = finite && nothing_free;
+  result.message = nothing_free ? "nothing to fit" : "fewer observations than parameters";
+  return result;
+}
+
+}  // namespace
+
+SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower,
+                      std::span<const double> upper, const SolverOptions& options) {
+  keep_logging_quiet();
+  std::vector<std::size_t> free;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    if (lower.empty() || lower[k] < upper[k]) free.push_back(k);
+  }
+  if (free.empty() || problem.count() < free.size()) return unsolved(problem, start, free.empty());
+
+  SolverResult result = descend(problem, start, free, lower, upper, options);
+  if (options.careful && (!result.converged || runs_away(problem, start, result.p, free))) {
+    SolverOptions cautious = options;
+    cautious.trust_radius = 1e-4;
+    SolverResult retry = descend(problem, start, free, lower, upper, cautious);
+    if (retry.cost < result.cost) result = std::move(retry);
+  }
+  return result;
+}
+
+std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p) {
+  const auto rows = static_cast<Eigen::Index>(problem.count()), columns = static_cast<Eigen::Index>(p.size());
+  Eigen::VectorXd residual(rows);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
+  problem.evaluate(p.data(), residual.data(), jacobian.data());
+  // QR of the scaled Jacobian: forming J'J would cost half the digits.
+  const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() *
+      r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(columns, columns)).eval();
+  const double variance = residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows - columns));
+  const Eigen::MatrixXd covariance = variance * inverse * inverse.transpose();
+  return {covariance.data(), covariance.data() + covariance.size()};
+}
+
+}  // namespace tribofit

@@ -1,0 +1,152 @@
+#include "starts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+
+namespace tribofit {
+
+namespace {
+
+/// Mean |friction| in bins of |v_r|, with the samples behind each.
+struct SpeedBin {
+  double speed = 0, friction = 0, weight = 0;
+};
+
+std::vector<SpeedBin> bin_by_speed(const Observations& observations) {
+  constexpr std::size_t kBins = 80;
+  std::vector<SpeedBin> bins(kBins);
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      const double v = std::abs(observations.velocity[i]);
+      // Finer near v = 0, where the law bends.
+      const double place = observations.fastest > 0 ? std::sqrt(v / observations.fastest) : 0;
+      SpeedBin& bin = bins[std::min(kBins - 1, static_cast<std::size_t>(place * kBins))];
+      bin.speed += observations.weight[i] * v;
+      bin.friction += observations.weight[i] * observations.friction[i] * slip.direction;
+      bin.weight += observations.weight[i];
+    }
+  }
+  std::erase_if(bins, [](const SpeedBin& bin) { return bin.weight == 0; });
+  for (SpeedBin& bin : bins) {
+    bin.speed /= bin.weight;
+    bin.friction /= bin.weight;
+  }
+  return bins;
+}
+
+/// Least squares of friction = mu_k + drop * shape(decay v) with the decay factor given.
+struct Levels {
+  double mu_k = 0, drop = 0, cost = 0;
+};
+
+Levels fit_levels(BaseLaw law, double decay, const std::vector<SpeedBin>& bins) {
+  double w = 0, s = 0, ss = 0, y = 0, ys = 0, yy = 0;
+  for (const SpeedBin& bin : bins) {
+    const double shape = stribeck_shape(law, decay * bin.speed);
+    w += bin.weight;
+    s += bin.weight * shape;
+    ss += bin.weight * shape * shape;
+    y += bin.weight * bin.friction;
+    ys += bin.weight * bin.friction * shape;
+    yy += bin.weight * bin.friction * bin.friction;
+  }
+  Levels levels;
+  const double determinant = w * ss - s * s;
+  if (determinant > 1e-12 * w * ss) {
+    levels.drop = (w * ys - s * y) / determinant;
+    levels.mu_k = (y - levels.drop * s) / w;
+  } else if (w > 0) {
+    levels.mu_k = y / w;
+  }
+  levels.cost = yy - levels.mu_k * y - levels.drop * ys;
+  return levels;
+}
+
+double mean_break_away(const Observations& observations, double otherwise) {
+  double sum = 0, count = 0;
+  for (const auto& slip : observations.slips) {
+    if (!slip.from_stick) continue;
+    sum += slip.break_away_friction;
+    count += 1;
+  }
+  return count > 0 ? sum / count : otherwise;
+}
+
+/// Decay factors between which the law is neither a constant nor a straight line over the data [s/m].
+std::array<double, 2> decay_range(const Observations& observations) {
+  const double v = std::max(observations.fastest, 1e-9);
+  return {0.2 / v, 40 / v};
+}
+
+}  // namespace
+
+Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
+  Bounds bounds;
+  for (const auto& slot : model.parameters()) {
+    bounds.lower.push_back(slot.parameter.lower * slot.parameter.si);
+    bounds.upper.push_back(slot.parameter.upper * slot.parameter.si);
+  }
+  const double top = 5 * std::max(1.0, observations.largest_friction);
+  bounds.upper[0] = bounds.upper[1] = top;
+  return bounds;
+}
+
+std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations,
+                                    const Bounds& bounds) {
+  std::vector<double> p;
+  for (const auto& slot : model.parameters()) p.push_back(slot.parameter.start * slot.parameter.si);
+  const std::vector<SpeedBin> bins = bin_by_speed(observations);
+  const auto [slowest, fastest] = decay_range(observations);
+  if (model.law() == BaseLaw::coulomb) {
+    const Levels levels = fit_levels(model.law(), 0, bins);
+    p[0] = mean_break_away(observations, levels.mu_k);
+    p[1] = levels.mu_k;
+  } else {
+    constexpr int kGrid = 40;
+    Levels best;
+    for (int k = 0; k < kGrid; ++k) {
+      const double decay = slowest * std::pow(fastest / slowest, k / (kGrid - 1.0));
+      const Levels levels = fit_levels(model.law(), decay, bins);
+      if (k == 0 || levels.cost < best.cost) {
+        best = levels;
+        p[0] = levels.mu_k + levels.drop;
+        p[1] = levels.mu_k;
+        p[2] = decay;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < p.size(); ++k) p[k] = std::clamp(p[k], bounds.lower[k], bounds.upper[k]);
+  return p;
+}
+
+std::vector<std::vector<double>> make_starts(const FrictionModel& model, const Observations& observations,
+                                             const Bounds& bounds, int count, std::uint64_t seed) {
+  std::vector<std::vector<double>> starts = {start_from_data(model, observations, bounds)};
+  boost::random::mt19937_64 engine(seed);
+  boost::random::uniform_01<double> uniform;
+  const auto [slowest, fastest] = decay_range(observations);
+  for (int s = 1; s < count; ++s) {
+    std::vector<double> p = starts[0];
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double u = uniform(engine);
+      const double low = bounds.lower[k], high = bounds.upper[k];
+      if (k < 2) {
+        p[k] *= 0.8 + 0.4 * u;
+      } else if (k == 2 && model.base_count() == 3) {
+        p[k] = slowest * std::pow(fastest / slowest, u);
+      } else if (low > 0 && high > 20 * low) {
+        p[k] = low * std::pow(high / low, u);
+      } else {
+        p[k] = low + u * (high - low);
+      }
+      p[k] = std::clamp(p[k], low, high);
+    }
+    starts.push_back(p);
+  }
+  return starts;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,109 @@
+#include "tribofit/friction/dynamics.hpp"
+
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// A slip of one sample, for hooks that take whole slips.
+struct OneSample {
+  double time, velocity, acceleration, angle, distance, load, temperature;
+  Slip slip;
+
+  explicit OneSample(const Instant<double>& at)
+      : time(at.time), velocity(at.velocity), acceleration(at.acceleration), angle(at.angle), distance(at.distance),
+        load(at.load), temperature(at.temperature) {
+    const auto one = [](const double& x) { return std::span<const double>(&x, 1); };
+    slip.time = one(time);
+    slip.velocity = one(velocity);
+    slip.acceleration = one(acceleration);
+    slip.angle = one(angle);
+    slip.distance = one(distance);
+    slip.load = one(load);
+    slip.temperature = one(temperature);
+    slip.stick_time = at.stick_time;
+    slip.direction = at.velocity < 0 ? -1 : 1;
+    slip.mean_load = at.mean_load;
+    slip.mean_temperature = at.mean_temperature;
+  }
+  OneSample(const OneSample&) = delete;
+  OneSample& operator=(const OneSample&) = delete;
+};
+
+double modulated(const FrictionModel& model, const double* p, const Instant<double>& at, double mu) {
+  for_each_effect(model, p, [&]<class E>(const E& effect, const double* q) {
+    if constexpr (hooks::Modulates<E, double>) mu = effect.modulate(q, at, mu);
+    if constexpr (hooks::ModulatesAll<E, double>) {
+      const OneSample one(at);
+      effect.modulate_all(q, one.slip, std::span<const double>(&one.velocity, 1), std::span<double>(&mu, 1));
+    }
+  });
+  return mu;
+}
+
+}  // namespace
+
+FrictionDynamics::FrictionDynamics(FrictionModel model, std::vector<double> p)
+    : model_(std::move(model)), p_(std::move(p)) {
+  if (p_.size() != model_.parameters().size()) {
+    throw std::invalid_argument("FrictionDynamics: wrong number of parameters");
+  }
+  law_ = model_.base(p_.data());
+}
+
+void FrictionDynamics::begin_slip(double stick_time, double direction, double offset) {
+  Slip slip;
+  slip.stick_time = stick_time;
+  slip.direction = direction;
+  slip.from_stick = true;
+  law_ = law_for(model_, p_.data(), slip);
+  law_.mu_s += offset;
+  direction_ = direction;
+}
+
+double FrictionDynamics::break_away_friction(const Instant<double>& at) const {
+  Instant<double> rest = at;
+  rest.velocity = direction_ * std::numeric_limits<double>::min();  // at rest, but with a sign
+  return direction_ * modulated(model_, p_.data(), rest, direction_ * law_.mu_s);
+}
+
+void FrictionDynamics::states_at_break_away(std::span<double> state) const {
+  for (double& phi : state) phi = law_.mu_s;
+}
+
+double FrictionDynamics::run(const Instant<double>& at, std::span<const double> state, std::span<double> rate,
+                             bool want_rates) const {
+  double mu = steady_friction(model_, p_.data(), law_, at);
+  std::size_t k = 0;
+  bool is_signed = false;
+  for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
+    if constexpr (hooks::Remembers<E, double>) {
+      const Relaxation<double> r = effect.relaxation(q, at, mu);
+      if (want_rates) rate[k] = r.rate * (r.target - state[k]);
+      if constexpr (hooks::Outputs<E, double>) {
+        mu = effect.output(q, at, mu, state[k]);
+      } else {
+        mu = state[k];
+      }
+      is_signed = hooks::ActsInStick<E>;
+      ++k;
+    }
+  });
+  if (!is_signed && at.velocity < 0) mu = -mu;
+  return want_rates ? mu : modulated(model_, p_.data(), at, mu);
+}
+
+double FrictionDynamics::friction(const Instant<double>& at, std::span<const double> state) const {
+  return run(at, state, {}, false);
+}
+
+void FrictionDynamics::rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const {
+  run(at, state, rate, true);
+}
+
+}  // namespace tribofit

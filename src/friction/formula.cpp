@@ -1,0 +1,278 @@
+#include "tribofit/friction/formula.hpp"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Variables of a formula, their units and what they need.
+struct Variable {
+  const char* name;
+  const char* unit;
+  double per_si;  ///< value in `unit` of one SI unit
+};
+constexpr std::array<Variable, 8> kVariables = {{{"v", "mm/s", 1e3},
+                                                 {"acceleration", "mm/s^2", 1e3},
+                                                 {"t", "s", 1},
+                                                 {"angle", "rad", 1},
+                                                 {"distance", "mm", 1e3},
+                                                 {"stick_time", "s", 1},
+                                                 {"load", "N", 1},
+                                                 {"temperature", "degC", 1}}};
+
+std::string trim(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return {};
+  const auto end = text.find_last_not_of(" \t\r\n");
+  return std::string(text.substr(begin, end - begin + 1));
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t depth = 0, begin = 0;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    if (i < text.size() && (text[i] == '[' || text[i] == '(')) ++depth;
+    if (i < text.size() && (text[i] == ']' || text[i] == ')') && depth > 0) --depth;
+    if (i == text.size() || (text[i] == separator && depth == 0)) {
+      parts.push_back(trim(text.substr(begin, i - begin)));
+      begin = i + 1;
+    }
+  }
+  return parts;
+}
+
+[[noreturn]] void reject(const std::string& problem, const std::string& text) {
+  throw InputError(
+      "the formula \"" + text + "\": " + problem,
+      "write it as 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s' with the variables v [mm/s], "
+      "acceleration [mm/s^2], t [s], angle [rad], distance [mm], stick_time [s], load [N], temperature [degC]");
+}
+
+/// Units of the variables a formula is written in, so that a parameter's number means the same as the variable's.
+std::string_view formula_unit(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::velocity: return "mm/s";
+    case Quantity::acceleration: return "mm/s^2";
+    case Quantity::length: return "mm";
+    case Quantity::inverse_velocity: return "s/mm";
+    case Quantity::inverse_length: return "1/mm";
+    case Quantity::time: return "s";
+    case Quantity::force: return "N";
+    case Quantity::angle: return "rad";
+    case Quantity::frequency: return "Hz";
+    case Quantity::inverse_time: return "1/s";
+    case Quantity::angular_velocity: return "rad/s";
+    case Quantity::temperature: return "degC";
+    case Quantity::inverse_temperature: return "1/K";
+    default: return "1";
+  }
+}
+
+/// Reads "0.02", "25mm/s" or "25mm/s[5,60]" into a parameter whose unit is that of the formula's variables.
+Parameter read_start(const std::string& name, const std::string& value, const std::string& text) {
+  Parameter parameter;
+  parameter.name = name;
+  parameter.unit = "1";
+  std::string number = value, bounds;
+  if (const auto open = value.find('['); open != std::string::npos) {
+    if (value.back() != ']') reject("the bounds of '" + name + "' lack a closing bracket", text);
+    bounds = value.substr(open + 1, value.size() - open - 2);
+    number = trim(value.substr(0, open));
+  }
+  char* end = nullptr;
+  const double plain = std::strtod(number.c_str(), &end);
+  const std::string unit_text = trim(end);
+  if (end == number.c_str() || !std::isfinite(plain)) reject("'" + name + "' has no number as its start", text);
+  double factor = 1;
+  if (!unit_text.empty()) {
+    const std::optional<Unit> unit = find_unit(unit_text);
+    if (!unit) reject("the unit '" + unit_text + "' of '" + name + "' is not known", text);
+    parameter.unit = std::string(formula_unit(unit->quantity));
+    const std::optional<Unit> shown = find_unit(parameter.unit);
+    factor = unit->factor / (shown ? shown->factor : 1.0);
+    parameter.si = 1;
+  }
+  parameter.start = plain * factor;
+  const double reach = parameter.start == 0 ? 1 : 10 * std::abs(parameter.start);
+  parameter.lower = parameter.start > 0 ? 0 : -reach;
+  parameter.upper = parameter.start < 0 ? 0 : reach;
+  if (!unit_text.empty()) parameter.lower = parameter.start > 0 ? 0.1 * parameter.start : parameter.lower;
+  if (unit_text.empty() && parameter.start != 0) {
+    parameter.lower = -reach;
+    parameter.upper = reach;
+  }
+  if (!bounds.empty()) {
+    const std::vector<std::string> ends = split(bounds, ',');
+    char *end_low = nullptr, *end_high = nullptr;
+    if (ends.size() == 2) {
+      parameter.lower = std::strtod(ends[0].c_str(), &end_low) * factor;
+      parameter.upper = std::strtod(ends[1].c_str(), &end_high) * factor;
+    }
+    if (ends.size() != 2 || end_low == ends[0].c_str() || end_high == ends[1].c_str() ||
+        !(parameter.lower < parameter.upper) || parameter.start < parameter.lower ||
+        parameter.start > parameter.upper) {
+      reject("the bounds of '" + name + "' are not [lower,upper] around its start", text);
+    }
+  }
+  return parameter;
+}
+
+}  // namespace
+
+struct Formula::Parsed {
+  std::string text, name, expression;
+  std::vector<Parameter> parameters;
+  Channels needs;
+  std::array<double, kVariables.size()> variable{};
+  std::vector<double> value;
+  mu::Parser parser;
+
+  /// Binds names to the storage of this object; a copy must bind anew.
+  void bind() {
+    parser = mu::Parser();
+    parser.SetExpr(expression);
+    parser.DefineConst("pi", 3.14159265358979323846);
+    for (std::size_t k = 0; k < kVariables.size(); ++k) parser.DefineVar(kVariables[k].name, &variable[k]);
+    value.assign(parameters.size(), 0.0);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      value[k] = parameters[k].start;
+      parser.DefineVar(parameters[k].name, &value[k]);
+    }
+  }
+};
+
+Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
+  Parsed& p = *parsed_;
+  p.text = trim(given);
+  const auto semicolon = p.text.find(';');
+  const std::string definition = p.text.substr(0, semicolon);
+  const auto equals = definition.find('=');
+  if (equals == std::string::npos) reject("there is no '=' between its name and its expression", p.text);
+  p.name = trim(definition.substr(0, equals));
+  p.expression = trim(definition.substr(equals + 1));
+  const auto name_char = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (p.name.empty() || !std::all_of(p.name.begin(), p.name.end(), name_char)) {
+    reject("its name must be letters, digits, '-' or '_'", p.text);
+  }
+  if (semicolon != std::string::npos) {
+    for (const std::string& part : split(std::string_view(p.text).substr(semicolon + 1), ',')) {
+      if (part.empty()) continue;
+      const auto assign = part.find('=');
+      const std::string key = trim(part.substr(0, assign));
+      if (assign == std::string::npos || key.empty()) reject("'" + part + "' is not 'parameter=start'", p.text);
+      for (const Variable& variable : kVariables) {
+        if (key == variable.name) reject("'" + key + "' is a variable and cannot be a parameter", p.text);
+      }
+      for (const Parameter& known : p.parameters) {
+        if (known.name == key) reject("the parameter '" + key + "' is given twice", p.text);
+      }
+      p.parameters.push_back(read_start(key, trim(part.substr(assign + 1)), p.text));
+    }
+  }
+  try {
+    p.bind();
+    std::vector<std::string> known;
+    for (const Variable& variable : kVariables) known.emplace_back(variable.name);
+    for (const Parameter& parameter : p.parameters) known.push_back(parameter.name);
+    const auto used = p.parser.GetUsedVar();
+    for (const auto& [name, unused] : used) {
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        reject("'" + name + "' is neither a variable nor a parameter with a start (nearest: '" +
+                   nearest_name(name, known) + "')",
+               p.text);
+      }
+    }
+    for (const Parameter& parameter : p.parameters) {
+      if (!used.contains(parameter.name)) reject("the parameter '" + parameter.name + "' is not used", p.text);
+    }
+    p.needs = {.acceleration = used.contains("acceleration"),
+               .angle = used.contains("angle"),
+               .distance = used.contains("distance"),
+               .load = used.contains("load"),
+               .temperature = used.contains("temperature"),
+               .stick_time = used.contains("stick_time")};
+    p.parser.Eval();
+  } catch (const mu::Parser::exception_type& error) {
+    const auto position = static_cast<std::size_t>(std::max(0, error.GetPos()));
+    reject(std::string(error.GetMsg()) + " Here:\n  " + p.expression + "\n  " +
+               std::string(std::min(position, p.expression.size()), ' ') + "^",
+           p.text);
+  }
+}
+
+Formula::Formula(const Formula& other) : parsed_(std::make_unique<Parsed>(*other.parsed_)) { parsed_->bind(); }
+Formula& Formula::operator=(const Formula& other) {
+  if (this != &other) *this = Formula(other);
+  return *this;
+}
+Formula::Formula(Formula&&) noexcept = default;
+Formula& Formula::operator=(Formula&&) noexcept = default;
+Formula::~Formula() = default;
+
+EffectInfo Formula::info() const {
+  return {.key = parsed_->name,
+          .statement = "a term given by the user",
+          .equation = "mu + " + parsed_->expression,
+          .source = "the user",
+          .experiment = "",
+          .parameters = parsed_->parameters,
+          .needs = parsed_->needs};
+}
+
+std::size_t Formula::parameter_count() const { return parsed_->parameters.size(); }
+
+void Formula::evaluate(std::span<const double> values, const Slip& slip, std::span<const double> speed,
+                       std::span<double> terms) const {
+  Parsed& p = *parsed_;
+  std::copy(values.begin(), values.end(), p.value.begin());
+  try {
+    for (std::size_t i = 0; i < slip.size(); ++i) {
+      const Instant<double> at = slip.at(i, speed[i]);
+      const std::array<double, kVariables.size()> si = {speed[i],    at.acceleration, at.time, at.angle,
+                                                        at.distance, at.stick_time,   at.load, at.temperature};
+      for (std::size_t k = 0; k < si.size(); ++k) p.variable[k] = si[k] * kVariables[k].per_si;
+      terms[i] = p.parser.Eval();
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    reject(error.GetMsg(), p.text);
+  }
+}
+
+void Formula::differentiate(std::size_t k, std::span<const double> values, const Slip& slip,
+                            std::span<const double> speed, std::span<double> slopes) const {
+  std::vector<double> low(slopes.size());
+  const auto difference = [&](double h, auto&& terms_at) {
+    terms_at(h, slopes);
+    terms_at(-h, low);
+    for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = (slopes[i] - low[i]) / (2 * h);
+  };
+  constexpr double kRelativeStep = 6e-6;  // cube root of the rounding unit: least error of a central difference
+  if (k < values.size()) {
+    std::vector<double> moved(values.begin(), values.end());
+    const double scale = std::max(std::abs(values[k]), std::abs(parsed_->parameters[k].start));
+    difference(kRelativeStep * (scale > 0 ? scale : 1), [&](double h, std::span<double> terms) {
+      moved[k] = values[k] + h;
+      evaluate(moved, slip, speed, terms);
+    });
+  } else {
+    std::vector<double> moved(speed.size());
+    difference(1e-9, [&](double h, std::span<double> terms) {
+      for (std::size_t i = 0; i < speed.size(); ++i) moved[i] = speed[i] + h;
+      evaluate(values, slip, moved, terms);
+    });
+  }
+}
+
+}  // namespace tribofit

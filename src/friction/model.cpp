@@ -1,0 +1,79 @@
+#include "tribofit/friction/model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "tribofit/friction/evaluate.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+
+std::string_view to_string(BaseLaw law) {
+  switch (law) {
+    case BaseLaw::exponential: return "exponential";
+    case BaseLaw::fractional: return "fractional";
+    case BaseLaw::coulomb: break;
+  }
+  return "coulomb";
+}
+
+std::optional<BaseLaw> find_law(std::string_view name) {
+  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional, BaseLaw::coulomb}) {
+    if (to_string(law) == name) return law;
+  }
+  return std::nullopt;
+}
+
+FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
+  slots_.push_back({{"mu_s", "1", 1, 0, 5, 0.5}, ""});
+  slots_.push_back({{"mu_k", "1", 1, 0, 5, 0.3}, ""});
+  if (law == BaseLaw::exponential) slots_.push_back({{"alpha", "s/mm", 1e3, 1e-4, 10, 0.05}, ""});
+  if (law == BaseLaw::fractional) slots_.push_back({{"beta", "s/mm", 1e3, 1e-4, 10, 0.1}, ""});
+  for (const Effect& effect : effects_) {
+    const EffectInfo info = describe(effect);
+    offsets_.push_back(slots_.size());
+    if (std::any_of(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.effect == info.key; })) {
+      throw InputError("the effect '" + info.key + "' is given twice", "name each effect once");
+    }
+    for (const Parameter& parameter : info.parameters) slots_.push_back({parameter, info.key});
+    std::visit(
+        [&]<class E>(const E&) {
+          if constexpr (hooks::Remembers<E, double>) ++state_count_;
+        },
+        effect);
+  }
+}
+
+std::vector<std::string> FrictionModel::effect_keys() const {
+  std::vector<std::string> keys;
+  for (const Effect& effect : effects_) keys.push_back(describe(effect).key);
+  return keys;
+}
+
+Channels FrictionModel::needs() const {
+  Channels all;
+  for (const Effect& effect : effects_) {
+    const Channels c = describe(effect).needs;
+    all.acceleration |= c.acceleration;
+    all.angle |= c.angle;
+    all.distance |= c.distance;
+    all.load |= c.load;
+    all.temperature |= c.temperature;
+    all.stick_time |= c.stick_time;
+  }
+  return all;
+}
+
+bool FrictionModel::acts_in_stick() const {
+  return std::any_of(effects_.begin(), effects_.end(), [](const Effect& effect) {
+    return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
+  });
+}
+
+std::string FrictionModel::name() const {
+  std::string text(to_string(law_));
+  for (const std::string& key : effect_keys()) text += " + " + key;
+  return text;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,212 @@
+#include "assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+class Assembler {
+ public:
+  Assembler(FileRecord run, const ReadOptions& options) : run_(std::move(run)), options_(options) {}
+
+  Trace assemble() {
+    trace_.path = run_.path;
+    trace_.checksum = run_.checksum;
+    trace_.notes = std::move(run_.notes);
+    trace_.warnings = std::move(run_.warnings);
+    trace_.conditions = options_.conditions;
+    set_steps();
+    set_load();
+    set_friction();
+    set_velocity();
+    trace_.load = std::move(run_[Channel::load]);
+    trace_.temperature = std::move(run_[Channel::temperature]);
+    trace_.disc_speed = std::move(run_[Channel::speed]);
+    trace_.disc_angle = std::move(run_[Channel::angle]);
+    unwrap(trace_.disc_angle);
+    trace_.time = std::move(run_[Channel::time]);
+    return std::move(trace_);
+  }
+
+ private:
+  InputLocation file() const { return {run_.path, 0, ""}; }
+
+  void set_steps() {
+    trace_.steps = std::move(run_.steps);
+    const auto& radii = options_.step_radii;
+    if (!radii.empty() && radii.size() != run_.recipe_size()) {
+      std::string labels;
+      for (const Step& step : trace_.steps) labels += (labels.empty() ? "" : ", ") + step.label;
+      throw InputError(fmt::format("the file has {} step{} ({}) but {} radii were given", run_.recipe_size(),
+                                   run_.recipe_size() == 1 ? "" : "s", labels, radii.size()),
+                       "give one radius for each step, in their order", file());
+    }
+    const auto refuse_radius = [&](double radius) {
+      if (radius > 1e-9 && std::isfinite(radius)) return;
+      throw InputError(fmt::format("a friction radius of {:g} mm is not possible", 1e3 * radius),
+                       "give a radius above zero", file());
+    };
+    if (trace_.conditions.radius.known()) refuse_radius(trace_.conditions.radius.value);
+    for (std::size_t i = 0; i < trace_.steps.size(); ++i) {
+      trace_.steps[i].conditions = options_.conditions;
+      if (radii.empty()) continue;
+      const double radius = radii[run_.recipe_steps[i]];
+      refuse_radius(radius);
+      trace_.steps[i].conditions.radius = {radius, "command line"};
+    }
+    if (!radii.empty()) {
+      const bool same = std::all_of(radii.begin(), radii.end(), [&](double r) { return r == radii.front(); });
+      trace_.conditions.radius = same ? trace_.steps.front().conditions.radius : Condition{};
+    } else if (run_.recipe_size() > 1 && trace_.conditions.radius.known()) {
+      trace_.notes.push_back(fmt::format("the radius of {:g} mm was taken for all {} steps",
+                                         1e3 * trace_.conditions.radius.value, run_.recipe_size()));
+    }
+  }
+
+  double radius_of(const Step& step, const char* why) const {
+    if (step.conditions.radius.known()) return step.conditions.radius.value;
+    throw InputError(std::string(why) + " needs the friction radius, which is not known",
+                     run_.recipe_size() > 1
+                         ? fmt::format("give it with --radius 15mm, or one for each of the {} steps where it changes",
+                                       run_.recipe_size())
+                         : "give it with --radius 15mm",
+                     file());
+  }
+
+  void set_load() {
+    auto& load = run_[Channel::load];
+    if (load.empty()) return;
+    double sum = 0;
+    for (const double value : load) sum += value;
+    if (std::all_of(load.begin(), load.end(), [](double value) { return value < 0; })) {
+      for (double& value : load) value = -value;
+      sum = -sum;
+      trace_.notes.push_back("the load is negative throughout and was taken as compression");
+    }
+    const double mean = sum / static_cast<double>(load.size());
+    if (!trace_.conditions.load.known()) {
+      trace_.conditions.load = {mean, "file"};
+      for (Step& step : trace_.steps) step.conditions.load = mean_load(load, step);
+    } else if (std::abs(mean / trace_.conditions.load.value - 1) > 0.1) {
+      trace_.warnings.push_back(
+          fmt::format("the stated load of {:g} N contradicts the mean of the load channel, {:.4g} N",
+                      trace_.conditions.load.value, mean));
+    }
+  }
+
+  static Condition mean_load(const std::vector<double>& load, const Step& step) {
+    double sum = 0;
+    for (std::size_t i = step.begin; i < step.end; ++i) sum += load[i];
+    return {sum / static_cast<double>(step.end - step.begin), "file"};
+  }
+
+  void set_friction() {
+    if (run_.has(Channel::mu)) {
+      trace_.friction = std::move(run_[Channel::mu]);
+      return;
+    }
+    const bool torque = run_.has(Channel::torque);
+    if (!torque && !run_.has(Channel::force)) refuse_columns(run_, "no friction column (mu, force or torque)");
+    trace_.friction = std::move(run_[torque ? Channel::torque : Channel::force]);
+    if (torque) {
+      for (const Step& step : trace_.steps) {
+        const double radius = radius_of(step, "friction from a torque");
+        for (std::size_t i = step.begin; i < step.end; ++i) trace_.friction[i] /= radius;
+      }
+    }
+    divide_by_load(torque ? "torque/radius" : "tangential force");
+  }
+
+  void divide_by_load(const std::string& force) {
+    const auto& load = run_[Channel::load];
+    if (!load.empty()) {
+      for (std::size_t i = 0; i < load.size(); ++i) {
+        constexpr double least = 1e-12;  // [N]
+        if (!(load[i] > least)) {
+          throw InputError(
+              fmt::format("the load is {:g} N, and friction is {} over load", load[i], force),
+              "remove the rows without load, or leave the channel out with --columns load=none and state --load",
+              run_.location(i, Channel::load));
+        }
+        trace_.friction[i] /= load[i];
+      }
+      trace_.notes.push_back("mu is " + force + " over the measured load");
+    } else if (options_.conditions.load.known()) {
+      const double nominal = options_.conditions.load.value;
+      if (!(nominal > 0)) throw InputError("the load must be above zero", "give it as --load 50N", file());
+      for (double& value : trace_.friction) value /= nominal;
+      trace_.notes.push_back(fmt::format("mu is {} over the nominal load of {:g} N", force, nominal));
+    } else {
+      trace_.friction_kind = FrictionKind::force;
+      trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
+                             (force == "torque/radius" ? "" : " as measured") + " (state --load for a coefficient)");
+    }
+  }
+
+  void set_velocity() {
+    const bool block = run_.has(Channel::v_b), relative = run_.has(Channel::v_r);
+    if (!block && !relative) {
+      set_fixed_block();
+      return;
+    }
+    trace_.velocity_kind = block ? VelocityKind::block : VelocityKind::relative;
+    const Channel channel = block ? Channel::v_b : Channel::v_r;
+    trace_.velocity = std::move(run_[channel]);
+    const Column* column = run_.columns.find(channel);
+    if (column == nullptr || !column->angular) return;
+    for (const Step& step : trace_.steps) {
+      const double radius = radius_of(step, "a velocity given as a rotational speed");
+      for (std::size_t i = step.begin; i < step.end; ++i) trace_.velocity[i] *= radius;
+    }
+    trace_.notes.push_back(
+        fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel), column->name));
+  }
+
+  void set_fixed_block() {
+    const auto said = [&](const char* channel) {
+      const auto at = options_.columns.find(channel);
+      return at != options_.columns.end() && (at->second.empty() || at->second == "none");
+    };
+    const bool constant_speed = said("v_b") && options_.conditions.speed.known();
+    if (!run_.has(Channel::speed) && !constant_speed) {
+      refuse_columns(run_, "no velocity column (v_b, v_r, or the disc's speed for a fixed block)");
+    }
+    trace_.velocity_kind = VelocityKind::fixed_block;
+    for (const Step& step : trace_.steps) radius_of(step, "the sliding velocity of a fixed block");
+    trace_.notes.push_back("no block velocity: the block is taken as fixed, v_r = omega r");
+  }
+
+  /// An angle that stays within one turn and jumps back wraps; others count on.
+  static void unwrap(std::vector<double>& angle) {
+    if (angle.size() < 2) return;
+    const auto [low, high] = std::minmax_element(angle.begin(), angle.end());
+    constexpr double turn = 2 * std::numbers::pi;
+    if (*high - *low > 1.001 * turn) return;
+    double turns = 0, last = angle.front();
+    for (double& value : angle) {
+      if (value - last > turn / 2) turns -= turn;
+      if (last - value > turn / 2) turns += turn;
+      last = value;
+      value += turns;
+    }
+  }
+
+  FileRecord run_;
+  const ReadOptions& options_;
+  Trace trace_;
+};
+
+}  // namespace
+
+Trace assemble(FileRecord run, const ReadOptions& options) {
+  return Assembler(std::move(run), options).assemble();
+}
+
+}  // namespace tribofit

@@ -1,0 +1,183 @@
+#include "clock.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double gap_limit = 1.5;          // times the median interval
+constexpr std::size_t shortest_step = 10;  // rows before a clock may restart without a step column saying so
+
+class Clock {
+ public:
+  explicit Clock(FileRecord& recording)
+      : recording_(recording),
+        time_(recording[Channel::time]),
+        step_(recording[Channel::step]),
+        interval_(typical_interval(time_)) {
+    ignore_counter();
+  }
+
+  void run() {
+    recording_.clock_start = time_.front();
+    recording_.clock_end = time_.back();
+    begin_step(0, true);
+    double shift = -time_.front(), last = time_.front();
+    double step_start = last;
+    time_.front() = 0;
+    std::vector<std::size_t> restarts;
+    for (std::size_t i = 1; i < time_.size(); ++i) {
+      const double now = time_[i], interval = now - last;
+      const bool step_changes = !step_.empty() && step_[i] != step_[i - 1];
+      if (interval > 0 && interval <= gap_limit * interval_ && !step_changes) [[likely]] {
+        time_[i] = now + shift;
+      } else {
+        if (!(interval > 0)) {
+          const bool back_to_start = now <= step_start + gap_limit * interval_;
+          if (!step_changes && !(back_to_start && i - recording_.steps.back().begin >= shortest_step)) refuse(i, last);
+          shift = time_[i - 1] + interval_ - now;
+          step_start = now;
+          restarts.push_back(i);
+          begin_step(i, true);
+        } else if (step_changes) {
+          step_start = now;
+          begin_step(i, true);
+        } else {
+          gaps_.push_back(i);
+          begin_step(i, false);
+        }
+        time_[i] = now + shift;
+      }
+      if (!(time_[i] > time_[i - 1])) refuse_rounding(i);
+      last = now;
+    }
+    recording_.steps.back().end = time_.size();
+    refuse_irregular();
+    tell(restarts);
+  }
+
+ private:
+  /// A column called "step" that changes all the time counts samples, not steps of a recipe.
+  void ignore_counter() {
+    std::size_t changes = 0;
+    for (std::size_t i = 1; i < step_.size(); ++i) changes += step_[i] != step_[i - 1] ? 1 : 0;
+    if (changes <= 10 || changes * 10 <= step_.size()) return;
+    recording_.warnings.push_back(fmt::format("column {} changes {} times and was not taken for steps of a recipe",
+                                              recording_.location(0, Channel::step).column, changes));
+    step_.clear();
+  }
+
+  void begin_step(std::size_t row, bool in_recipe) {
+    if (!recording_.steps.empty()) recording_.steps.back().end = row;
+    Step step;
+    step.begin = row;
+    if (!in_recipe) {
+      step.label = recording_.steps.back().label;
+    } else if (!step_.empty()) {
+      step.label = fmt::format("{:g}", step_[row]);
+    }
+    const std::size_t recipe = recording_.recipe_size();
+    recording_.recipe_steps.push_back(in_recipe ? recipe : recipe - 1);
+    recording_.steps.push_back(step);
+  }
+
+  [[noreturn]] void refuse(std::size_t row, double last) const {
+    const bool repeats = time_[row] == last;
+    throw InputError(
+        fmt::format("time {} ({:.9g} s after {:.9g} s)", repeats ? "repeats" : "goes backwards", time_[row], last),
+        repeats ? "remove the row; where the clock is written too coarsely, give the sampling rate with --rate"
+                : "sort or split the file; steps whose clock restarts need their own start time or a step column",
+        recording_.location(row, Channel::time));
+  }
+
+  [[noreturn]] void refuse_rounding(std::size_t row) const {
+    throw InputError("the interval is lost beside the time that has passed",
+                     "give the sampling rate with --rate, or start the clock at 0",
+                     recording_.location(row, Channel::time));
+  }
+
+  void refuse_irregular() const {
+    if (gaps_.size() <= 20 || gaps_.size() * 1000 <= time_.size()) return;
+    throw InputError(
+        fmt::format("the clock is irregular: {} intervals are longer than 1.5 times the median of {:.6g} s",
+                    gaps_.size(), interval_),
+        "resample the trace; where the clock is written too coarsely, give the sampling rate with --rate",
+        recording_.location(gaps_.front(), Channel::time));
+  }
+
+  void tell(const std::vector<std::size_t>& restarts) {
+    if (!gaps_.empty()) {
+      const std::size_t first = gaps_.front();
+      recording_.warnings.push_back(fmt::format(
+          "{} gap{} in time, the first of {:.6g} s before line {} (interval {:.6g} s); the data after a gap "
+          "are a step of their own",
+          gaps_.size(), gaps_.size() == 1 ? "" : "s", time_[first] - time_[first - 1], recording_.lines.line_of(first),
+          interval_));
+    }
+    std::vector<std::string> lines;
+    for (const std::size_t row : restarts) lines.push_back(std::to_string(recording_.lines.line_of(row)));
+    if (lines.size() > 8) lines = {lines.front(), "...", lines.back()};
+    if (!restarts.empty()) {
+      recording_.notes.push_back(fmt::format(
+          "the clock restarts {} time{} (line{} {}); the steps follow one another without a pause", restarts.size(),
+          restarts.size() == 1 ? "" : "s", restarts.size() == 1 ? "" : "s", listed(lines)));
+    }
+  }
+
+  FileRecord& recording_;
+  std::vector<double>& time_;
+  std::vector<double>& step_;
+  double interval_;
+  std::vector<std::size_t> gaps_;
+};
+
+std::size_t rows_of(const FileRecord& recording) {
+  std::size_t rows = 0;
+  for (const auto& channel : recording.channels) rows = std::max(rows, channel.size());
+  return rows;
+}
+
+}  // namespace
+
+void set_clock(FileRecord& recording, std::optional<double> rate) {
+  if (!recording.has(Channel::time)) {
+    if (!(*rate > 0) || !std::isfinite(*rate)) {
+      throw InputError("the sampling rate must be positive", "give it as --rate 20kHz", {recording.path, 0, ""});
+    }
+    auto& time = recording[Channel::time];
+    time.resize(rows_of(recording));
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / *rate;
+    recording.notes.push_back(fmt::format("time from the sampling rate of {:g} Hz", *rate));
+  } else if (rate) {
+    const double found = 1 / typical_interval(recording[Channel::time]);
+    if (std::abs(found / *rate - 1) > 0.01) {
+      recording.warnings.push_back(
+          fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", *rate, found));
+    }
+  }
+  Clock(recording).run();
+  if (!(recording.size() > 1)) {
+    throw InputError("has one row only", "a trace needs at least two samples", {recording.path, 0, ""});
+  }
+}
+
+double typical_interval(const std::vector<double>& time) {
+  if (time.size() < 2) return 0;
+  const std::size_t intervals = time.size() - 1, stride = std::max<std::size_t>(1, intervals / 4096);
+  std::vector<double> sample;
+  for (std::size_t i = 0; i < intervals; i += stride) {
+    if (time[i + 1] > time[i]) sample.push_back(time[i + 1] - time[i]);
+  }
+  if (sample.empty()) return 0;
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(sample.begin(), middle, sample.end());
+  return *middle;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "columns.hpp"
+
+namespace tribofit {
+
+constexpr std::size_t no_rank = std::numeric_limits<std::size_t>::max();
+
+/// How usual `base` (ColumnName::base) is as a name of `channel`: 0 is the most usual, no_rank that it is none.
+/// `quantity` is that of the column's unit, where it has one: "Velocity (rpm)" is the disc's, not the block's.
+std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quantity> quantity);
+
+/// Whether `base` is a name of any channel.
+bool is_field_name(std::string_view base);
+
+/// Quantities a channel may be given in, the usual one first.
+std::span<const Quantity> quantities(Channel channel);
+
+/// The unit people use ("mm/s"), and that of SI, for messages.
+std::string_view usual_unit(Channel channel);
+std::string_view si_unit(Channel channel);
+
+/// Whether the name itself says that the numbers are revolutions per minute.
+bool names_rpm(std::string_view base);
+
+/// SI value per volt of a sensitivity: "5 mm/s/V", "20 N/V", "0.2 V/(mm/s)", "3.9 mV/N"; nothing when `text` is none.
+/// Throws InputError where it is a sensitivity of something else.
+std::optional<double> find_sensitivity(std::string_view text, Channel channel);
+
+/// "[mm/s]" or "(mm/s)" without the brackets.
+std::string strip_brackets(std::string_view text);
+
+}  // namespace tribofit

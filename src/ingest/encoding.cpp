@@ -1,0 +1,143 @@
+#include "encoding.hpp"
+
+#include <iconv.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+unsigned char byte_at(std::string_view text, std::size_t i) {
+  return static_cast<unsigned char>(text[i]);
+}
+
+/// Length of the UTF-8 sequence at `i`, 0 when it is none. A sequence cut off by the end of the text is accepted.
+std::size_t utf8_sequence(std::string_view text, std::size_t i) {
+  const unsigned char lead = byte_at(text, i);
+  const std::size_t length = lead < 0x80                   ? 1
+                             : lead >= 0xC2 && lead < 0xE0 ? 2
+                             : lead >= 0xE0 && lead < 0xF0 ? 3
+                             : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                           : 0;
+  for (std::size_t k = 1; k < length && i + k < text.size(); ++k) {
+    if ((byte_at(text, i + k) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_sequence(text, i);
+    if (length == 0) return false;
+    i += length;
+  }
+  return true;
+}
+
+bool high_bytes_are_pairs(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (byte_at(text, i) < 0x80) continue;
+    if (byte_at(text, i) < 0xA1 || i + 1 >= text.size() || byte_at(text, i + 1) < 0xA1) return false;
+    ++i;
+  }
+  return true;
+}
+
+std::string from_latin1(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned char c = byte_at(text, i);
+    if (c < 0x80) {
+      result += text[i];
+    } else {
+      result += static_cast<char>(0xC0 | (c >> 6));
+      result += static_cast<char>(0x80 | (c & 0x3F));
+    }
+  }
+  return result;
+}
+
+std::string from_gbk(std::string_view text) {
+  const iconv_t converter = iconv_open("UTF-8", "GBK");
+  if (converter == reinterpret_cast<iconv_t>(-1)) return from_latin1(text);
+  std::string source(text), result(2 * text.size() + 4, '\0');
+  char* in = source.data();
+  char* out = result.data();
+  std::size_t in_left = source.size(), out_left = result.size();
+  while (in_left > 0 && iconv(converter, &in, &in_left, &out, &out_left) == static_cast<std::size_t>(-1)) {
+    if (in_left == 0 || out_left == 0) break;
+    ++in;  // an invalid byte
+    --in_left;
+    *out++ = '?';
+    --out_left;
+  }
+  iconv_close(converter);
+  result.resize(result.size() - out_left);
+  return result;
+}
+
+struct Signature {
+  std::string_view bytes, name, advice;
+};
+
+constexpr std::array signatures = {
+    Signature{"PK\x03\x04", "a ZIP archive or an Excel workbook", "save the sheet as CSV"},
+    Signature{"\xD0\xCF\x11\xE0", "an old Excel or Office file", "save the sheet as CSV"},
+    Signature{"\x1F\x8B", "compressed with gzip", "unpack it with gunzip"},
+    Signature{"\x89HDF", "an HDF5 file", "export the channels as CSV"},
+    Signature{"MATLAB 5.0", "a MATLAB file", "export the channels with writetable"},
+    Signature{"TDSm", "a LabVIEW TDMS file", "export the channels as CSV"},
+    Signature{"%PDF", "a PDF document", "export the data as CSV"},
+};
+
+}  // namespace
+
+void refuse_unless_text(std::string_view head, const std::string& path) {
+  const InputLocation where{path, 0, ""};
+  const auto starts_with = [&](std::string_view bytes) { return head.substr(0, bytes.size()) == bytes; };
+  for (const Signature& signature : signatures) {
+    if (starts_with(signature.bytes)) {
+      throw InputError("is " + std::string(signature.name) + ", not a CSV file", std::string(signature.advice), where);
+    }
+  }
+  const std::string_view start = head.substr(0, 4096);
+  const auto zeros = std::count(start.begin(), start.end(), '\0');
+  const bool utf16_mark = starts_with("\xFF\xFE") || starts_with("\xFE\xFF");
+  if (utf16_mark || (start.size() >= 4 && (start[0] == '\0') != (start[1] == '\0') &&
+                     zeros > static_cast<std::ptrdiff_t>(start.size()) * 2 / 5)) {
+    throw InputError("is UTF-16 text (\"Unicode\" in Windows programs)",
+                     "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8", where);
+  }
+  const auto control = std::count_if(start.begin(), start.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\x1A';
+  });
+  if (zeros > 0 || control * 20 > static_cast<std::ptrdiff_t>(start.size())) {
+    throw InputError("is a binary file, not a CSV file", "export the channels as text with one row per sample", where);
+  }
+}
+
+Encoding guess_encoding(std::string_view head) {
+  if (is_utf8(head)) return Encoding::utf8;
+  return high_bytes_are_pairs(head) ? Encoding::gbk : Encoding::latin1;
+}
+
+std::string to_utf8(std::string_view text, Encoding encoding) {
+  switch (encoding) {
+    case Encoding::latin1:
+      return from_latin1(text);
+    case Encoding::gbk:
+      return from_gbk(text);
+    case Encoding::utf8:
+      break;
+  }
+  return std::string(text);
+}
+
+std::size_t byte_order_mark(std::string_view head) {
+  return head.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tribofit {
+
+enum class Encoding { utf8, latin1, gbk };
+
+/// Refuses what is not lines of 8-bit text (UTF-16, spreadsheets, archives, other binary files) with an InputError
+/// that names what it is. `head` is the beginning of the file.
+void refuse_unless_text(std::string_view head, const std::string& path);
+
+/// The encoding of the letters outside ASCII in `head`.
+///
+/// Valid UTF-8 is UTF-8: other encodings hardly produce it by chance. Otherwise Chinese text in GBK has its high bytes
+/// in pairs, the first from 0xA1 and the second from 0xA1, where Latin-1 has single ones (degree, micro, umlauts).
+Encoding guess_encoding(std::string_view head);
+
+/// `text` in UTF-8. What cannot be decoded becomes '?'.
+std::string to_utf8(std::string_view text, Encoding encoding);
+
+/// Length of the UTF-8 byte order mark at the start, 0 or 3.
+std::size_t byte_order_mark(std::string_view head);
+
+}  // namespace tribofit

@@ -1,0 +1,75 @@
+#include "input_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+
+InputFile::InputFile(const std::string& path) : path_(path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    throw InputError(std::string("cannot be opened: ") + std::strerror(errno),
+                     "check the path and the permission to read", {path, 0, ""});
+  }
+  if (S_ISDIR(status.st_mode)) {
+    throw InputError("is a folder, not a trace", "name one CSV file of it", {path, 0, ""});
+  }
+  if (!S_ISREG(status.st_mode)) {
+    throw InputError("is not a regular file", "write the trace to a file first", {path, 0, ""});
+  }
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    throw InputError(std::string("cannot be opened: ") + std::strerror(errno), "check the permission to read",
+                     {path, 0, ""});
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const {
+  std::size_t done = 0;
+  while (done < buffer.size()) {
+    const ssize_t count =
+        ::pread(descriptor_, buffer.data() + done, buffer.size() - done, static_cast<off_t>(offset + done));
+    if (count == 0) break;
+    if (count < 0) {
+      if (errno == EINTR) continue;
+      throw InputError(std::string("cannot be read: ") + std::strerror(errno), "copy the file again from its source",
+                       {path_, 0, ""});
+    }
+    done += static_cast<std::size_t>(count);
+  }
+  return done;
+}
+
+std::uint64_t InputFile::line_start(std::uint64_t offset, std::uint64_t end) const {
+  if (offset == 0 || offset >= end) return std::min(offset, end);
+  std::array<char, 4096> buffer;
+  for (std::uint64_t at = offset - 1; at < end; at += buffer.size()) {
+    const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer.size(), end - at));
+    const std::size_t count = read(at, std::span(buffer).first(wanted));
+    if (const void* found = std::memchr(buffer.data(), '\n', count)) {
+      return at + static_cast<std::uint64_t>(static_cast<const char*>(found) - buffer.data()) + 1;
+    }
+    if (at + count > offset + longest_line) refuse_long_line(0);
+  }
+  return end;
+}
+
+void InputFile::refuse_long_line(std::size_t line) const {
+  throw InputError("a line is longer than 1 MB",
+                   "a trace has one row of numbers per line; check that this is a CSV file", {path_, line, ""});
+}
+
+}  // namespace tribofit

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace tribofit {
+
+/// A file opened for reading at any offset, by any number of threads.
+class InputFile {
+ public:
+  /// Throws InputError for a missing or unreadable file and for a directory.
+  explicit InputFile(const std::string& path);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+
+  /// Fills `buffer` from `offset`; fewer bytes than asked for only at the end of the file.
+  std::size_t read(std::uint64_t offset, std::span<char> buffer) const;
+
+  /// The first line start at or after `offset` (an offset is a line start when the byte before it ends a line), or
+  /// `end` when there is none before it. Lines longer than `longest_line` are refused with an InputError.
+  std::uint64_t line_start(std::uint64_t offset, std::uint64_t end) const;
+
+  /// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is
+  /// found out without holding it.
+  static constexpr std::size_t longest_line = std::size_t{1} << 20;
+
+  [[noreturn]] void refuse_long_line(std::size_t line) const;
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace tribofit

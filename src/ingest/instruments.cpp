@@ -1,0 +1,182 @@
+#include "tribofit/ingest/instruments.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "input_file.hpp"
+#include "spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+using Json = nlohmann::json;
+
+class InstrumentsReader {
+ public:
+  explicit InstrumentsReader(const std::string& path) : path_(path) {}
+
+  Instruments read() {
+    const InputFile file(path_);
+    if (file.size() > InputFile::longest_line)
+      fail("", "is larger than 1 MB", "name the JSON file that describes the instruments");
+    std::string text(static_cast<std::size_t>(file.size()), '\0');
+    text.resize(file.read(0, text));
+    Json root;
+    try {
+      root = Json::parse(text, nullptr, true, true);  // comments are allowed
+    } catch (const Json::parse_error& error) {
+      const std::size_t end = std::min(error.byte, text.size());
+      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+      throw InputError("is not valid JSON", "check commas, quotes and brackets at this line",
+                       {path_, static_cast<std::size_t>(line), ""});
+    }
+    Instruments result;
+    const auto vibrometer = [&](const Json& json) {
+      auto& v = result.vibrometer;
+      section(json, "vibrometer",
+              {{"range", positive(v.range, Quantity::velocity)},
+               {"gain", positive(v.gain, Quantity::dimensionless)},
+               {"high_pass", positive(v.high_pass, Quantity::frequency)},
+               {"low_pass", positive(v.low_pass, Quantity::frequency)},
+               {"delay", any(v.delay, Quantity::time)},
+               {"sign", [&](const Json& value, const std::string& key) {
+                  if (!value.is_number_integer() || (value != 1 && value != -1))
+                    fail(key, "must be 1 or -1", "give -1 where the vibrometer points the other way");
+                  v.sign = value.get<int>();
+                }}});
+    };
+    const auto force_sensor = [&](const Json& json) {
+      auto& f = result.force_sensor;
+      section(json, "force_sensor",
+              {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
+               {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key); }},
+               {"crosstalk", any(f.crosstalk, Quantity::dimensionless)},
+               {"mass_below", not_negative(f.mass_below, Quantity::mass)},
+               {"gain", positive(f.gain, Quantity::dimensionless)},
+               {"load_measured", [&](const Json& value, const std::string& key) {
+                  if (!value.is_boolean()) fail(key, "must be true or false", "say whether mu is Ft/Fn measured");
+                  f.load_measured = value.get<bool>();
+                }}});
+    };
+    const auto rig = [&](const Json& json) {
+      auto& r = result.rig;
+      section(json, "rig",
+              {{"stiffness", positive(r.stiffness, Quantity::stiffness)},
+               {"ping_frequency", positive(r.ping_frequency, Quantity::frequency)},
+               {"pad_radius", positive(r.pad_radius, Quantity::length)},
+               {"radius", positive(r.radius, Quantity::length)},
+               {"speed", any(r.speed, Quantity::angular_velocity)},
+               {"load", positive(r.load, Quantity::force)}});
+    };
+    section(root, "",
+            {{"vibrometer", [&](const Json& json, const std::string&) { vibrometer(json); }},
+             {"force_sensor", [&](const Json& json, const std::string&) { force_sensor(json); }},
+             {"rig", [&](const Json& json, const std::string&) { rig(json); }}});
+    return result;
+  }
+
+ private:
+  using Handler = std::function<void(const Json&, const std::string&)>;
+  using Handlers = std::vector<std::pair<std::string, Handler>>;
+
+  [[noreturn]] void fail(const std::string& key, const std::string& problem, const std::string& advice) const {
+    throw InputError((key.empty() ? "" : key + ": ") + problem, advice, {path_, 0, ""});
+  }
+
+  void section(const Json& json, const std::string& name, const Handlers& handlers) const {
+    if (!json.is_object()) fail(name, "must be an object { ... }", "see the documentation of the instruments file");
+    std::vector<std::string> known;
+    for (const auto& [key, handler] : handlers) known.push_back(key);
+    for (const auto& [key, value] : json.items()) {
+      const std::string full = name.empty() ? key : name + "." + key;
+      const auto at = std::find(known.begin(), known.end(), key);
+      if (at == known.end()) fail(full, "unknown key" + did_you_mean(key, known), "known keys are " + listed(known));
+      handlers[static_cast<std::size_t>(at - known.begin())].second(value, full);
+    }
+  }
+
+  double number(const Json& value, Quantity quantity, const std::string& key, bool difference = false) const {
+    if (!value.is_string() && !value.is_number()) {
+      fail(key, "must be a value with a unit", "write it as \"" + std::string(example_of(quantity)) + "\"");
+    }
+    if (value.is_number() && quantity != Quantity::dimensionless) {
+      fail(key, "has no unit", "write it as a text with a unit, such as \"" + std::string(example_of(quantity)) + "\"");
+    }
+    try {
+      const double result =
+          value.is_number() ? value.get<double>() : parse_quantity(value.get<std::string>(), quantity, key);
+      if (difference && result < 0)
+        fail(key, "the uncertainty is negative", "give a standard uncertainty, zero or above");
+      return result;
+    } catch (const InputError& error) {
+      if (!error.where().file.empty()) throw;
+      throw InputError(error.problem(), error.advice(), {path_, 0, ""});
+    }
+  }
+
+  Declared declared(const Json& value, Quantity quantity, const std::string& key) const {
+    if (value.is_array()) {
+      if (value.size() != 2) fail(key, "must be [value, uncertainty]", "give two texts with units");
+      return {number(value[0], quantity, key), number(value[1], quantity, key, true)};
+    }
+    if (!value.is_object()) return {number(value, quantity, key), 0};
+    Declared result;
+    bool has_value = false;
+    section(value, key,
+            {{"value",
+              [&](const Json& v, const std::string& k) {
+                result.value = number(v, quantity, k);
+                has_value = true;
+              }},
+             {"uncertainty",
+              [&](const Json& v, const std::string& k) { result.uncertainty = number(v, quantity, k, true); }}});
+    if (!has_value) fail(key, "has no value", "give {\"value\": ..., \"uncertainty\": ...}");
+    return result;
+  }
+
+  /// The zero of a force sensor is of mu, or of the force where that is what is recorded.
+  Declared zero(const Json& value, const std::string& key) const {
+    try {
+      return declared(value, Quantity::dimensionless, key);
+    } catch (const InputError&) {
+      return declared(value, Quantity::force, key);
+    }
+  }
+
+  Handler any(std::optional<Declared>& target, Quantity quantity) const {
+    return [this, &target, quantity](const Json& value, const std::string& key) {
+      target = declared(value, quantity, key);
+    };
+  }
+  Handler positive(std::optional<Declared>& target, Quantity quantity) const {
+    return [this, &target, quantity](const Json& value, const std::string& key) {
+      target = declared(value, quantity, key);
+      if (!(target->value > 0))
+        fail(key, "must be above zero", "write it as \"" + std::string(example_of(quantity)) + "\"");
+    };
+  }
+  Handler not_negative(std::optional<Declared>& target, Quantity quantity) const {
+    return [this, &target, quantity](const Json& value, const std::string& key) {
+      target = declared(value, quantity, key);
+      if (target->value < 0)
+        fail(key, "must not be negative", "write it as \"" + std::string(example_of(quantity)) + "\"");
+    };
+  }
+
+  std::string path_;
+};
+
+}  // namespace
+
+Instruments read_instruments(const std::string& path) {
+  return InstrumentsReader(path).read();
+}
+
+}  // namespace tribofit

@@ -1,0 +1,139 @@
+#include "join.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "clock.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+bool has_friction(const FileRecord& r) {
+  return r.has(Channel::mu) || r.has(Channel::force) || r.has(Channel::torque);
+}
+bool has_velocity(const FileRecord& r) {
+  return r.has(Channel::v_b) || r.has(Channel::v_r);
+}
+
+const std::vector<double>& friction_of(const FileRecord& r) {
+  return r.has(Channel::mu) ? r[Channel::mu] : r.has(Channel::force) ? r[Channel::force] : r[Channel::torque];
+}
+const std::vector<double>& velocity_of(const FileRecord& r) {
+  return r.has(Channel::v_b) ? r[Channel::v_b] : r[Channel::v_r];
+}
+
+/// Linear interpolation of evenly or unevenly spaced samples at `base - offset`, which must lie within `time`.
+std::vector<double> interpolate(const std::vector<double>& base, double offset, const std::vector<double>& time,
+                                const std::vector<double>& values) {
+  std::vector<double> result(base.size());
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    const double t = base[i] - offset;
+    while (k + 2 < time.size() && time[k + 1] <= t) ++k;
+    const double part = std::clamp((t - time[k]) / (time[k + 1] - time[k]), 0.0, 1.0);
+    result[i] = values[k] + part * (values[k + 1] - values[k]);
+  }
+  return result;
+}
+
+/// Keeps rows [begin, end) and starts their time at 0.
+void crop(FileRecord& run, std::size_t begin, std::size_t end) {
+  for (auto& channel : run.channels) {
+    if (channel.empty()) continue;
+    channel.resize(end);
+    channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(begin));
+  }
+  std::vector<Step> steps;
+  std::vector<std::size_t> recipe_steps;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    Step step = run.steps[i];
+    step.begin = std::max(step.begin, begin);
+    step.end = std::min(step.end, end);
+    if (step.begin >= step.end) continue;
+    step.begin -= begin;
+    step.end -= begin;
+    steps.push_back(step);
+    recipe_steps.push_back(run.recipe_steps[i]);
+  }
+  run.steps = std::move(steps);
+  run.recipe_steps = std::move(recipe_steps);
+  run.cut_rows += begin;
+  auto& time = run[Channel::time];
+  const double start = time.front();
+  for (double& t : time) t -= start;
+}
+
+double find_offset(FileRecord& run, const FileRecord& other) {
+  const double as_written = other.clock_start - run.clock_start;
+  const bool overlap = std::abs(as_written) < run[Channel::time].back();
+  ClockOffset found;
+  if (has_friction(run) && has_velocity(other)) {
+    found = estimate_clock_offset(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
+  } else if (has_velocity(run) && has_friction(other)) {
+    found = estimate_clock_offset(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
+    found.offset = -found.offset;
+  }
+  if (found.events < 3) {
+    run.warnings.push_back(std::string("the two files show too few break-aways to compare their clocks; ") +
+                           (overlap ? "the times were taken as written" : "both were taken to start together"));
+    return overlap ? as_written : 0;
+  }
+  run.notes.push_back(
+      fmt::format("clock offset from {} break-aways: {:+.6f} s (+-{:.2g} s) added to the times of {}; it holds any "
+                  "lag of friction behind velocity too",
+                  found.events, found.offset - as_written, found.uncertainty, other.path));
+  if (found.ambiguity > 0.95) {
+    run.warnings.push_back("the stick-slip is so regular that the clock offset may be wrong by whole periods");
+  }
+  return found.offset;
+}
+
+}  // namespace
+
+void join(FileRecord& run, FileRecord other) {
+  if (!has_friction(run) && has_friction(other)) {
+    std::swap(run, other);
+    run.notes.push_back("the friction is in the second file, whose time was kept");
+  }
+  for (const Channel channel : {Channel::mu, Channel::force, Channel::torque, Channel::v_b, Channel::v_r}) {
+    if (!run.has(channel) || !other.has(channel)) continue;
+    throw InputError(fmt::format("holds {} like {}", to_string(channel), run.path),
+                     "two instruments must record different channels; files of one run are continued, not joined",
+                     {other.path, 0, ""});
+  }
+  for (const std::string& note : other.notes) run.notes.push_back("second file: " + note);
+  for (const std::string& warning : other.warnings) run.warnings.push_back("second file: " + warning);
+  const double offset = find_offset(run, other);
+
+  const auto& base = run[Channel::time];
+  const auto& time = other[Channel::time];
+  const auto begin = std::lower_bound(base.begin(), base.end(), time.front() + offset) - base.begin();
+  const auto end = std::upper_bound(base.begin(), base.end(), time.back() + offset) - base.begin();
+  if (end - begin < 2) {
+    throw InputError("the two files do not overlap in time", "check that they are of the same run",
+                     {other.path, 0, ""});
+  }
+  const double start = base[static_cast<std::size_t>(begin)];
+  const auto dropped = static_cast<std::ptrdiff_t>(base.size()) - (end - begin);
+  crop(run, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+  if (dropped > 0)
+    run.notes.push_back(fmt::format("{} rows outside the common time of the two files were cut off", dropped));
+
+  run.second_path = other.path;
+  for (const Column& column : other.columns.used) {
+    const Channel channel = column.channel;
+    if (channel == Channel::time || channel == Channel::step || run.has(channel)) continue;
+    run[channel] = interpolate(run[Channel::time], offset - start, time, other[channel]);
+    run.columns.used.push_back(column);
+    run.second_channels.push_back(channel);
+  }
+  run.notes.push_back(fmt::format("the channels of {} ({:.6g} Hz) were interpolated linearly at {:.6g} Hz", other.path,
+                                  1 / typical_interval(time), 1 / typical_interval(run[Channel::time])));
+  run.checksum = hash_bytes(reinterpret_cast<const char*>(&other.checksum), sizeof other.checksum, run.checksum);
+}
+
+}  // namespace tribofit

@@ -1,0 +1,42 @@
+#include "tribofit/ingest/read_trace.hpp"
+
+#include <utility>
+
+#include "assemble.hpp"
+#include "join.hpp"
+#include "recording.hpp"
+#include "spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+/// With two files a column may be in either; in one of them it must be.
+void check_requests(const FileRecord& first, const FileRecord& second, const ReadOptions& options) {
+  for (std::size_t k = 0; k < channel_count; ++k) {
+    const auto channel = static_cast<Channel>(k);
+    const auto request = options.columns.find(std::string(to_string(channel)));
+    if (request == options.columns.end() || request->second.empty() || request->second == "none") continue;
+    if (first.columns.find(channel) != nullptr || second.columns.find(channel) != nullptr) continue;
+    throw InputError("there is no column '" + request->second + "' for " + request->first + " in either file",
+                     "the columns are: " + listed(first.column_names) + "; " + listed(second.column_names),
+                     {first.path, 0, ""});
+  }
+}
+
+}  // namespace
+
+Trace read_trace(const std::string& path, const ReadOptions& options) {
+  FileRecord run = read_recording(path, options);
+  for (std::size_t i = 0; i < options.continued_in.size(); ++i) {
+    continue_recording(run, read_recording(options.continued_in[i], options), i + 2);
+  }
+  if (!options.second_file.empty()) {
+    FileRecord other = read_recording(options.second_file, options);
+    check_requests(run, other, options);
+    join(run, std::move(other));
+  }
+  return assemble(std::move(run), options);
+}
+
+}  // namespace tribofit

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "columns.hpp"
+#include "rows.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/read_trace.hpp"
+
+namespace tribofit {
+
+/// What one file holds: channels in SI as recorded, before friction and motion are made of them.
+struct FileRecord {
+  std::string path;
+  std::uint64_t checksum = 0;
+  Columns columns;
+  std::vector<std::string> column_names;
+  std::array<std::vector<double>, channel_count> channels;  ///< empty when absent
+  LineMap lines;
+  struct Part {
+    std::size_t begin;  ///< first row
+    std::string path;
+    LineMap lines;
+  };
+  std::vector<Part> parts;                ///< files that continue this one
+  std::size_t cut_rows = 0;               ///< rows cut off at the beginning
+  std::string second_path;                ///< of the other instrument's file
+  std::vector<Channel> second_channels;   ///< that came from it
+  double clock_start = 0, clock_end = 0;  ///< first and last time as written [s]
+  std::vector<Step> steps;                ///< without conditions
+  std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
+  std::vector<std::string> notes, warnings;
+
+  std::vector<double>& operator[](Channel channel) { return channels[index_of(channel)]; }
+  const std::vector<double>& operator[](Channel channel) const { return channels[index_of(channel)]; }
+  bool has(Channel channel) const { return !channels[index_of(channel)].empty(); }
+  std::size_t size() const { return channels[index_of(Channel::time)].size(); }
+  /// Where a row came from, for messages.
+  InputLocation location(std::size_t row, Channel channel) const;
+  std::size_t recipe_size() const { return recipe_steps.empty() ? 0 : recipe_steps.back() + 1; }
+};
+
+/// Reads one file; its time is made to start at 0 and to increase, its steps are found (clock.hpp).
+FileRecord read_recording(const std::string& path, const ReadOptions& options);
+
+/// Throws the InputError for columns that are missing; says which there are.
+[[noreturn]] void refuse_columns(const FileRecord& recording, const std::string& problem);
+
+/// Adds a file that continues the run. Its clock goes on where it was where it does so by itself, else it is set
+/// to follow.
+void continue_recording(FileRecord& run, FileRecord next, std::size_t number);
+
+}  // namespace tribofit

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "columns.hpp"
+
+namespace tribofit {
+
+/// Turns one line into the numbers of the wanted columns.
+class RowParser {
+ public:
+  enum class Outcome { numbers, blank, text, wrong };
+
+  /// What is wrong with a line, without where.
+  struct Defect {
+    std::string problem, advice, column;
+  };
+
+  /// `columns` in the order of the file; `cells` is how many a row has.
+  RowParser(const std::vector<Column>& columns, std::size_t cells, char separator, char decimal);
+
+  /// Parses `line` (ended by NUL; may be changed) into `out`, one number per column, as written (not yet in SI).
+  /// After Outcome::wrong, defect() tells what is wrong.
+  Outcome parse(char* line, double* out);
+
+  const Defect& defect() const { return defect_; }
+
+ private:
+  template <char separator>
+  bool parse_plain(const char* line, double* out) const;
+  template <char separator>
+  Outcome parse_carefully(char* line, double* out);
+  Outcome judge(const std::vector<char*>& cells, double* out);
+  Outcome refuse(std::string problem, std::string advice, std::string column = {});
+  bool to_number(char* cell, double& value) const;
+
+  const std::vector<Column>& columns_;
+  std::vector<std::size_t> skips_;  // cells between one wanted column and the next
+  std::size_t cells_;
+  char separator_, decimal_;
+  std::vector<char*> split_;
+  Defect defect_;
+};
+
+}  // namespace tribofit

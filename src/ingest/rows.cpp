@@ -1,0 +1,280 @@
+#include "rows.hpp"
+
+#include <fmt/format.h>
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "fccp.hpp"
+
+#include "row_parser.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+// A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
+// Chunks end where lines do and depend on the file only, not on the number of threads.
+constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
+
+/// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
+struct Chunk {
+  std::vector<std::vector<double>> values;
+  std::vector<std::pair<std::size_t, std::size_t>> line_starts;  // row, line
+  std::size_t lines = 0;
+  std::size_t text_rows = 0, first_text_line = 0;
+  std::uint64_t checksum = 0;
+  std::size_t wrong_line = 0;
+  std::optional<RowParser::Defect> defect;
+  std::optional<std::size_t> long_line;
+  std::exception_ptr failure;
+
+  void clear(std::size_t columns) {
+    Chunk empty;
+    empty.values = std::move(values);
+    empty.values.resize(columns);
+    for (auto& column : empty.values) column.clear();
+    empty.checksum = hash_bytes(nullptr, 0);
+    *this = std::move(empty);
+  }
+};
+
+/// Feeds a stretch of a file to io::LineReader, which reads it straight into its own buffer.
+class ChunkSource : public io::ByteSourceBase {
+ public:
+  ChunkSource(const InputFile& file, std::uint64_t begin, std::uint64_t end, Chunk& chunk)
+      : file_(file), at_(begin), end_(end), chunk_(chunk) {}
+
+  int read(char* buffer, int size) override {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(size), end_ - at_));
+    const std::size_t count = file_.read(at_, {buffer, wanted});
+    chunk_.checksum = hash_bytes(buffer, count);
+    // io::LineReader ends its lines with NUL, so that one in the file would cut a line unseen.
+    if (const void* zero = std::memchr(buffer, '\0', count)) {
+      const char* at = static_cast<const char*>(zero);
+      chunk_.wrong_line = 1 + static_cast<std::size_t>(std::count<const char*>(buffer, at, '\n'));
+      chunk_.defect =
+          RowParser::Defect{"the line holds a NUL byte", "the file is damaged here or binary; export it again", ""};
+      at_ = end_;
+      return static_cast<int>(at - buffer);  // the lines before may hold an earlier defect
+    }
+    at_ += count;
+    return static_cast<int>(count);
+  }
+
+ private:
+  const InputFile& file_;
+  std::uint64_t at_, end_;
+  Chunk& chunk_;
+};
+
+/// Asks for memory in pages of 2 MB: a column of millions of numbers is touched for the first time here, and page by
+/// page that costs as much as reading the numbers. Only an advice; nothing depends on it.
+void prefer_huge_pages(std::vector<double>& values) {
+  constexpr std::uintptr_t page = std::uintptr_t{1} << 21;
+  const auto begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) & ~(page - 1);
+  const auto end = reinterpret_cast<std::uintptr_t>(values.data() + values.capacity()) & ~(page - 1);
+  if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+class Reader {
+ public:
+  Reader(const InputFile& file, const Dialect& dialect, const std::vector<Column>& columns)
+      : file_(file), dialect_(dialect), columns_(columns), next_line_(dialect.data_line) {
+    const std::uint64_t bytes = dialect.data_end - dialect.data_begin;
+    chunks_ = static_cast<std::size_t>((bytes + chunk_bytes - 1) / chunk_bytes);
+    // Memory that is reserved and not used costs nothing, growing a vector twice its size does.
+    const auto estimate =
+        static_cast<std::size_t>(1.2 * static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes)) + 64;
+    rows_.values.resize(columns.size());
+    for (auto& values : rows_.values) {
+      values.reserve(estimate);
+      prefer_huge_pages(values);
+    }
+    rows_.checksum = hash_bytes(nullptr, 0);
+  }
+
+  Rows read(int threads) {
+    const std::size_t available =
+        threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t helpers = std::min(available, chunks_) - (chunks_ > 0 ? 1 : 0);
+    {
+      std::vector<std::jthread> workers;
+      for (std::size_t i = 0; i < helpers; ++i) workers.emplace_back([this] { work(); });
+      work();
+    }
+    if (failure_) std::rethrow_exception(failure_);
+    return std::move(rows_);
+  }
+
+ private:
+  void work() {
+    Chunk chunk;  // reused: its memory is touched once
+    for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
+      chunk.clear(columns_.size());
+      try {
+        parse(i, chunk);
+      } catch (...) {
+        chunk.failure = std::current_exception();
+      }
+      std::unique_lock lock(mutex_);
+      turn_changed_.wait(lock, [&] { return turn_ == i || failure_; });
+      if (failure_) return;
+      try {
+        append(chunk);
+      } catch (...) {
+        failure_ = std::current_exception();
+      }
+      ++turn_;
+      turn_changed_.notify_all();
+      if (failure_) return;
+    }
+  }
+
+  std::uint64_t chunk_begin(std::size_t i) const {
+    const std::uint64_t nominal = dialect_.data_begin + i * chunk_bytes;
+    return i == 0 ? nominal : file_.line_start(std::min(nominal, dialect_.data_end), dialect_.data_end);
+  }
+
+  void parse(std::size_t i, Chunk& chunk) const {
+    const std::uint64_t begin = chunk_begin(i);
+    std::uint64_t end = begin;
+    try {
+      end = chunk_begin(i + 1);
+    } catch (const InputError&) {
+      chunk.long_line = find_long_line(begin);
+      return;
+    }
+    if (begin >= end) return;
+    parse_lines(begin, end, chunk);
+    to_si(chunk);
+  }
+
+  /// A line too long to be found the end of begins after the last line end of the chunk.
+  std::size_t find_long_line(std::uint64_t begin) const {
+    std::string text(static_cast<std::size_t>(chunk_bytes), '\0');
+    text.resize(file_.read(begin, text));
+    return 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+  void parse_lines(std::uint64_t begin, std::uint64_t end, Chunk& chunk) const {
+    RowParser parser(columns_, dialect_.columns, dialect_.separator, dialect_.decimal);
+    const auto estimate =
+        static_cast<std::size_t>(1.2 * static_cast<double>(end - begin) / std::max(2.0, dialect_.row_bytes));
+    for (auto& values : chunk.values) values.reserve(estimate);
+    io::LineReader lines("", std::make_unique<ChunkSource>(file_, begin, end, chunk));
+    std::vector<double> row(columns_.size());
+    bool follows = false;  // the line before gave a row too
+    while (char* line = lines.next_line()) {
+      ++chunk.lines;
+      const RowParser::Outcome outcome = parser.parse(line, row.data());
+      if (outcome == RowParser::Outcome::numbers) {
+        if (!follows) chunk.line_starts.emplace_back(chunk.values.front().size(), chunk.lines);
+        follows = true;
+        for (std::size_t k = 0; k < row.size(); ++k) chunk.values[k].push_back(row[k]);
+        continue;
+      }
+      follows = false;
+      if (outcome == RowParser::Outcome::blank) continue;
+      if (outcome == RowParser::Outcome::wrong) {
+        if (!chunk.defect || chunk.lines < chunk.wrong_line) {
+          chunk.defect = parser.defect();
+          chunk.wrong_line = chunk.lines;
+        }
+        return;
+      }
+      if (chunk.text_rows++ == 0) chunk.first_text_line = chunk.lines;
+    }
+  }
+
+  void to_si(Chunk& chunk) const {
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const double factor = columns_[k].factor, offset = columns_[k].offset;
+      if (factor == 1 && offset == 0) continue;
+      for (double& value : chunk.values[k]) value = factor * value + offset;
+    }
+  }
+
+  /// Called in the order of the file, one chunk at a time.
+  void append(const Chunk& chunk) {
+    if (chunk.failure) std::rethrow_exception(chunk.failure);
+    if (chunk.long_line) file_.refuse_long_line(next_line_ + *chunk.long_line - 1);
+    if (chunk.defect) {
+      throw InputError(chunk.defect->problem, chunk.defect->advice,
+                       {file_.path(), next_line_ + chunk.wrong_line - 1, chunk.defect->column});
+    }
+    for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      rows_.values[k].insert(rows_.values[k].end(), chunk.values[k].begin(), chunk.values[k].end());
+    }
+    if (chunk.text_rows > 0 && rows_.text_rows == 0) rows_.first_text_line = next_line_ + chunk.first_text_line - 1;
+    rows_.text_rows += chunk.text_rows;
+    rows_.checksum = hash_bytes(reinterpret_cast<const char*>(&chunk.checksum), sizeof chunk.checksum, rows_.checksum);
+    next_line_ += chunk.lines;
+  }
+
+  const InputFile& file_;
+  const Dialect& dialect_;
+  const std::vector<Column>& columns_;
+  std::size_t chunks_ = 0;
+
+  std::atomic<std::size_t> next_chunk_ = 0;
+  std::mutex mutex_;
+  std::condition_variable turn_changed_;
+  std::size_t turn_ = 0;  // the chunk whose turn it is to be appended
+  std::exception_ptr failure_;
+  std::size_t next_line_;
+  Rows rows_;
+};
+
+}  // namespace
+
+void LineMap::set(std::size_t row, std::size_t line) {
+  if (!starts_.empty() && line_of(row) == line) return;
+  if (!starts_.empty() && starts_.back().first == row) {
+    starts_.back().second = line;
+  } else {
+    starts_.emplace_back(row, line);
+  }
+}
+
+std::size_t LineMap::line_of(std::size_t row) const {
+  if (starts_.empty()) return 0;
+  auto at =
+      std::upper_bound(starts_.begin(), starts_.end(), row, [](std::size_t r, const auto& s) { return r < s.first; });
+  if (at != starts_.begin()) --at;
+  return at->second + (row - at->first);
+}
+
+std::uint64_t hash_bytes(const char* bytes, std::size_t count, std::uint64_t hash) {
+  constexpr std::uint64_t prime = 1099511628211ULL;
+  std::size_t i = 0;
+  if (count >= 32) {
+    std::array<std::uint64_t, 4> lanes = {hash, hash + 1, hash + 2,
+                                          hash + 3};  // a multiplication need not wait for the last
+    for (; i + 32 <= count; i += 32) {
+      std::array<std::uint64_t, 4> words;
+      std::memcpy(words.data(), bytes + i, 32);
+      for (std::size_t k = 0; k < 4; ++k) lanes[k] = (lanes[k] ^ words[k]) * prime;
+    }
+    for (const std::uint64_t lane : lanes) hash = (hash ^ lane) * prime;
+  }
+  for (; i < count; ++i) hash = (hash ^ static_cast<unsigned char>(bytes[i])) * prime;
+  return hash;
+}
+
+Rows read_rows(const InputFile& file, const Dialect& dialect, const std::vector<Column>& columns, int threads) {
+  return Reader(file, dialect, columns).read(threads);
+}
+
+}  // namespace tribofit

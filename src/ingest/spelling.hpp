@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribofit {
+
+/// " (did you mean X?)" or nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "a force", "an angle".
+std::string with_article(std::string_view noun);
+
+/// `text` without white space at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// `text` with A-Z in lower case; other bytes as they are.
+std::string lower_case(std::string_view text);
+
+/// `text` with every `from` replaced.
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+
+/// "a, b, c".
+std::string listed(const std::vector<std::string>& names);
+
+}  // namespace tribofit

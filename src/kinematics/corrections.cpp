@@ -1,0 +1,162 @@
+#include "corrections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tribofit::kinematics {
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// Four-point Lagrange interpolation between b (u = 0) and c (u = 1).
+double cubic(double a, double b, double c, double d, double u) {
+  return b + u * (c - b) + u * (1 - u) / 6 * ((u - 2) * (a - 2 * b + c) - (u + 1) * (b - 2 * c + d));
+}
+
+void scale(std::span<double> signal, double factor, double offset) {
+  if (factor == 1 && offset == 0) return;
+  for (double& x : signal) x = (x - offset) * factor;
+}
+
+Ends ends_of(double delay, double step) {
+  const auto samples = static_cast<std::size_t>(std::ceil(std::abs(delay) / step)) + 2;
+  return delay > 0 ? Ends{0, samples} : Ends{samples, 0};
+}
+
+void correct_delay(std::span<double> signal, double delay, double step, Ends& ends) {
+  if (delay == 0 || signal.empty()) return;
+  shift_earlier(signal, delay, step);
+  const Ends lost = ends_of(delay, step);
+  ends.head = std::max(ends.head, lost.head);
+  ends.tail = std::max(ends.tail, lost.tail);
+}
+
+void correct_crosstalk(Trace& trace, double part) {
+  if (part == 0) return;
+  if (trace.friction_kind == FrictionKind::coefficient) {
+    scale(trace.friction, 1, part);
+  } else if (!trace.load.empty()) {
+    for (std::size_t i = 0; i < trace.friction.size(); ++i) trace.friction[i] -= part * trace.load[i];
+  }
+}
+
+}  // namespace
+
+void shift_earlier(std::span<double> signal, double delay, double step) {
+  const std::size_t n = signal.size();
+  if (n < 2 || delay == 0) return;
+  // A negative delay is a positive one on the reversed signal; walking forwards then only reads what is not yet written.
+  const bool reversed = delay < 0;
+  if (reversed) std::reverse(signal.begin(), signal.end());
+  const double samples = std::abs(delay) / step;
+  const auto whole = static_cast<std::size_t>(samples);
+  const double part = samples - static_cast<double>(whole);
+  const double last = signal[n - 1];
+  double before = signal[std::min(whole > 0 ? whole - 1 : 0, n - 1)];
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto at = [&](std::size_t k) { return k < n ? signal[k] : last; };
+    const double here = at(i + whole);
+    const double shifted = cubic(before, here, at(i + whole + 1), at(i + whole + 2), part);
+    before = here;
+    signal[i] = i + whole < n ? shifted : last;
+  }
+  if (reversed) std::reverse(signal.begin(), signal.end());
+}
+
+std::vector<double> savitzky_golay_slope(std::span<const double> signal, double step, std::size_t half_window) {
+  const std::size_t n = signal.size();
+  std::vector<double> slope(n, 0.0);
+  if (n < 2) return slope;
+  const std::size_t half = std::max<std::size_t>(1, std::min(half_window, (n - 1) / 2));
+  if (n < 3) {
+    slope[0] = slope[1] = (signal[1] - signal[0]) / step;
+    return slope;
+  }
+  const double w = static_cast<double>(half);
+  const double squares = w * (w + 1) * (2 * w + 1) / 3;
+  constexpr std::size_t renew = 4096;  // running sums are computed afresh before rounding can gather
+  double sum = 0, moment = 0;
+  for (std::size_t i = half; i + half < n; ++i) {
+    if ((i - half) % renew == 0) {
+      sum = moment = 0;
+      for (std::size_t k = 0; k <= 2 * half; ++k) {
+        sum += signal[i - half + k];
+        moment += (static_cast<double>(k) - w) * signal[i - half + k];
+      }
+    } else {
+      const double in = signal[i + half], out = signal[i - half - 1];
+      moment += (w + 1) * in + w * out - (sum + in - out);
+      sum += in - out;
+    }
+    slope[i] = moment / (squares * step);
+  }
+  // Ends: derivative of the parabola through the first and last window, away from its middle.
+  const auto end_slope = [&](std::size_t middle, std::size_t i) {
+    const double count = 2 * w + 1, shift = (count * count - 1) / 12;
+    double second = 0, norm = 0;
+    for (std::size_t k = 0; k <= 2 * half; ++k) {
+      const double x = static_cast<double>(k) - w, p = x * x - shift;
+      second += p * signal[middle - half + k], norm += p * p;
+    }
+    const double x = static_cast<double>(i) - static_cast<double>(middle);
+    return slope[middle] + 2 * x * second / norm / step;
+  };
+  for (std::size_t i = 0; i < half; ++i) slope[i] = end_slope(half, i);
+  for (std::size_t i = n - half; i < n; ++i) slope[i] = end_slope(n - 1 - half, i);
+  return slope;
+}
+
+Ends correct_declared(Trace& trace, const Instruments& instruments, double step, std::vector<std::string>& notes) {
+  Ends ends;
+  const auto& vibrometer = instruments.vibrometer;
+  const auto& sensor = instruments.force_sensor;
+  const bool has_velocity = !trace.velocity.empty();
+  if (has_velocity) {
+    const double gain = vibrometer.gain ? vibrometer.gain->value : 1;
+    scale(trace.velocity, vibrometer.sign / gain, 0);
+    double delay = vibrometer.delay ? vibrometer.delay->value : 0;
+    // To first order in frequency a low-pass is a delay; a full inverse would only amplify noise.
+    if (vibrometer.low_pass) delay += 1 / (two_pi * vibrometer.low_pass->value);
+    correct_delay(trace.velocity, delay, step, ends);
+    if (vibrometer.sign < 0) notes.push_back("velocity: sign reversed as declared");
+    if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {:.4g}", gain));
+    if (delay != 0) notes.push_back(fmt::format("velocity: moved {:.4g} ms earlier as declared", 1e3 * delay));
+  }
+  const double zero = sensor.zero ? sensor.zero->value : 0, gain = sensor.gain ? sensor.gain->value : 1;
+  scale(trace.friction, 1 / gain, zero);
+  if (zero != 0) notes.push_back(fmt::format("friction: declared zero {:.4g} subtracted", zero));
+  if (gain != 1) notes.push_back(fmt::format("friction: divided by the declared gain {:.4g}", gain));
+  if (sensor.crosstalk) {
+    correct_crosstalk(trace, sensor.crosstalk->value);
+    notes.push_back(fmt::format("friction: declared crosstalk {:.4g} subtracted", sensor.crosstalk->value));
+  }
+  if (sensor.bandwidth) {
+    // Second order with zeta = 0.7 (flat response): group delay 2 zeta / (2 pi f_0) at low frequency.
+    const double delay = 2 * 0.7 / (two_pi * sensor.bandwidth->value);
+    correct_delay(trace.friction, delay, step, ends);
+    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {:.4g} Hz", 1e3 * delay,
+                                sensor.bandwidth->value));
+  }
+  return ends;
+}
+
+void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, double mass, double step,
+                     std::vector<std::string>& notes) {
+  const bool coefficient = trace.friction_kind == FrictionKind::coefficient;
+  const bool measured = trace.load.size() == trace.friction.size() && !trace.load.empty();
+  if (coefficient && !measured && !trace.conditions.load.known()) {
+    notes.push_back("the declared mass below the force sensor is not corrected: the normal force is not known");
+    return;
+  }
+  const std::vector<double> acceleration = savitzky_golay_slope(block_velocity, step, 10);
+  for (std::size_t i = 0; i < trace.friction.size(); ++i) {
+    const double load = !coefficient ? 1 : measured ? trace.load[i] : trace.conditions.load.value;
+    if (load > 0) trace.friction[i] += mass * acceleration[i] / load;
+  }
+  notes.push_back(fmt::format("friction: inertia of the declared {:.4g} kg below the sensor added", mass));
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/ingest/instruments.hpp"
+#include "tribofit/ingest/trace.hpp"
+
+namespace tribofit::kinematics {
+
+/// Samples at either end that a correction has left without meaning.
+struct Ends {
+  std::size_t head = 0, tail = 0;
+};
+
+/// Shifts a signal in place so that it reads `delay` seconds earlier (cubic interpolation); both ends are held.
+void shift_earlier(std::span<double> signal, double delay, double step);
+
+/// Slope of a parabola through 2*half_window+1 samples around each sample (Savitzky and Golay 1964), per second.
+/// The ends take it from the first and last full window. Returns as many values as samples.
+std::vector<double> savitzky_golay_slope(std::span<const double> signal, double step, std::size_t half_window);
+
+/// Sign, gain, delay and low-pass of the vibrometer; zero, gain, crosstalk and bandwidth of the force sensor, in place.
+/// (The high-pass and the mass below the sensor need the plateau and come later.) Says what it did in `notes`.
+Ends correct_declared(Trace& trace, const Instruments& instruments, double step, std::vector<std::string>& notes);
+
+/// Adds m_s a_b (over N, for a coefficient) that hangs below the force sensor; `block_velocity` is v_b.
+void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, double mass, double step,
+                     std::vector<std::string>& notes);
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,339 @@
+#include "health_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tribofit/kinematics/spectrum.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+using Status = HealthItem::Status;
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// Samples that lie in runs of at least three identical values at the smallest or largest value of the channel.
+std::size_t clipped_samples(std::span<const double> x, const Chunks& chunks, double& at) {
+  constexpr std::size_t least = 3;
+  if (x.size() < 16 || chunks.whole.low == chunks.whole.high) return 0;  // of a constant other checks speak
+  std::size_t most = 0;
+  for (double limit : {chunks.whole.low, chunks.whole.high}) {
+    std::size_t in_runs = 0, run = 0;
+    for (std::size_t c = 0; c < chunks.part.size(); ++c) {
+      if (chunks.part[c].low != limit && chunks.part[c].high != limit) {
+        run = 0;
+        continue;
+      }
+      const std::size_t end = std::min(x.size(), (c + 1) * Chunks::length);
+      for (std::size_t i = c * Chunks::length; i < end; ++i) {
+        run = x[i] == limit ? run + 1 : 0;
+        if (run == least) in_runs += least;
+        if (run > least) ++in_runs;
+      }
+    }
+    if (in_runs > most) most = in_runs, at = limit;
+  }
+  return most;
+}
+
+// Samples that jump away and back at once, far beyond what neighbouring samples do.
+std::size_t lone_samples(std::span<const double> x, const Chunks& chunks) {
+  if (x.size() < 64) return 0;
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / 8192);
+  std::vector<double> usual;
+  for (std::size_t i = 1; i + 1 < x.size(); i += stride) usual.push_back(std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1])));
+  const double spread = median(std::move(usual)) / 0.6745;
+  const double far = std::max(20 * spread, 0.05 * (chunks.whole.high - chunks.whole.low));
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < chunks.part.size(); ++c) {
+    const std::size_t begin = std::max<std::size_t>(1, c * Chunks::length);
+    const std::size_t end = std::min(x.size() - 1, (c + 1) * Chunks::length);
+    // Within a chunk that spans less than the jump only its first or last sample can be alone.
+    const bool wide = chunks.part[c].high - chunks.part[c].low > far;
+    for (std::size_t i = begin; i < end; i += wide || i + 1 >= end ? 1 : end - 1 - i) {
+      const double left = x[i] - x[i - 1], right = x[i] - x[i + 1];
+      const bool alone = (left > far && right > far) || (left < -far && right < -far);
+      // At re-stick friction peaks for a sample too, but between neighbours on different levels.
+      if (alone && std::abs(x[i + 1] - x[i - 1]) < 0.25 * std::min(std::abs(left), std::abs(right))) ++count;
+    }
+  }
+  return count;
+}
+
+struct Gaps {
+  std::size_t count = 0;
+  double longest = 0;  // [s]
+};
+
+// Intervals longer than 1.6 of the usual one; stretches whose duration is as it should be are not looked into.
+Gaps gaps_of(std::span<const double> time, double step) {
+  constexpr std::size_t length = 64;
+  Gaps gaps;
+  for (std::size_t begin = 0; begin + 1 < time.size(); begin += length) {
+    const std::size_t end = std::min(time.size() - 1, begin + length);
+    if (time[end] - time[begin] < (static_cast<double>(end - begin) + 0.5) * step) continue;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double d = time[i + 1] - time[i];
+      if (d > 1.6 * step) ++gaps.count;
+      gaps.longest = std::max(gaps.longest, d);
+    }
+  }
+  return gaps;
+}
+
+// A quantised channel repeats its extreme by chance; clipping does so more than a few levels below it.
+bool repeats_everywhere(std::span<const double> x) {
+  std::size_t equal = 0;
+  const std::size_t n = std::min<std::size_t>(x.size(), 20000);
+  for (std::size_t i = 1; i < n; ++i) equal += x[i] == x[i - 1] ? 1u : 0u;
+  return 5 * equal > n;
+}
+
+struct Band {
+  double upper = 0;       // content above the floor up to here [Hz]
+  double floor = 0;       // amplitude density of the floor, relative to the largest line
+  bool filtered = false;  // the floor itself falls off towards the end of the band
+};
+
+// Content reaches up to where the smoothed spectrum comes within a factor of two of the floor (upper quarter).
+Band band_of(std::span<const double> signal, double step) {
+  const Spectrum spectrum = averaged_spectrum(signal, step);
+  Band band;
+  const std::size_t n = spectrum.amplitude.size();
+  if (n < 64) return band;
+  const auto power_between = [&](std::size_t from, std::size_t to) {
+    std::vector<double> part(spectrum.amplitude.begin() + static_cast<std::ptrdiff_t>(from),
+                             spectrum.amplitude.begin() + static_cast<std::ptrdiff_t>(to));
+    return median(std::move(part));
+  };
+  const double floor = power_between(3 * n / 4, n - 1);
+  const double last = power_between(15 * n / 16, n - 1), third = power_between(n / 2, n / 2 + n / 16);
+  band.filtered = last < 0.1 * third;
+  band.floor = floor / *std::max_element(spectrum.amplitude.begin() + 1, spectrum.amplitude.end());
+  std::size_t upper = 1;
+  for (std::size_t k = 2; k + 2 < n; ++k) {
+    const double smooth = (spectrum.amplitude[k - 2] + spectrum.amplitude[k - 1] + spectrum.amplitude[k] +
+                           spectrum.amplitude[k + 1] + spectrum.amplitude[k + 2]) / 5;
+    if (smooth > 2 * floor) upper = k;
+    if (k > 4 * upper + 16) break;  // a lone line far above is not content
+  }
+  band.upper = static_cast<double>(upper) * spectrum.bin_width;
+  return band;
+}
+
+std::string describe(const char* name, const Band& band) {
+  if (band.upper <= 0) return fmt::format("{}: too short to say", name);
+  if (band.filtered) return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {:.3g} Hz", name,
+                                        band.floor, band.upper);
+  return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
+}
+
+}  // namespace
+
+HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chunks& velocity,
+                          const Instruments& instruments) {
+  HealthItem item{"clipping", Status::ok, "no runs of identical samples at the end of a channel's range"};
+  const auto look = [&](const char* name, std::span<const double> channel, const Chunks& chunks, double factor, const char* unit) {
+    double at = 0;
+    if (repeats_everywhere(channel)) return;
+    const std::size_t count = clipped_samples(channel, chunks, at);
+    const double share = static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, channel.size()));
+    if (count < 6) return;
+    item.status = share > 0.001 ? Status::problem : Status::warning;
+    item.message = fmt::format("{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small", name,
+                               factor * at, unit, count, 100 * share);
+  };
+  look("friction", trace.friction, friction, 1, trace.friction_kind == FrictionKind::force ? " N" : "");
+  look("velocity", trace.velocity, velocity, 1e3, " mm/s");
+  if (item.status == Status::ok && instruments.vibrometer.range && !trace.velocity.empty()) {
+    const double largest = std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high));
+    const double range = instruments.vibrometer.range->value;
+    if (largest >= 0.995 * range) {
+      item.status = Status::warning;
+      item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest, 1e3 * range);
+    }
+  }
+  return item;
+}
+
+HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
+  const std::size_t n = trace.size();
+  if (n < 16) return {"drop-outs", Status::warning, fmt::format("only {} samples", n)};
+  const double step = trace.duration() / static_cast<double>(n - 1);
+  const Gaps gaps = gaps_of(trace.time, step);
+  const std::size_t spikes = lone_samples(trace.friction, friction) + lone_samples(trace.velocity, velocity);
+  HealthItem item{"drop-outs", Status::ok, fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
+  if (gaps.count == 0 && spikes == 0) return item;
+  const bool many = static_cast<double>(gaps.count + spikes) > 1e-3 * static_cast<double>(n);
+  item.status = many ? Status::problem : Status::warning;
+  item.message = fmt::format("{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms), {} lone samples far "
+                             "from their neighbours", gaps.count, 1e3 * gaps.longest, 1e3 * step, spikes);
+  return item;
+}
+
+HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
+  HealthItem item{"sagging-plateau", Status::ok, "no stick plateau to look at"};
+  if (declared) {
+    item.message = fmt::format("the declared high-pass of {:.3g} Hz is undone", *declared);
+  } else if (undone) {
+    item.status = Status::warning;
+    item.message = fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz ({} plateaus); "
+                               "undone", estimate.corner, estimate.std_error, estimate.plateaus);
+  } else if (estimate.significant) {
+    item.status = Status::problem;
+    item.message = fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz; left as it is",
+                               estimate.corner, estimate.std_error);
+  } else if (estimate.creeping) {
+    item.message = fmt::format("the plateau falls faster towards break-away (as a high-pass: {:.3f} Hz in its first half, "
+                               "{:.3f} Hz in its second): creep of the contact, no high-pass", estimate.first_half,
+                               estimate.second_half);
+  } else if (estimate.plateaus >= 3) {
+    item.message = fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +- {:.4f} Hz ({} plateaus)",
+                               estimate.corner, estimate.std_error, estimate.plateaus);
+  } else if (sticks) {
+    item.message = "too few plateaus to look for a high-pass";
+  }
+  return item;
+}
+
+HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step) {
+  const Band a = band_of(friction, step);
+  HealthItem item{"bandwidth", Status::ok, describe("friction", a)};
+  const Band b = velocity.empty() ? Band{} : band_of(velocity, step);
+  if (!velocity.empty()) item.message += "; " + describe("velocity", b);
+  item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
+  if (a.filtered || b.filtered) {
+    item.status = Status::warning;
+    item.message += ": what is faster than the filter is not in the data";
+  }
+  return item;
+}
+
+HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::size_t factor) {
+  HealthItem item{"channel-delay", Status::ok, "no re-stick to compare the channels at"};
+  const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
+  const std::size_t n = v.size();
+  const double edge = 0.05 * rests.depth;
+  // Window: the steep part of re-stick and as much again, at most 10 ms.
+  const auto half = static_cast<std::size_t>(std::clamp(0.01 / motion.step, 4.0, 2000.0));
+  std::vector<double> jump(2 * half, 0.0);
+  std::size_t used = 0;
+  for (const Rest& run : rests.runs) {
+    std::size_t i = std::min(run.inner_begin() * factor, n - 1);
+    while (i > 0 && std::abs(v[i] - motion.plateau_velocity) < edge) --i;
+    if (i < half + 1 || i + half + 1 >= n || used >= 400) continue;
+    const double sign = v[i] > motion.plateau_velocity ? 1 : -1;
+    // The velocity still needs edge/|dv/dt| to reach zero.
+    const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
+    const double rest = slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 0.25 * static_cast<double>(half)) : 0;
+    const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
+    if (zero + half + 1 >= n) continue;
+    for (std::size_t k = 0; k < 2 * half; ++k) jump[k] += sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
+    ++used;
+  }
+  if (used < 3) return item;
+  const auto sharpest = std::min_element(jump.begin(), jump.end());
+  double squares = 0;
+  for (double j : jump) squares += j * j;
+  squares -= *sharpest * *sharpest;
+  const double spread = std::sqrt(squares / static_cast<double>(jump.size() - 1));
+  if (-*sharpest < 8 * spread) {
+    item.message = fmt::format("friction does not jump at re-stick ({} slips): no statement on a delay between the channels", used);
+    return item;
+  }
+  const double delay = motion.step * (static_cast<double>(sharpest - jump.begin()) - static_cast<double>(half) + 0.5);
+  item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)", 1e3 * std::abs(delay),
+                             delay >= 0 ? "after" : "before", used);
+  if (std::abs(delay) > std::max(3e-4, 2.5 * motion.step)) item.status = Status::warning;
+  return item;
+}
+
+HealthItem check_revolutions(const Motion& motion) {
+  HealthItem item{"revolutions", Status::ok, "the disc's speed is not known"};
+  double angle = 0;
+  if (!motion.disc_angle.empty()) {
+    angle = motion.disc_angle.back() - motion.disc_angle.front();
+  } else if (!motion.disc_speed.empty()) {
+    double sum = 0;
+    for (double w : motion.disc_speed) sum += std::abs(w);
+    angle = sum * motion.step;
+  } else {
+    for (const Step& step : motion.steps) {
+      const Condition& speed = step.conditions.speed.known() ? step.conditions.speed : motion.conditions.speed;
+      if (!speed.known()) return item;
+      angle += speed.value * static_cast<double>(step.end - step.begin) * motion.step;
+    }
+  }
+  const double revolutions = std::abs(angle) / two_pi;
+  item.message = fmt::format("{:.2f} revolutions recorded", revolutions);
+  if (revolutions < 2) {
+    item.status = Status::warning;
+    item.message += ": effects of the disc angle need two";
+  }
+  return item;
+}
+
+HealthItem check_speed_ripple(const Motion& motion, const Rests& rests, std::size_t factor) {
+  HealthItem item{"speed-ripple", Status::ok, "no stick plateaus to follow over the disc angle"};
+  if (!motion.sticks || motion.constant_disc_velocity == 0) return item;
+  const double omega = motion.conditions.speed.value;
+  if (!motion.conditions.speed.known() || std::abs(omega) * motion.duration() < two_pi || rests.runs.size() < 12) {
+    item.message = "less than one revolution or too few plateaus: not known";
+    return item;
+  }
+  const auto n = static_cast<Eigen::Index>(rests.runs.size());
+  Eigen::MatrixXd basis(n, 5);
+  Eigen::VectorXd level(n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const Rest& run = rests.runs[static_cast<std::size_t>(r)];
+    const std::size_t middle = std::min(motion.size() - 1, (run.begin + run.end) / 2 * factor);
+    const double angle = motion.disc_angle.empty() ? omega * motion.time[middle] : motion.disc_angle[middle];
+    basis.row(r) << 1, std::cos(angle), std::sin(angle), std::cos(2 * angle), std::sin(2 * angle);
+    level(r) = run.level;
+  }
+  const Eigen::VectorXd x = basis.colPivHouseholderQr().solve(level);
+  const double spread = std::sqrt((level - basis * x).squaredNorm() / static_cast<double>(n - 5));
+  const double once = std::hypot(x(1), x(2)), twice = std::hypot(x(3), x(4));
+  const double scale = 1 / std::abs(motion.constant_disc_velocity);
+  const double error = spread * std::sqrt(2.0 / static_cast<double>(n));
+  item.message = fmt::format("the plateau follows the disc angle by {:.2f} % once and {:.2f} % twice a revolution (+- {:.2f} %)",
+                             100 * once * scale, 100 * twice * scale, 100 * error * scale);
+  const double largest = std::max(once, twice);
+  if (largest * scale > 0.02 && largest > 5 * error) item.status = Status::warning;
+  return item;
+}
+
+HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
+  HealthItem item{"run-up", Status::ok, "the record begins at full speed"};
+  if (found == 0) return item;
+  const double time = static_cast<double>(found) * motion.step;
+  item.message = fmt::format("the first {:.3g} s, before the plateau is within 2 % of its final value, {}", time,
+                             trim ? "are trimmed" : "are kept");
+  if (!trim) item.status = Status::warning;
+  return item;
+}
+
+HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known) {
+  HealthItem item{"plateau-speed", Status::ok, "the record has no stick plateau"};
+  if (!motion.sticks) return item;
+  if (motion.velocity_kind == VelocityKind::relative || !motion.disc_velocity.empty()) {
+    item.message = fmt::format("v_r rests at {:.3g} mm/s in stick", 1e3 * motion.plateau_velocity);
+    return item;
+  }
+  if (!speed_was_stated) {
+    item.message = fmt::format("speed taken from the plateau of v_b: omega r = {:.4g} mm/s", 1e3 * plateau);
+    if (radius_known) item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / two_pi);
+    return item;
+  }
+  const double stated = motion.constant_disc_velocity, ratio = plateau / stated;
+  item.message = fmt::format("plateau of v_b {:.4g} mm/s, omega r {:.4g} mm/s: {:+.1f} %", 1e3 * plateau, 1e3 * stated,
+                             100 * (ratio - 1));
+  if (std::abs(ratio - 1) > 0.02) item.status = std::abs(ratio - 1) > 0.2 ? Status::problem : Status::warning;
+  if (item.status != Status::ok) item.message += "; radius, speed, laser angle or creep of the contact";
+  return item;
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,132 @@
+#include "high_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tribofit::kinematics {
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+constexpr double least_corner = 0.01, largest_corner = 3;  // Hz
+constexpr double significance = 6;                         // standard errors
+constexpr double least_sag = 0.01;                         // of the plateau, over one plateau
+
+// Median and its standard error from the spread of the values.
+struct Centre {
+  double value = 0, std_error = 0;
+};
+
+Centre robust_centre(const std::vector<double>& values) {
+  Centre centre;
+  centre.value = median(values);
+  std::vector<double> deviation;
+  for (double v : values) deviation.push_back(std::abs(v - centre.value));
+  centre.std_error = 1.2533 * 1.4826 * median(std::move(deviation)) / std::sqrt(static_cast<double>(values.size()));
+  return centre;
+}
+
+double corner_of(std::span<const double> part, double block_step, double disc_slope) {
+  const Line line = fit_line(part);
+  return -(line.slope / block_step - disc_slope) / (two_pi * line.value);
+}
+
+}  // namespace
+
+HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& rests,
+                                    std::span<const double> disc_slope) {
+  HighPassEstimate estimate;
+  std::vector<double> whole, first, second, lengths;
+  const std::span<const double> v(velocity.mean);
+  const double usual = std::abs(rests.level);
+  for (std::size_t r = 0; r < rests.runs.size(); ++r) {
+    const Rest& run = rests.runs[r];
+    const std::size_t length = run.inner_end() - run.inner_begin();
+    if (length < 8 || std::abs(run.level) < 0.2 * usual) continue;
+    const auto inner = v.subspan(run.inner_begin(), length);
+    const double slope = disc_slope.empty() ? 0 : disc_slope[r];
+    whole.push_back(corner_of(inner, velocity.step, slope));
+    first.push_back(corner_of(inner.first(length / 2), velocity.step, slope));
+    second.push_back(corner_of(inner.last(length / 2), velocity.step, slope));
+    lengths.push_back(static_cast<double>(run.size()) * velocity.step);
+  }
+  estimate.plateaus = whole.size();
+  if (whole.size() < 3) return estimate;
+  const Centre all = robust_centre(whole), a = robust_centre(first), b = robust_centre(second);
+  estimate.corner = all.value;
+  estimate.std_error = all.std_error;
+  estimate.first_half = a.value;
+  estimate.second_half = b.value;
+  const double sag = two_pi * all.value * median(std::move(lengths));
+  const bool clear = all.value > significance * all.std_error && sag > least_sag;
+  const bool same = std::abs(a.value - b.value) < 0.2 * all.value + 3 * std::hypot(a.std_error, b.std_error) &&
+                    a.value > 0.5 * all.value && b.value > 0.5 * all.value;
+  estimate.significant = clear && same && all.value > least_corner && all.value < largest_corner;
+  estimate.creeping = clear && !same;
+  return estimate;
+}
+
+HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, double corner, double plateau,
+                              std::span<const double> disc) {
+  HighPassTerms terms;
+  terms.rate = two_pi * corner;
+  const double h = velocity.step;
+  std::vector<double> restored(velocity.mean.size());
+  double integral = 0;
+  for (std::size_t b = 0; b < restored.size(); ++b) {
+    restored[b] = velocity.mean[b] + terms.rate * (integral + 0.5 * h * velocity.mean[b]);
+    integral += h * velocity.mean[b];
+    if (!disc.empty()) restored[b] -= disc[b];
+  }
+  if (rests.empty()) return terms;
+  // Straight line through the levels of the plateaus; those of a run-up or a mistaken rest are left out by halves.
+  struct Level {
+    double time, value, weight;
+  };
+  std::vector<Level> levels;
+  for (const Rest& run : rests.runs) {
+    const std::size_t n = run.inner_end() - run.inner_begin();
+    const Line line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
+    levels.push_back({0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()), line.value,
+                      static_cast<double>(n)});
+  }
+  double offset = 0, slope = 0, limit = HUGE_VAL;
+  for (int pass = 0; pass < 4; ++pass) {
+    double sw = 0, st = 0, sv = 0, stt = 0, stv = 0;
+    for (const Level& l : levels) {
+      if (std::abs(l.value - offset - slope * l.time) > limit) continue;
+      sw += l.weight, st += l.weight * l.time, sv += l.weight * l.value;
+      stt += l.weight * l.time * l.time, stv += l.weight * l.time * l.value;
+    }
+    const double determinant = sw * stt - st * st;
+    slope = determinant > 1e-9 * sw * stt ? (sw * stv - st * sv) / determinant : 0;
+    offset = (sv - slope * st) / sw;
+    std::vector<double> deviation;
+    for (const Level& l : levels) deviation.push_back(std::abs(l.value - offset - slope * l.time));
+    limit = std::max(5 * median(std::move(deviation)), 1e-12);
+  }
+  terms.slope = -slope;
+  if (plateau == plateau) {
+    terms.offset = plateau - offset;
+    return terms;
+  }
+  // No net displacement between the middles of the first and the last plateau.
+  const std::size_t begin = (rests.runs.front().begin + rests.runs.front().end) / 2;
+  const std::size_t end = (rests.runs.back().begin + rests.runs.back().end) / 2;
+  double sum = 0;
+  for (std::size_t b = begin; b < end; ++b) sum += restored[b] - slope * h * (static_cast<double>(b) + 0.5);
+  terms.offset = end > begin ? -sum / static_cast<double>(end - begin) : 0;
+  return terms;
+}
+
+void restore(std::span<double> velocity, double step, const HighPassTerms& terms) {
+  double integral = 0;
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double v = velocity[i];
+    // Trapezoid: half of the sample now, half with the next.
+    velocity[i] = v + terms.rate * (integral + 0.5 * step * v) + terms.offset + terms.slope * step * static_cast<double>(i);
+    integral += step * v;
+  }
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tribofit::kinematics {
+
+/// Means over blocks of `length` samples; a last incomplete block is left out unless it is the only one.
+struct BlockMeans {
+  std::size_t length = 1;    ///< samples in a block
+  double step = 0;           ///< duration of a block [s]
+  std::vector<double> mean;  ///< in the signal's unit
+};
+
+/// Number of samples that can be averaged without losing the motion: an eighth of the time in which the signal
+/// changes by a tenth of its variance, at least so many that 2^17 blocks are not exceeded.
+std::size_t block_length(std::span<const double> signal);
+
+BlockMeans block_means(std::span<const double> signal, std::size_t length, double step);
+
+/// A stretch of blocks [begin, end) in which the velocity rests on a level.
+struct Rest {
+  std::size_t begin = 0, end = 0;
+  double level = 0;  ///< mean over the middle of the stretch [m/s]
+  std::size_t size() const { return end - begin; }
+  /// The middle of the stretch, where neither re-stick nor break-away disturbs.
+  std::size_t inner_begin() const { return begin + size() / 5; }
+  std::size_t inner_end() const { return end - size() / 5; }
+};
+
+/// All rests of a record.
+struct Rests {
+  std::vector<Rest> runs;
+  double level = 0;  ///< median over rests, weighted by their duration [m/s]
+  double depth = 0;  ///< largest excursion from that level (one block in a thousand exceeds it) [m/s]
+  bool empty() const { return runs.empty(); }
+};
+
+/// Where a level is looked for.
+struct LevelRange {
+  double low = 0, high = 0;
+};
+
+/// Finds the level on which the velocity rests most (half-sample mode) and the stretches that rest on it.
+///
+/// A stretch within 12 % of the largest excursion counts when it is flat: a turning point of a smooth oscillation is
+/// a parabola whose middle stands out from its shoulders, a stick is not, whether it is noisy, rings or sags.
+/// Cost: n log n for at most 2^15 of the blocks, linear in the rest.
+Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> range = {});
+
+/// Slope and value in the middle of a straight line through equally spaced samples (least squares).
+struct Line {
+  double value = 0;  ///< at the mean abscissa
+  double slope = 0;  ///< per sample
+};
+Line fit_line(std::span<const double> samples);
+
+/// Median of a copy; 0 when empty.
+double median(std::vector<double> values);
+
+/// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
+/// parabolas through windows in the given stretches of samples, as the median over windows.
+double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor);
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tribofit::kinematics {
+
+/// Smallest and largest of some samples.
+struct Extremes {
+  double low = 0, high = 0;
+};
+
+/// Extremes of a span that is not empty. Four strands hide the latency of the comparison.
+inline Extremes extremes(std::span<const double> x) {
+  double low[4] = {x[0], x[0], x[0], x[0]}, high[4] = {x[0], x[0], x[0], x[0]};
+  std::size_t i = 0;
+  for (; i + 4 <= x.size(); i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      low[k] = x[i + k] < low[k] ? x[i + k] : low[k];
+      high[k] = x[i + k] > high[k] ? x[i + k] : high[k];
+    }
+  }
+  for (; i < x.size(); ++i) low[0] = std::min(low[0], x[i]), high[0] = std::max(high[0], x[i]);
+  return {std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]})};
+}
+
+/// Sum of term(sample), in four strands.
+template <typename Term>
+double sum_of(std::span<const double> x, Term term) {
+  double sum[4] = {0, 0, 0, 0};
+  std::size_t i = 0;
+  for (; i + 4 <= x.size(); i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += term(x[i + k]);
+  }
+  for (; i < x.size(); ++i) sum[0] += term(x[i]);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// Extremes of consecutive chunks of a channel: one pass, after which most questions need to look at few chunks only.
+struct Chunks {
+  static constexpr std::size_t length = 256;
+  std::vector<Extremes> part;
+  Extremes whole;
+};
+
+inline Chunks chunks_of(std::span<const double> channel) {
+  Chunks chunks;
+  for (std::size_t begin = 0; begin < channel.size(); begin += Chunks::length) {
+    chunks.part.push_back(extremes(channel.subspan(begin, std::min(Chunks::length, channel.size() - begin))));
+    const Extremes& e = chunks.part.back();
+    if (begin == 0) chunks.whole = e;
+    chunks.whole = {std::min(chunks.whole.low, e.low), std::max(chunks.whole.high, e.high)};
+  }
+  return chunks;
+}
+
+}  // namespace tribofit::kinematics

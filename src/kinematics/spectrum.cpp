@@ -1,0 +1,177 @@
+#include "tribofit/kinematics/spectrum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <unsupported/Eigen/FFT>
+
+#include "plateau.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+double mean_of(std::span<const double> signal) {
+  return std::accumulate(signal.begin(), signal.end(), 0.0) / static_cast<double>(signal.size());
+}
+
+// Next size with no prime factor above five, for which the transform is fast.
+std::size_t good_size(std::size_t n) {
+  for (;; ++n) {
+    std::size_t rest = n;
+    for (std::size_t p : {2u, 3u, 5u}) {
+      while (rest % p == 0) rest /= p;
+    }
+    if (rest == 1 && n % 2 == 0) return n;
+  }
+}
+
+// sin^2 window, periodic; by rotation instead of a cosine per sample.
+class Hann {
+ public:
+  explicit Hann(std::size_t n) : step_(std::polar(1.0, two_pi / static_cast<double>(n))) {}
+  double next() {
+    const double w = 0.5 * (1 - phase_.real());
+    phase_ *= step_;
+    return w;
+  }
+
+ private:
+  std::complex<double> phase_{1, 0}, step_;
+};
+
+std::vector<std::complex<double>> transform(std::vector<double> padded) {
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> lines;
+  fft.fwd(lines, padded);
+  return lines;
+}
+
+// Amplitude of the sine of a given frequency under the window, by direct summation.
+double amplitude_at(std::span<const double> signal, double mean, double step, double frequency) {
+  Hann window(signal.size());
+  const std::complex<double> turn = std::polar(1.0, -two_pi * frequency * step);
+  std::complex<double> phase{1, 0}, sum{0, 0};
+  for (double x : signal) {
+    sum += window.next() * (x - mean) * phase;
+    phase *= turn;
+  }
+  return 4 * std::abs(sum) / static_cast<double>(signal.size());
+}
+
+struct Line {
+  double frequency = 0, amplitude = 0;
+};
+
+// Short slips are pulses, whose second harmonic can exceed the fundamental: a line of half the height at a half, a third
+// or a quarter of the strongest is taken for what it is.
+std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strongest, std::size_t first) {
+  for (std::size_t divisor = 4; divisor >= 2; --divisor) {
+    const std::size_t near = strongest / divisor;
+    if (near < first + 2) continue;
+    const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(near - 1);
+    const auto peak = std::max_element(begin, begin + 3 + static_cast<std::ptrdiff_t>(near / 50));
+    if (*peak > 0.5 * lines[strongest]) return static_cast<std::size_t>(peak - lines.begin());
+  }
+  return strongest;
+}
+
+// Strongest line above three bins: below, a drift cannot be told from a line.
+Line strongest_line(std::span<const double> signal, double step) {
+  const Spectrum spectrum = amplitude_spectrum(signal, step);
+  constexpr std::size_t first = 3;
+  if (spectrum.amplitude.size() <= first + 1) return {};
+  const auto& lines = spectrum.amplitude;
+  const auto strongest = static_cast<std::size_t>(std::max_element(lines.begin() + first, lines.end()) - lines.begin());
+  const auto bin = static_cast<double>(fundamental_bin(lines, strongest, first));
+  const double mean = mean_of(signal);
+  // Golden section between the neighbouring bins: the windowed spectrum has one maximum there.
+  double a = (bin - 1) * spectrum.bin_width, b = (bin + 1) * spectrum.bin_width;
+  constexpr double golden = 0.6180339887498949;
+  double x = b - golden * (b - a), y = a + golden * (b - a);
+  double fx = amplitude_at(signal, mean, step, x), fy = amplitude_at(signal, mean, step, y);
+  for (int k = 0; k < 20; ++k) {
+    if (fx > fy) {
+      b = y, y = x, fy = fx;
+      x = b - golden * (b - a), fx = amplitude_at(signal, mean, step, x);
+    } else {
+      a = x, x = y, fx = fy;
+      y = a + golden * (b - a), fy = amplitude_at(signal, mean, step, y);
+    }
+  }
+  const double frequency = 0.5 * (a + b);
+  // An average over blocks lets the sine pass by sin(x)/x; here one sample is one block.
+  return {frequency, std::max(fx, fy)};
+}
+
+double block_transmission(double frequency, double block) {
+  const double x = std::numbers::pi * frequency * block;
+  return x > 0 ? std::sin(x) / x : 1;
+}
+
+}  // namespace
+
+Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
+  Spectrum spectrum;
+  if (signal.size() < 4 || !(step > 0)) return spectrum;
+  const std::size_t size = good_size(signal.size());
+  const double mean = mean_of(signal);
+  std::vector<double> padded(size, 0.0);
+  Hann window(signal.size());
+  for (std::size_t i = 0; i < signal.size(); ++i) padded[i] = window.next() * (signal[i] - mean);
+  const auto lines = transform(std::move(padded));
+  spectrum.bin_width = 1 / (static_cast<double>(size) * step);
+  spectrum.amplitude.reserve(lines.size());
+  for (const auto& line : lines) {
+    spectrum.amplitude.push_back(4 * std::abs(line) / static_cast<double>(signal.size()));
+  }
+  return spectrum;
+}
+
+Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment, std::size_t most_segments) {
+  Spectrum average;
+  if (signal.size() < 4) return average;
+  segment = std::min(segment, signal.size());
+  const std::size_t count = std::max<std::size_t>(1, std::min(most_segments, signal.size() / segment));
+  const std::size_t stride = count > 1 ? (signal.size() - segment) / (count - 1) : 0;
+  for (std::size_t s = 0; s < count; ++s) {
+    const Spectrum part = amplitude_spectrum(signal.subspan(s * stride, segment), step);
+    if (s == 0) average = {part.bin_width, std::vector<double>(part.amplitude.size(), 0.0)};
+    for (std::size_t k = 0; k < part.amplitude.size(); ++k) average.amplitude[k] += part.amplitude[k] * part.amplitude[k];
+  }
+  for (double& a : average.amplitude) a = std::sqrt(a / static_cast<double>(count));
+  return average;
+}
+
+SpectralPeak fundamental(std::span<const double> signal, double step, std::size_t plain_size) {
+  SpectralPeak peak;
+  if (signal.size() < 8 || !(step > 0)) return peak;
+  constexpr std::size_t most = std::size_t{1} << 15;
+  constexpr double lines_per_period = 16;
+  // The whole record, reduced, sees low lines; one stretch at the full rate sees what the reduction would have lost.
+  const std::size_t reduction = (signal.size() + most - 1) / most;
+  const kinematics::BlockMeans reduced = kinematics::block_means(signal, reduction, step);
+  Line line = strongest_line(reduced.mean, reduced.step);
+  line.amplitude /= block_transmission(line.frequency, reduction > 1 ? reduced.step : 0);
+  if (reduction > 1) {
+    const Line fast = strongest_line(signal.first(std::min(signal.size(), most)), step);
+    if (fast.frequency > 0.5 / reduced.step && fast.amplitude > line.amplitude) {
+      const auto blocks = static_cast<std::size_t>(1 / (lines_per_period * fast.frequency * step));
+      const kinematics::BlockMeans finer = kinematics::block_means(signal, std::max<std::size_t>(1, blocks), step);
+      const Line refined = strongest_line(finer.mean, finer.step);
+      line = {refined.frequency,
+              refined.amplitude / block_transmission(refined.frequency, finer.length > 1 ? finer.step : 0)};
+    }
+  }
+  peak.frequency = line.frequency;
+  peak.amplitude = line.amplitude;
+  peak.bin_width = 1 / (static_cast<double>(plain_size) * step);
+  peak.bin_frequency = std::round(peak.frequency / peak.bin_width) * peak.bin_width;
+  return peak;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,83 @@
+#include "slip_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tribofit {
+
+void SlipFlow::begin(double t, const BlockState& y, double direction, double stick_time, double slid) {
+  direction_ = direction;
+  stick_time_ = stick_time;
+  slid_before_ = slid;
+  lag_before_ = setup_.disc_travel(t) - y[0] / setup_.natural_frequency;
+}
+
+double SlipFlow::slid(double t, const BlockState& y) const {
+  // v_r keeps its sign, so the integral of |v_r| is the way of the disc less that of the block.
+  const double lag = setup_.disc_travel(t) - y[0] / setup_.natural_frequency;
+  return slid_before_ + std::abs(lag - lag_before_);
+}
+
+double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,
+                             BlockState* dy) const {
+  // The least number keeps the sign of the direction at rest.
+  const double signed_speed = direction_ * std::max(speed, std::numeric_limits<double>::min());
+  const Instant<double> at = {.velocity = signed_speed,
+                              .acceleration = block_acceleration,
+                              .time = std::max(t, 0.0),
+                              .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,
+                              .distance = setup_.needs_distance && t > 0 ? slid(t, y) : 0,
+                              .stick_time = stick_time_,
+                              .load = setup_.load(t),
+                              .mean_load = setup_.drive.mean_load,
+                              .temperature = setup_.temperature(t),
+                              .mean_temperature = setup_.drive.mean_temperature};
+  const std::size_t memories = friction_.state_count();
+  const std::span<const double> state(y.data() + 2, memories);
+  if (dy != nullptr && memories > 0) friction_.rates(at, state, std::span<double>(dy->data() + 2, memories));
+  return friction_.friction(at, state);
+}
+
+double SlipFlow::acceleration(double mu, double t, const BlockState& y) const {
+  const Rig& rig = setup_.rig;
+  return (setup_.load(t) * mu - rig.damping * y[1]) / rig.mass - setup_.natural_frequency * y[0];
+}
+
+double SlipFlow::friction(double t, const BlockState& y) const {
+  const double speed = slip_speed(t, y);
+  double block_acceleration = 0;
+  double mu = 0;
+  // Where friction depends on the acceleration it makes, the two are found together, by iteration.
+  constexpr int kMostIterations = 50;
+  for (int i = 0; i < kMostIterations; ++i) {
+    mu = friction_at(std::abs(speed), block_acceleration, t, y, nullptr);
+    if (speed < 0) mu = 2 * friction_at(0, block_acceleration, t, y, nullptr) - mu;
+    const double next = acceleration(mu, t, y);
+    const bool done = !setup_.needs_acceleration || std::abs(next - block_acceleration) <= 1e-13 * std::abs(next);
+    block_acceleration = next;
+    if (done) break;
+  }
+  return mu;
+}
+
+void SlipFlow::operator()(const BlockState& y, BlockState& dy, double t) const {
+  dy.fill(0);
+  double mu = 0;
+  const double speed = slip_speed(t, y);
+  if (setup_.needs_acceleration) {
+    mu = friction(t, y);
+    friction_at(std::abs(speed), acceleration(mu, t, y), t, y, &dy);
+  } else {
+    mu = friction_at(std::abs(speed), 0, t, y, &dy);
+    if (speed < 0) {
+      BlockState at_rest{};
+      mu = 2 * friction_at(0, 0, t, y, &at_rest) - mu;
+      for (std::size_t k = 2; k < dy.size(); ++k) dy[k] = 2 * at_rest[k] - dy[k];
+    }
+  }
+  dy[0] = setup_.natural_frequency * y[1];
+  dy[1] = acceleration(mu, t, y);
+}
+
+}  // namespace tribofit

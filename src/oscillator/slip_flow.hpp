@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+
+#include "tribofit/friction/dynamics.hpp"
+#include "tribofit/oscillator/drive.hpp"
+#include "tribofit/oscillator/rig.hpp"
+
+namespace tribofit {
+
+/// Memories of a model that the simulation has room for.
+inline constexpr std::size_t kMostMemories = 3;
+
+/// State of the block: sqrt(k/m) x and x' [m/s both, so that one tolerance suits], then the memories of the law.
+using BlockState = std::array<double, 2 + kMostMemories>;
+
+/// What a simulation is of; shared by its parts.
+struct Setup {
+  Rig rig;
+  Drive drive;
+  double natural_frequency = 0;  ///< [rad/s]
+  bool needs_angle = false, needs_distance = false, needs_acceleration = false;
+
+  double disc_velocity(double t) const { return drive.radius * drive.speed.speed(t); }
+  double disc_acceleration(double t) const { return drive.radius * drive.speed.acceleration(t); }
+  /// Way of the disc under the block since t = 0 [m].
+  double disc_travel(double t) const { return drive.radius * drive.speed.angle(t); }
+  double load(double t) const { return drive.load ? drive.load(t) : drive.mean_load; }
+  double temperature(double t) const { return drive.temperature ? drive.temperature(t) : drive.mean_temperature; }
+};
+
+/// The equations of motion while v_r keeps one direction.
+///
+/// Beyond v_r = 0 friction and rates are continued by point reflection, g(-w) = 2 g(0) - g(w): the right-hand side
+/// keeps a continuous slope there, so a step that ends at v_r = 0 keeps the order of the integrator.
+class SlipFlow {
+ public:
+  SlipFlow(const Setup& setup, const FrictionDynamics& friction) : setup_(setup), friction_(friction) {}
+
+  /// Starts a slip at time t in state y: direction of v_r, stick time before it, distance slid so far [s, m].
+  void begin(double t, const BlockState& y, double direction, double stick_time, double slid);
+
+  double direction() const { return direction_; }
+  double stick_time() const { return stick_time_; }
+  /// Speed along the direction of the slip, d v_r [m/s].
+  double slip_speed(double t, const BlockState& y) const { return direction_ * (setup_.disc_velocity(t) - y[1]); }
+  /// Slid since the beginning of the simulation [m].
+  double slid(double t, const BlockState& y) const;
+
+  /// dy = dy/dt.
+  void operator()(const BlockState& y, BlockState& dy, double t) const;
+  /// Signed mu [1].
+  double friction(double t, const BlockState& y) const;
+
+ private:
+  /// Friction at the slip speed `speed` >= 0, with the rates of the memories when asked for.
+  double friction_at(double speed, double acceleration, double t, const BlockState& y, BlockState* dy) const;
+  double acceleration(double mu, double t, const BlockState& y) const;
+
+  const Setup& setup_;
+  const FrictionDynamics& friction_;
+  double direction_ = 1, stick_time_ = 0;
+  double slid_before_ = 0, lag_before_ = 0;  ///< lag: way of the disc less that of the block
+};
+
+}  // namespace tribofit

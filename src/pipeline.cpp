@@ -1,0 +1,93 @@
+#include "tribofit/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribofit/fit/parallel.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Every model and protocol to fit: joint fits first, then the published protocol for the bare laws.
+std::vector<std::pair<FrictionModel, FitOptions>> plan(const IdentifyOptions& options) {
+  std::vector<std::pair<FrictionModel, FitOptions>> fits;
+  FitOptions inner = options.fit;
+  inner.threads = 1;  // fits run beside each other
+  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, options.effects), inner);
+  inner.protocol = Protocol::published;
+  for (const BaseLaw law : options.laws) {
+    if (options.published_protocol && law != BaseLaw::coulomb) fits.emplace_back(FrictionModel(law), inner);
+  }
+  return fits;
+}
+
+/// Index of the joint fit with the least error on held-out cycles.
+std::size_t best_of(const std::vector<Fit>& fits) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < fits.size(); ++k) {
+    if (fits[k].protocol != Protocol::joint || fits[k].parameters.empty()) continue;
+    if (fits[best].parameters.empty() || fits[k].error.held_out_rmse < fits[best].error.held_out_rmse) best = k;
+  }
+  return best;
+}
+
+void require_channels(const IdentifyOptions& options, const Motion& motion, std::vector<std::string>& warnings,
+                      bool& analysed) {
+  const Channels needs = FrictionModel(BaseLaw::exponential, options.effects).needs();
+  const auto missing = [&](bool needed, bool present, const char* channel) {
+    if (!needed || present) return;
+    warnings.push_back(std::string("an effect needs the channel '") + channel + "', which this trace does not have");
+    analysed = false;
+  };
+  missing(needs.load, !motion.load.empty(), "load");
+  missing(needs.temperature, !motion.temperature.empty(), "temperature");
+  missing(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
+}
+
+}  // namespace
+
+Identification identify(const std::string& path, const IdentifyOptions& options) {
+  Identification out;
+  out.path = path;
+
+  Trace trace = read_trace(path, options.read);
+  out.checksum = trace.checksum;
+  out.samples = trace.size();
+  out.duration = trace.duration();
+  out.rate = trace.rate();
+  out.notes = trace.notes;
+  out.warnings = trace.warnings;
+
+  out.motion = compute_motion(std::move(trace), options.instruments, options.motion);
+  out.segmentation = find_cycles(out.motion);
+  out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
+  out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
+
+  require_channels(options, out.motion, out.warnings, out.analysed);
+  if (out.segmentation.kind == MotionKind::always_sticking) {
+    out.warnings.push_back("nothing slips in this trace: there is no friction law to fit");
+    out.analysed = false;
+  }
+  if (!out.analysed) return out;
+
+  // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
+  const std::size_t values_per_slip = options.effects.empty() ? 200 : 1000;
+  const Observations observations = observe(
+      out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, options.effects).needs(), values_per_slip);
+  if (observations.cycles < 3) {
+    out.warnings.push_back("there are fewer than three cycles: no law can be fitted with an uncertainty");
+    out.analysed = false;
+    return out;
+  }
+  const auto fits = plan(options);
+  out.fits.resize(fits.size());
+  run_tasks(fits.size(), options.fit.threads, [&](std::size_t k) {
+    out.fits[k] = fit_model(fits[k].first, out.motion, out.segmentation, observations, options.instruments, fits[k].second);
+  });
+  out.best = best_of(out.fits);
+  return out;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,186 @@
+#include "tribofit/report/csv.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <utility>
+
+#include "measures.hpp"
+#include "numbers.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/whole_file.hpp"
+
+namespace tribofit {
+namespace {
+
+/// Files of one folder that appear together: all are on the disc before the first gets its name.
+class WholeFolder {
+ public:
+  explicit WholeFolder(std::string path) : path_(std::move(path)) {
+    made_ = ::mkdir(path_.c_str(), 0777) == 0;
+    if (!made_ && errno != EEXIST) fail(std::strerror(errno));
+    struct stat status {};
+    if (::stat(path_.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) fail("it is a file, not a folder");
+  }
+  /// Leaves no folder behind that was made for nothing.
+  ~WholeFolder() {
+    files_.clear();
+    if (made_) ::rmdir(path_.c_str());  // does nothing once files have their names
+  }
+  WholeFolder(const WholeFolder&) = delete;
+  WholeFolder& operator=(const WholeFolder&) = delete;
+
+  WholeFile& add(const std::string& name) {
+    return *files_.emplace_back(std::make_unique<WholeFile>(path_ + "/" + name));
+  }
+  void commit() {
+    for (const auto& file : files_) file->finish();
+    for (const auto& file : files_) file->commit();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) {
+    throw InputError("the folder cannot be written: " + reason, "name a folder you may write to", {path_, 0, ""});
+  }
+
+  std::string path_;
+  bool made_ = false;
+  std::vector<std::unique_ptr<WholeFile>> files_;
+};
+
+/// One line of a CSV file, cell by cell. What is not known is an empty cell.
+class Row {
+ public:
+  explicit Row(WholeFile& file) : file_(file) {}
+  Row& operator<<(double value) {
+    separate();
+    if (std::isfinite(value)) fmt::format_to(std::back_inserter(line_), "{:.10g}", value);
+    return *this;
+  }
+  Row& operator<<(std::string_view text) {
+    separate();
+    line_.append(text);
+    return *this;
+  }
+  Row& count(std::size_t value) {
+    separate();
+    if (value != Membership::none) fmt::format_to(std::back_inserter(line_), "{}", value);
+    return *this;
+  }
+  void end() {
+    line_.push_back('\n');
+    file_.write({line_.data(), line_.size()});
+    line_.clear();
+    first_ = true;
+  }
+
+ private:
+  void separate() {
+    if (!first_) line_.push_back(',');
+    first_ = false;
+  }
+
+  WholeFile& file_;
+  bool first_ = true;
+  fmt::memory_buffer line_;
+};
+
+void write_samples(WholeFile& file, const Identification& result, const std::vector<double>& model,
+                   const Membership& member) {
+  const Motion& motion = result.motion;
+  std::vector<bool> slips(motion.size(), false);
+  for (const Cycle& cycle : result.segmentation.cycles) {
+    for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, motion.size()); ++i) slips[i] = true;
+  }
+  file.write("time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold\n");
+  Row row(file);
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const double v = motion.relative_velocity[i];
+    // Before the first and after the last cycle only the speed tells.
+    const bool outside = member.cycle[i] == Membership::none;
+    const bool slip = outside ? std::abs(v) > result.segmentation.slip_threshold : slips[i];
+    row << motion.time[i] << v / kMillimetre << motion.friction[i] << (model.empty() ? std::nan("") : model[i])
+        << (slip ? "slip" : "stick");
+    row.count(member.cycle[i]).count(member.fold[i]).end();
+  }
+}
+
+void write_cycles(WholeFile& file, const Identification& result, const Membership& member) {
+  const std::string unit = friction_unit(result.motion) == "N" ? "_N" : "";
+  const std::string slope = unit.empty() ? "_1_s" : "_N_s";
+  file.write(fmt::format(
+      "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,stick_time_s,slip_time_s,period_s,"
+      "break_away_friction{0},break_away_friction_std_error{0},stick_slope{1},static_friction{0},kinetic_friction{0},"
+      "peak_velocity_mm_s,plateau_velocity_mm_s,stick_complete,slip_complete,held_out_fold\n",
+      unit, slope));
+  Row row(file);
+  const std::vector<Cycle>& cycles = result.segmentation.cycles;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    const Cycle& c = cycles[k];
+    row.count(k) << static_cast<double>(c.direction) << c.break_away_time << c.break_away_time_std_error << c.restick_time
+                 << c.stick_time << c.slip_time << c.period << c.break_away_friction << c.break_away_friction_std_error
+                 << c.stick_slope << c.stick_maximum << c.slip_minimum << c.peak_velocity / kMillimetre
+                 << c.plateau_velocity / kMillimetre << (c.stick_complete ? "1" : "0") << (c.slip_complete ? "1" : "0");
+    row.count(c.slip.size() > 0 && c.slip.begin < member.fold.size() ? member.fold[c.slip.begin] : Membership::none).end();
+  }
+}
+
+void write_curves(WholeFile& file, const Identification& result) {
+  constexpr std::size_t kPoints = 201;
+  constexpr double kReach = 1.25;  // of the fastest slip, so that the extrapolation is seen as such
+  file.write("law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data\n");
+  Row row(file);
+  for (const Fit& fit : result.fits) {
+    std::vector<double> velocity(kPoints);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(kPoints - 1);
+    }
+    std::string effects;
+    for (const std::string& key : fit.model.effect_keys()) effects += (effects.empty() ? "" : "+") + key;
+    const Curve curve = law_curve(fit, velocity);
+    for (std::size_t i = 0; i < curve.velocity.size(); ++i) {
+      row << to_string(fit.model.law()) << effects << to_string(fit.protocol) << curve.velocity[i] / kMillimetre
+          << curve.mu[i] << curve.lower95[i] << curve.upper95[i] << (curve.velocity[i] <= fit.fastest ? "1" : "0");
+      row.end();
+    }
+  }
+}
+
+void write_errors(WholeFile& file, const Identification& result, const std::vector<double>& model,
+                  const Membership& member) {
+  const Motion& motion = result.motion;
+  file.write(fmt::format("time_s,relative_velocity_mm_s,residual{},relative_error_1,cycle,held_out_fold\n",
+                         friction_unit(motion) == "N" ? "_N" : "_1"));
+  Row row(file);
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!std::isfinite(model[i])) continue;
+    const double residual = motion.friction[i] - model[i];
+    row << motion.time[i] << motion.relative_velocity[i] / kMillimetre << residual
+        << std::abs(residual / motion.friction[i]);
+    row.count(member.cycle[i]).count(member.fold[i]).end();
+  }
+}
+
+}  // namespace
+
+void write_csv_folder(const std::string& folder, const Identification& result) {
+  WholeFolder files(folder);
+  const Membership member = membership(result);
+  std::vector<double> model;
+  if (!result.fits.empty()) model = predict(result.fits[result.best], result.motion, result.segmentation);
+  write_samples(files.add("samples.csv"), result, model, member);
+  write_cycles(files.add("cycles.csv"), result, member);
+  write_curves(files.add("curves.csv"), result);
+  write_errors(files.add("errors.csv"), result, model, member);
+  files.commit();
+}
+
+}  // namespace tribofit

@@ -1,0 +1,67 @@
+#include "measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribofit/fit/observations.hpp"
+#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace tribofit {
+
+Interval interval_of(const Measure& measure, std::size_t cycles) {
+  // Measures have no degrees of freedom of their own: as many as there are independent differences of cycles.
+  const double freedom = std::max(1.0, static_cast<double>(cycles) - 2);
+  const double half = t_quantile_95(freedom) * measure.std_error;
+  return {measure.value - half, measure.value + half};
+}
+
+std::size_t count_of_cycles(const Segmentation& segmentation) {
+  return static_cast<std::size_t>(std::count_if(segmentation.cycles.begin(), segmentation.cycles.end(),
+                                                [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
+}
+
+std::vector<LawComparison> compare_laws(const Identification& result) {
+  std::vector<LawComparison> comparisons;
+  if (result.fits.empty()) return comparisons;
+  const Fit& best = result.fits[result.best];
+  for (std::size_t k = 0; k < result.fits.size(); ++k) {
+    const Fit& other = result.fits[k];
+    const bool comparable = k != result.best && other.protocol == best.protocol && other.converged &&
+                            other.cycle_squares.size() == best.cycle_squares.size() && !best.cycle_squares.empty();
+    if (comparable) comparisons.push_back({result.best, k, compare_held_out(best, other)});
+  }
+  return comparisons;
+}
+
+Membership membership(const Identification& result) {
+  const std::vector<Cycle>& cycles = result.segmentation.cycles;
+  Membership out;
+  out.cycle.assign(result.motion.size(), Membership::none);
+  out.fold.assign(result.motion.size(), Membership::none);
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    for (const Span& span : {cycles[c].stick, cycles[c].slip}) {
+      const std::size_t end = std::min(span.end, out.cycle.size());
+      for (std::size_t i = span.begin; i < end; ++i) out.cycle[i] = c;
+    }
+  }
+  if (result.fits.empty()) return out;
+  const Fit& best = result.fits[result.best];
+  if (best.cycles == 0) return out;
+  // The unit of evidence is a slip, or a piece of one where nothing sticks; stick goes with the slip after it.
+  for (const Observations::Range& range : observe(result.motion, result.segmentation, {}, 1).slips) {
+    const std::size_t fold = best.fold_of(range.cycle);
+    std::size_t begin = range.samples.begin;
+    const std::size_t c = out.cycle[begin];
+    if (c != Membership::none && cycles[c].slip.begin == begin && cycles[c].stick.size() > 0) {
+      begin = cycles[c].stick.begin;
+    }
+    for (std::size_t i = begin; i < range.samples.end; ++i) {
+      if (out.cycle[i] == c) out.fold[i] = fold;
+    }
+  }
+  return out;
+}
+
+}  // namespace tribofit

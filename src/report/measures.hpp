@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/fit.hpp"
+#include "tribofit/segmentation/cycles.hpp"
+
+namespace tribofit {
+
+struct Identification;
+
+/// What several of the report's forms (terminal, JSON, CSV) need to know in the same way.
+
+struct Interval {
+  double lower = 0, upper = 0;
+};
+
+/// 95 % interval of a mean over cycles.
+Interval interval_of(const Measure& measure, std::size_t cycles);
+
+/// Cycles with a stick and a slip.
+std::size_t count_of_cycles(const Segmentation& segmentation);
+
+/// The best fit against another of the same protocol, on held-out cycles.
+struct LawComparison {
+  std::size_t first = 0, second = 0;  ///< indices of fits; `first` is the better one
+  Comparison comparison;
+};
+
+/// The best fit against each other fit of the same protocol; empty where there is nothing to compare.
+std::vector<LawComparison> compare_laws(const Identification& result);
+
+/// Cycle and held-out fold of every sample.
+struct Membership {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> cycle;  ///< index in Segmentation::cycles; none outside
+  std::vector<std::size_t> fold;   ///< in which the best fit held the sample's cycle out; none where it was not fitted
+};
+Membership membership(const Identification& result);
+
+}  // namespace tribofit

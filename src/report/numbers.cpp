@@ -1,0 +1,148 @@
+#include "numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tribofit {
+namespace {
+
+constexpr int kMostPlaces = 8;
+
+/// Power of ten of the first digit, after rounding to `digits` digits (0.0996 to two digits is 0.10).
+int leading_power(double value, int digits) {
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const std::string text = fmt::format("{:.{}e}", std::abs(value), digits - 1);
+  return std::stoi(text.substr(text.find('e') + 1));
+}
+
+/// Columns a text takes: bytes that continue a UTF-8 character take none.
+std::size_t columns_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+}  // namespace
+
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  if (value == 0) return "0";
+  const int power = leading_power(value, digits);
+  if (power < -4 || power > 6) return fmt::format("{:.{}e}", value, digits - 1);
+  return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - power));
+}
+
+std::string brief(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+
+int places_for(double std_error) {
+  if (!std::isfinite(std_error) || std_error <= 0) return kMostPlaces;
+  return 1 - leading_power(std_error, 2);
+}
+
+std::string fixed(double value, int places) {
+  if (!std::isfinite(value)) return "-";
+  if (places >= 0) return fmt::format("{:.{}f}", value, std::min(places, 12));
+  const double step = std::pow(10.0, -places);
+  return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+std::string with_error(double value, double std_error) {
+  if (!std::isfinite(value)) return "-";
+  if (!std::isfinite(std_error) || std_error <= 0) return significant(value, 4);
+  constexpr double kAbsurd = 1e-6;  // more than six digits of a measured value mislead
+  if (std_error < kAbsurd * std::abs(value)) return significant(value, 6) + " +/- " + significant(std_error, 1);
+  const int places = places_for(std_error);
+  return fixed(value, places) + " +/- " + fixed(std_error, places);
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "-";
+  const double value = 100 * share;
+  const double size = std::abs(value);
+  if (size >= 10) return fmt::format("{:.0f} %", value);
+  if (size >= 1) return fmt::format("{:.1f} %", value);
+  if (size >= 0.01) return fmt::format("{:.2f} %", value);
+  if (size >= 0.001) return fmt::format("{:.3f} %", value);
+  return value == 0 ? "0 %" : "< 0.001 %";
+}
+
+std::string share_text(double share) {
+  if (!std::isfinite(share)) return "-";
+  const int decimals = share > 0.9995 ? 2 : 1;
+  const double step = std::pow(10.0, -decimals);
+  return fmt::format("{:.{}f} %", std::floor(100 * share / step) * step, share >= 1 ? 0 : decimals);
+}
+
+std::string grouped(std::size_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, " ");
+  return text;
+}
+
+std::string rate_text(double hertz) {
+  if (!std::isfinite(hertz)) return "-";
+  return hertz >= 1000 ? fmt::format("{:.4g} kHz", hertz / 1000) : fmt::format("{:.4g} Hz", hertz);
+}
+
+std::string friction_unit(const Motion& motion) { return motion.friction_kind == FrictionKind::force ? "N" : "1"; }
+
+std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
+  const bool level = parameter.effect.empty() && parameter.parameter.unit == "1";
+  return level ? friction_unit(motion) : parameter.parameter.unit;
+}
+
+double shown(const FitParameter& parameter, double si_value) { return si_value / parameter.parameter.si; }
+
+Table::Table(std::vector<std::string> header, std::vector<bool> left) : left_(std::move(left)) {
+  left_.resize(header.size(), false);
+  left_.front() = true;
+  rows_.push_back(std::move(header));
+}
+
+void Table::add(std::vector<std::string> row) {
+  row.resize(rows_.front().size());
+  rows_.push_back(std::move(row));
+}
+
+std::string Table::text(std::size_t indent, std::string_view header_on, std::string_view header_off) const {
+  std::vector<std::size_t> width(rows_.front().size(), 0);
+  for (const auto& row : rows_) {
+    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], columns_of(row[k]));
+  }
+  std::string result;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    std::string line(indent, ' ');
+    for (std::size_t k = 0; k < rows_[i].size(); ++k) {
+      const std::string gap(width[k] - columns_of(rows_[i][k]), ' ');
+      if (k > 0) line += "  ";
+      line += left_[k] ? rows_[i][k] + gap : gap + rows_[i][k];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    result += i == 0 ? std::string(header_on) + line + std::string(header_off) : line;
+    result += '\n';
+  }
+  return result;
+}
+
+std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent) {
+  std::string result;
+  std::size_t column = indent;
+  while (!sentence.empty()) {
+    const std::size_t blank = sentence.find(' ');
+    const std::string_view word = sentence.substr(0, blank);
+    const std::size_t length = columns_of(word);
+    if (column > indent) {
+      const bool fits = column + 1 + length <= width;
+      result += fits ? std::string(" ") : "\n" + std::string(indent, ' ');
+      column = fits ? column + 1 : indent;
+    }
+    result += word;
+    column += length;
+    sentence.remove_prefix(blank == std::string_view::npos ? sentence.size() : blank + 1);
+  }
+  return result;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,154 @@
+#include "tribofit/report/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "measures.hpp"
+#include "numbers.hpp"
+#include "style.hpp"
+#include "terminal_fits.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/version.hpp"
+#include "verdict.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "  name      text", the text broken to the width and indented behind the name.
+std::string item(const Style& style, std::string_view name, std::string_view text) {
+  constexpr std::size_t kNameWidth = 18;
+  const std::string head = fmt::format("  {:<{}}", name, kNameWidth);
+  return head + wrapped(text, style.width, kNameWidth + 2) + "\n";
+}
+
+std::string trace_lines(const Identification& r, const Style& style) {
+  std::string text = fmt::format("{}tribofit {}{}  {}\n", style.bold, version, style.off, r.path);
+  std::string line = fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
+  if (r.motion.trimmed > 0) {
+    line += fmt::format("; the first {} s (run-up) left out",
+                        significant(static_cast<double>(r.motion.trimmed) * r.motion.step, 3));
+  }
+  text += "  " + line + "\n";
+  const std::vector<std::string>& elsewhere = r.segmentation.notes;  // they stand with the stick-slip
+  for (const std::string& note : r.notes) {
+    if (std::find(elsewhere.begin(), elsewhere.end(), note) != elsewhere.end()) continue;
+    text += "  " + wrapped(note, style.width, 2) + "\n";
+  }
+  return text;
+}
+
+/// "15 mm (command line)", or every step's own where they differ.
+std::string condition(const Motion& motion, Condition Conditions::*which, double unit, std::string_view name) {
+  const Condition& whole = motion.conditions.*which;
+  const auto with_source = [](std::string text, const std::string& source) {
+    return source.empty() ? text : text + " (" + source + ")";
+  };
+  if (whole.known()) return with_source(brief(whole.value / unit) + " " + std::string(name), whole.source);
+  std::string list;
+  std::string source;
+  for (const Step& step : motion.steps) {
+    const Condition& own = step.conditions.*which;
+    if (!own.known()) continue;
+    list += (list.empty() ? "" : ", ") + brief(own.value / unit);
+    source = own.source;
+  }
+  if (list.empty()) return "not known";
+  return with_source(list + " " + std::string(name) + " by step", source);
+}
+
+std::string speed_text(const Motion& motion) {
+  if (motion.disc_speed.empty()) return condition(motion, &Conditions::speed, kRpm, "rpm");
+  const auto [low, high] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
+  return fmt::format("{} to {} rpm (recorded)", brief(*low / kRpm), brief(*high / kRpm));
+}
+
+std::string condition_lines(const Identification& r, const Style& style) {
+  const Motion& m = r.motion;
+  std::string text = style.heading("Conditions");
+  text += item(style, "radius", condition(m, &Conditions::radius, kMillimetre, "mm"));
+  text += item(style, "disc speed", speed_text(m));
+  text += item(style, "load", condition(m, &Conditions::load, 1, "N"));
+  if (m.friction_kind == FrictionKind::force) {
+    text += item(style, "friction", "is a force in newtons: no normal force is known");
+  }
+  return text;
+}
+
+std::string health_lines(const Identification& r, const Style& style) {
+  std::string text = style.heading("Health");
+  std::size_t found = 0;
+  for (const HealthItem& check : r.motion.health) {
+    if (check.status == HealthItem::Status::ok) continue;
+    ++found;
+    const bool problem = check.status == HealthItem::Status::problem;
+    const std::string_view colour = problem ? style.red : style.yellow;
+    const std::string head = fmt::format("  {}{:<8}{} {:<16} ", colour, problem ? "problem" : "warning", style.off, check.check);
+    text += head + wrapped(check.message, style.width, 28) + "\n";
+  }
+  if (found == 0) text += fmt::format("  no problems found ({} checks)\n", r.motion.health.size());
+  return text;
+}
+
+std::string motion_sentence(const Segmentation& s) {
+  switch (s.kind) {
+    case MotionKind::always_slipping: return "the block never sticks: no cycles, friction is fitted over the whole slip";
+    case MotionKind::always_sticking: return "the block never slips: there is no sliding friction to fit";
+    case MotionKind::stick_slip: break;
+  }
+  return fmt::format("{} with a stick and a slip", count_of_cycles(s));
+}
+
+std::string stick_slip_lines(const Identification& r, const Style& style) {
+  const Segmentation& s = r.segmentation;
+  std::string text = style.heading("Stick-slip");
+  text += item(style, "cycles", motion_sentence(s));
+  const auto measure = [&](std::string_view name, const Measure& m, double unit, std::string_view unit_name,
+                           std::string_view more = "") {
+    if (!std::isfinite(m.value)) return;
+    text += item(style, name, fmt::format("{} {}{}", with_error(m.value / unit, m.std_error / unit), unit_name, more));
+  };
+  if (s.kind == MotionKind::stick_slip) {
+    measure("frequency", s.frequency, 1, "Hz", " (+/- is one standard error, here and below)");
+    const SpectralPeak& peak = r.spectral_peak;
+    if (peak.frequency > 0) {
+      text += item(style, "spectrum of v_r",
+                   fmt::format("peak at {} Hz; a plain FFT would say {} Hz, in bins of {} Hz", significant(peak.frequency, 4),
+                               significant(peak.bin_frequency, 4), significant(peak.bin_width, 3)));
+    }
+    measure("amplitude of v_r", s.amplitude, kMillimetre, "mm/s");
+    measure("stick time", s.stick_time, kMillisecond, "ms");
+    measure("slip time", s.slip_time, kMillisecond, "ms");
+  }
+  if (s.rms_velocity > 0) text += item(style, "RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
+  for (const std::string& note : s.notes) text += item(style, "note", note);
+  return text;
+}
+
+std::string ending(const Identification& r, const TerminalOptions& options, const Style& style) {
+  std::string text = style.heading("Result");
+  for (const std::string& warning : r.warnings) {
+    text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
+  }
+  text += "  " + wrapped(verdict(r), style.width, 2) + "\n";
+  const Suggestion next = next_command(r, options);
+  text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n  " + next.command + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string render_terminal(const Identification& result, const TerminalOptions& options) {
+  const Style style(options.colour, options.width);
+  std::string text = trace_lines(result, style);
+  text += condition_lines(result, style);
+  text += health_lines(result, style);
+  text += stick_slip_lines(result, style);
+  text += fit_lines(result, options, style);
+  text += ending(result, options, style);
+  return text;
+}
+
+}  // namespace tribofit

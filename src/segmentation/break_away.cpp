@@ -1,0 +1,371 @@
+#include "break_away.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "phases.hpp"
+
+namespace tribofit::segmentation {
+namespace {
+
+/// Samples around one break-away, in units of samples and m/s above the plateau, in the slip's direction.
+struct Window {
+  std::size_t begin = 0;        // sample of the first value
+  std::vector<double> v;        // above the local plateau
+  std::vector<double> squares;  // squares[i]: sum of v^2 before i, what is left over if nothing has happened yet
+  double t0 = 0;                // break-away, in samples from `begin`
+  double crossing = 0;          // where the velocity crosses the end of the fit
+};
+
+/// The growth common to all break-aways, time in samples: A, lambda, B.
+struct Growth {
+  double a = 0, lambda = 0, b = 0;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// An onset with the level of its own stick: creep of the contact, a ripple of the disc or a wrong radius is no slip.
+struct Rise {
+  Onset onset;
+  double rest = 0;  // v above the plateau in the third quarter of the stick [m/s]
+};
+
+double above_rest(const Motion& m, const Rise& r, std::size_t i) {
+  return r.onset.direction * above_plateau(m, i) - r.rest;
+}
+
+Rise rise_of(const Motion& m, const Onset& onset) {
+  Rise rise{onset, 0};
+  const std::size_t n = onset.slip - onset.stick_begin, begin = onset.stick_begin + n / 2, end = begin + n / 4;
+  if (n < 32) return rise;
+  for (std::size_t i = begin; i < end; ++i) rise.rest += above_rest(m, {onset, 0}, i);
+  rise.rest /= static_cast<double>(end - begin);
+  return rise;
+}
+
+// First sample above `level` of the rise that leads to the slip.
+std::size_t rises_above(const Motion& m, const Rise& r, double level) {
+  std::size_t i = r.onset.slip;
+  while (i > r.onset.stick_begin && above_rest(m, r, i - 1) > level) --i;
+  return i;
+}
+
+// Time constant of the growth [samples] from the time between two levels, as if it were exponential.
+double growth_time(const Motion& m, const std::vector<Rise>& rises, double level) {
+  std::vector<double> times;
+  for (const Rise& r : rises) {
+    const std::size_t low = rises_above(m, r, level);
+    std::size_t high = low;
+    while (high + 1 < m.size() && above_rest(m, r, high) < 3 * level) ++high;
+    times.push_back(static_cast<double>(high - low) / std::log(3.0));
+  }
+  return std::max(0.5, median(std::move(times)));
+}
+
+Window window_of(const Motion& m, const Rise& r, double level, double growth) {
+  Window w;
+  const std::size_t crossing = rises_above(m, r, level);
+  // Eight time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp onset.
+  const auto stick = static_cast<double>(r.onset.slip - r.onset.stick_begin);
+  const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick / 4))));
+  w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
+  // In a short stick the window may reach back into the end of the slip before.
+  while (w.begin < crossing && above_rest(m, r, w.begin) > level) ++w.begin;
+  w.squares.push_back(0);
+  for (std::size_t i = w.begin; i <= crossing; ++i) {
+    w.v.push_back(above_rest(m, r, i));
+    w.squares.push_back(w.squares.back() + w.v.back() * w.v.back());
+  }
+  w.crossing = static_cast<double>(crossing - w.begin);
+  return w;
+}
+
+// Residuals of a window and their derivatives, summed into normal equations. The exponential runs by recurrence.
+struct Sums {
+  double rss = 0, h = 0, g = 0;                      // t0
+  Eigen::Vector3d mixed = Eigen::Vector3d::Zero();   // t0 with (log A, log lambda, B)
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+template <bool with_shared>
+Sums sums_of(const Window& w, const Growth& growth, double t0) {
+  Sums s;
+  const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(t0)));
+  s.rss = w.squares[std::min(first, w.v.size())];
+  const double factor = std::exp(growth.lambda);
+  double e = std::exp(growth.lambda * (static_cast<double>(first) - t0));
+  for (std::size_t i = first; i < w.v.size(); ++i, e *= factor) {
+    const double x = growth.lambda * (static_cast<double>(i) - t0);
+    const double shape = e - 1 - x;
+    const double r = w.v[i] - growth.a * shape - growth.b * (e - 1);
+    const double slope = growth.a * (e - 1) + growth.b * e;  // dv/dx
+    const double d = -growth.lambda * slope;                 // dv/dt0
+    s.rss += r * r;
+    s.h += d * d;
+    s.g += d * r;
+    if constexpr (with_shared) {
+      const Eigen::Vector3d j(growth.a * shape, x * slope, e - 1);
+      s.mixed += d * j;
+      s.shared += j * j.transpose();
+      s.gradient += j * r;
+    }
+  }
+  return s;
+}
+
+double fit_time(const Window& w, const Growth& growth, double start) {
+  double t0 = std::clamp(start, -2.0, w.crossing);
+  Sums here = sums_of<false>(w, growth, t0);
+  for (int k = 0; k < 20 && here.h > 0; ++k) {
+    double step = std::clamp(here.g / here.h, -5 / growth.lambda, 5 / growth.lambda);
+    bool better = false;
+    for (int half = 0; half < 6 && !better; ++half, step *= 0.5) {
+      const double next = std::clamp(t0 + step, -2.0, w.crossing);
+      const Sums there = sums_of<false>(w, growth, next);
+      if (there.rss < here.rss) t0 = next, here = there, better = true;
+    }
+    if (!better || std::abs(step) < 1e-3) break;
+  }
+  return t0;
+}
+
+struct PooledFit {
+  Growth growth;
+  double rss = std::numeric_limits<double>::infinity();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B), for unit variance
+  std::size_t samples = 0;
+};
+
+// Levenberg-Marquardt on the shared parameters, each window's t0 eliminated.
+PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
+  PooledFit fit;
+  fit.growth = growth;
+  double damping = 1e-3;
+  const auto total = [&](const Growth& g, const std::vector<double>& t0) {
+    double rss = 0;
+    for (std::size_t i = 0; i < windows.size(); ++i) rss += sums_of<false>(windows[i], g, t0[i]).rss;
+    return rss;
+  };
+  std::vector<double> times;
+  for (const Window& w : windows) times.push_back(w.t0), fit.samples += w.v.size();
+  fit.rss = total(growth, times);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    std::vector<Sums> all;
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      all.push_back(sums_of<true>(windows[i], fit.growth, times[i]));
+      const Sums& s = all.back();
+      hessian += s.shared;
+      gradient += s.gradient;
+      if (s.h <= 0) continue;
+      hessian -= s.mixed * s.mixed.transpose() / s.h;
+      gradient -= s.mixed * (s.g / s.h);
+    }
+    if (!with_jump) {
+      hessian.row(2).setZero(), hessian.col(2).setZero();
+      hessian(2, 2) = 1, gradient(2) = 0;
+    }
+    fit.information = hessian;
+    bool better = false;
+    double gain = 0;
+    for (int attempt = 0; attempt < 8 && !better; ++attempt) {
+      Eigen::Matrix3d damped = hessian;
+      damped.diagonal() *= 1 + damping;
+      const Eigen::Vector3d step = damped.ldlt().solve(gradient);
+      Growth next = fit.growth;
+      next.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
+      next.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
+      next.b = with_jump ? std::max(0.0, next.b + step(2)) : 0;
+      std::vector<double> moved = times;
+      for (std::size_t i = 0; i < windows.size(); ++i) {
+        const Sums& s = all[i];
+        if (s.h > 0) moved[i] += (s.g - s.mixed.dot(step)) / s.h;
+        moved[i] = std::clamp(moved[i], -2.0, windows[i].crossing);
+      }
+      const double rss = std::isfinite(step.sum()) ? total(next, moved) : HUGE_VAL;
+      if (rss < fit.rss) {
+        gain = fit.rss - rss;
+        fit.growth = next, fit.rss = rss, times = std::move(moved), better = true;
+        damping = std::max(1e-6, damping * 0.2);
+      } else {
+        damping = std::min(1e6, 8 * (damping + 1e-4));
+      }
+    }
+    if (!better || gain < 1e-7 * fit.rss) break;
+  }
+  for (std::size_t i = 0; i < windows.size(); ++i) windows[i].t0 = times[i];
+  return fit;
+}
+
+// Factor by which coloured noise enlarges a variance: (1+rho)/(1-rho) of the lag-one correlation before break-away.
+struct Noise {
+  double variance = 0, inflation = 1;
+  double effective() const { return variance * inflation; }
+};
+
+Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
+  double squares = 0, products = 0, count = 0;
+  for (const Window& w : windows) {
+    double previous = 0;
+    for (std::size_t i = 0; i < w.v.size(); ++i) {
+      const double t = static_cast<double>(i) - w.t0;
+      const double x = t > 0 ? growth.lambda * t : 0;
+      const double r = w.v[i] - growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x);
+      squares += r * r, products += r * previous, count += 1;
+      previous = r;
+    }
+  }
+  if (squares <= 0) return {};
+  const double rho = std::clamp(products / squares, 0.0, 0.98);
+  return {squares / count, (1 + rho) / (1 - rho)};
+}
+
+}  // namespace
+
+std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vector<Onset>& onsets, double peak) {
+  std::vector<BreakAway> result;
+  if (onsets.empty()) return result;
+  const double noise = motion.velocity_noise;
+  const double level = std::max({0.01 * peak, std::min(25 * noise, 0.03 * peak), std::min(8 * noise, 0.06 * peak)});
+  std::vector<Rise> rises;
+  for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
+  const double growth = growth_time(motion, rises, level);
+  constexpr std::size_t most_pooled = 96;
+  const std::size_t stride = (rises.size() + most_pooled - 1) / most_pooled;
+  const Growth start{level / 4.4, 1 / growth, 0};  // v reaches the end of the fit at x = 2
+  std::vector<Window> pool;
+  for (std::size_t i = 0; i < rises.size(); i += stride) {
+    pool.push_back(window_of(motion, rises[i], level, growth));
+    pool.back().t0 = std::max(0.0, pool.back().crossing - 2 * growth);
+  }
+  std::vector<Window> with_jump_pool = pool;
+  PooledFit fit = fit_growth(pool, start, false);
+  const Growth jump_start{fit.growth.a, fit.growth.lambda, 0.1 * level};
+  PooledFit jump = fit_growth(with_jump_pool, jump_start, true);
+  Noise colour = noise_of(pool, fit.growth);
+  // A jump must earn its place against the noise, coloured as it may be.
+  if (jump.rss < fit.rss && fit.rss - jump.rss > 40 * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
+      jump.rss < 0.9 * fit.rss) {
+    fit = jump;
+    colour = noise_of(with_jump_pool, fit.growth);
+  }
+  // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a factor
+  // of three on the rates, a jump of the size of the window.
+  const double variance = std::max(colour.effective(), 1e-12 * level * level);
+  const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
+  const Eigen::Matrix3d information = fit.information / variance + Eigen::Matrix3d(plausible.asDiagonal());
+  Eigen::Matrix3d covariance = information.inverse();
+  if (fit.growth.b == 0) covariance.row(2).setZero(), covariance.col(2).setZero();
+  std::vector<Window> windows;
+  std::vector<double> gradualness;
+  for (const Rise& rise : rises) {
+    Window w = window_of(motion, rise, level, growth);
+    w.t0 = fit_time(w, fit.growth, w.crossing - std::log1p(level / (fit.growth.a + fit.growth.b)) / fit.growth.lambda);
+    const double crossing = static_cast<double>(w.begin) + w.crossing;
+    gradualness.push_back((w.crossing - w.t0) / std::max(1.0, static_cast<double>(rise.onset.slip_end) - crossing));
+    windows.push_back(std::move(w));
+  }
+  // A contact that creeps has no sharp onset: what leads up to the slip belongs to the stick.
+  const bool creeps = median(std::move(gradualness)) > 0.3;
+  for (std::size_t k = 0; k < rises.size(); ++k) {
+    const Rise& rise = rises[k];
+    Window& w = windows[k];
+    const Sums s = sums_of<true>(w, fit.growth, w.t0);
+    double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
+    if (creeps) {
+      w.t0 = w.crossing;
+      error = std::min(error, growth);
+    } else if (w.t0 < w.crossing - 0.5 && s.h > 0) {
+      const Eigen::Vector3d lever = s.mixed / s.h;
+      const double own = variance / s.h + std::max(0.0, lever.dot(covariance * lever));
+      error = std::min(error, std::sqrt(own + 1.0 / 144));  // at best a fraction of a sample
+    } else {
+      // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
+      std::size_t i = w.v.size() - 1;
+      while (i > 0 && w.v[i] > 0.25 * level) --i;
+      w.t0 = static_cast<double>(i);
+      error = std::max(1.0, w.crossing - w.t0);
+    }
+    const double index = std::max(0.0, static_cast<double>(w.begin) + w.t0);
+    const std::size_t whole = std::min(static_cast<std::size_t>(index), motion.size() - 1);
+    const double time = motion.time[whole] + (index - static_cast<double>(whole)) * motion.step;
+    result.push_back({std::max(time, motion.time[rise.onset.stick_begin]), motion.step * error});
+  }
+  return result;
+}
+
+double locate_restick(const Motion& motion, Span slip, std::size_t next, int direction, double peak) {
+  const double noise = motion.velocity_noise;
+  const double low = std::min(4 * noise, 0.02 * peak), high = std::max({0.02 * peak, std::min(25 * noise, 0.06 * peak)});
+  const auto u = [&](std::size_t i) { return direction * above_plateau(motion, i); };
+  // First sample on the plateau, or the slowest where the motion turns before it gets there.
+  std::size_t last = slip.end;
+  for (std::size_t i = slip.end; i < std::min(next, slip.end + 64) && u(last) > low; ++i) last = u(i) < u(last) ? i : last;
+  std::size_t first = last;
+  while (first > slip.begin && u(first - 1) < high) --first;
+  if (last - first < 2) {  // steeper than the sampling: the last two samples of the slip point to the plateau
+    if (last < slip.begin + 2) return motion.time[last];
+    const double steepness = u(last - 2) - u(last - 1);
+    const double part = steepness > 0 ? std::clamp(u(last - 1) / steepness, 0.0, 1.0) : 0.5;
+    return motion.time[last - 1] + part * motion.step;
+  }
+  const auto n = static_cast<double>(last - first);
+  double sum = 0, moment = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    sum += u(i);
+    moment += (static_cast<double>(i - first) - 0.5 * (n - 1)) * u(i);
+  }
+  const double slope = moment * 12 / (n * (n * n - 1)), mean = sum / n;
+  const double where = slope < 0 ? 0.5 * (n - 1) - mean / slope : n;
+  return motion.time[first] + std::clamp(where, 0.0, n + 1) * motion.step;
+}
+
+StickFriction friction_at(const Motion& motion, Span stick, double time, int direction) {
+  StickFriction result;
+  const std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
+  std::size_t end = std::min(stick.end, motion.size());
+  while (end > begin && motion.time[end - 1] >= time - motion.step) --end;
+  if (end < begin + 3) {
+    result.value = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");
+    result.std_error = result.slope = std::nan("");
+    return result;
+  }
+  // Orthogonal polynomials on equally spaced samples: constant, line, parabola.
+  const auto n = static_cast<double>(end - begin);
+  const double centre = 0.5 * (n - 1), shift = (n * n - 1) / 12;
+  double s0 = 0, s1 = 0, s2 = 0, n2 = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double x = static_cast<double>(i - begin) - centre, p = x * x - shift, y = direction * motion.friction[i];
+    s0 += y, s1 += x * y, s2 += p * y, n2 += p * p;
+  }
+  const double mean = s0 / n, slope = s1 / (n * shift), bend = n > 3 ? s2 / n2 : 0;
+  double squares = 0, products = 0, previous = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double x = static_cast<double>(i - begin) - centre;
+    const double r = direction * motion.friction[i] - mean - slope * x - bend * (x * x - shift);
+    squares += r * r, products += r * previous, previous = r;
+  }
+  const double rho = squares > 0 ? std::clamp(products / squares, 0.0, 0.98) : 0;
+  const double variance = squares / std::max(1.0, n - 3) * (1 + rho) / (1 - rho);
+  const double x = (time - motion.time[begin]) / motion.step - centre;
+  result.value = mean + slope * x;
+  double factor = 1 / n + x * x / (n * shift);
+  if (n > 20 && bend * bend * n2 > 25 * variance) {
+    const double p = x * x - shift;
+    result.value += bend * p;
+    factor += p * p / n2;
+  }
+  result.std_error = std::sqrt(variance * factor);
+  result.slope = slope / motion.step;
+  return result;
+}
+
+}  // namespace tribofit::segmentation

@@ -1,0 +1,226 @@
+#include "tribofit/segmentation/cycles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "../kinematics/reductions.hpp"
+#include "break_away.hpp"
+#include "measures.hpp"
+#include "phases.hpp"
+
+namespace tribofit {
+namespace {
+
+using segmentation::BreakAway;
+using segmentation::Onset;
+using segmentation::RawSlip;
+using segmentation::Thresholds;
+
+constexpr std::size_t least_stick = 3;  // samples
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+// Index of the first sample later than `time`, near `guess`.
+std::size_t first_after(const std::vector<double>& time, double t, std::size_t guess) {
+  std::size_t i = std::min(guess, time.size());
+  while (i > 0 && time[i - 1] > t) --i;
+  while (i < time.size() && time[i] <= t) ++i;
+  return i;
+}
+
+Cycle blank_cycle(const RawSlip& slip) {
+  Cycle c;
+  c.direction = slip.direction;
+  c.slip = slip.samples;
+  c.slip_complete = false;
+  c.break_away_time = c.break_away_time_std_error = c.restick_time = unknown;
+  c.stick_time = c.slip_time = c.period = unknown;
+  c.break_away_friction = c.break_away_friction_std_error = c.stick_slope = c.stick_maximum = unknown;
+  c.slip_minimum = c.peak_velocity = c.plateau_velocity = unknown;
+  return c;
+}
+
+/// Stick before each slip: where it begins, and whether there is one at all.
+std::vector<Cycle> phases(const Motion& motion, const std::vector<RawSlip>& slips, const Thresholds& t) {
+  std::vector<Cycle> cycles;
+  std::vector<Onset> onsets;
+  std::vector<std::size_t> with_stick;
+  std::size_t stick_follows = 0;
+  for (std::size_t k = 0; k < slips.size(); ++k) {
+    const RawSlip& slip = slips[k];
+    Cycle c = blank_cycle(slip);
+    std::size_t after = slip.samples.end;  // first sample of what follows the slip
+    if (slip.ends_within) {
+      const std::size_t next = k + 1 < slips.size() ? slips[k + 1].samples.begin : motion.size();
+      c.restick_time = segmentation::locate_restick(motion, slip.samples, next, slip.direction, t.peak);
+      // Friction jumps at re-stick: a sample that may lie on either side of it belongs to neither phase.
+      const double half = 0.5 * motion.step;
+      c.slip.end = std::max(slip.samples.begin + 1, first_after(motion.time, c.restick_time - half, slip.samples.end));
+      after = std::max(c.slip.end, first_after(motion.time, c.restick_time + half, slip.samples.end));
+    }
+    std::size_t stick_begin = 0;
+    bool sticks = slip.begins_within && motion.velocity_kind != VelocityKind::fixed_block;
+    if (k > 0) {
+      stick_begin = stick_follows;
+      sticks = sticks && !segmentation::only_reverses(motion, slips[k - 1], slip, t);
+      // Where the motion only reverses, the slip before has not ended in stick.
+      cycles.back().slip_complete = slips[k - 1].ends_within && sticks;
+      if (!sticks) cycles.back().restick_time = unknown;
+    }
+    if (sticks && stick_begin < slip.samples.begin) {
+      c.stick = {stick_begin, slip.samples.begin};
+      c.stick_complete = k > 0;
+      with_stick.push_back(k);
+      onsets.push_back({stick_begin, slip.samples.begin, c.slip.end, slip.direction});
+    }
+    cycles.push_back(c);
+    stick_follows = after;
+  }
+  if (!cycles.empty()) {
+    const bool ends = slips.back().ends_within && motion.velocity_kind != VelocityKind::fixed_block;
+    cycles.back().slip_complete = ends;
+    if (!ends) cycles.back().restick_time = unknown;
+  }
+  const std::vector<BreakAway> found = segmentation::locate_break_aways(motion, onsets, t.peak);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    Cycle& c = cycles[with_stick[k]];
+    const std::size_t first = std::max(c.stick.begin, first_after(motion.time, found[k].time, c.stick.end));
+    c.stick.end = c.slip.begin = std::min(first, c.slip.end - 1);
+    if (c.stick.size() < least_stick) {  // the velocity only turns near zero
+      c.stick = {};
+      c.stick_complete = false;
+      if (with_stick[k] == 0) continue;
+      Cycle& before = cycles[with_stick[k] - 1];
+      before.slip_complete = false;
+      before.restick_time = unknown;
+      continue;
+    }
+    c.break_away_time = found[k].time;
+    c.break_away_time_std_error = found[k].std_error;
+  }
+  return cycles;
+}
+
+void measure(const Motion& motion, std::vector<Cycle>& cycles) {
+  const std::span<const double> friction(motion.friction), velocity(motion.relative_velocity);
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    Cycle& c = cycles[k];
+    const bool has_stick = c.stick.size() > 0 && c.break_away_time == c.break_away_time;
+    if (has_stick) {
+      const auto [low, high] = kinematics::extremes(friction.subspan(c.stick.begin, c.stick.size()));
+      c.stick_maximum = c.direction > 0 ? high : -low;
+      const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
+      c.plateau_velocity = kinematics::sum_of(stick, [](double v) { return v; }) / static_cast<double>(stick.size());
+      const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
+      c.break_away_friction = at_break.value;
+      c.break_away_friction_std_error = at_break.std_error;
+      c.stick_slope = at_break.slope;
+      if (c.stick_complete) c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
+    }
+    const auto [weakest, strongest] = kinematics::extremes(friction.subspan(c.slip.begin, c.slip.size()));
+    const auto [slowest, fastest] = kinematics::extremes(velocity.subspan(c.slip.begin, c.slip.size()));
+    c.slip_minimum = c.direction > 0 ? weakest : -strongest;
+    c.peak_velocity = c.direction > 0 ? fastest : -slowest;
+    if (c.slip_complete) c.slip_time = c.restick_time - c.break_away_time;
+    if (k + 1 < cycles.size() && cycles[k + 1].direction == c.direction) {
+      c.period = cycles[k + 1].break_away_time - c.break_away_time;
+    }
+  }
+}
+
+// A record that never sticks: one slip per direction and step.
+std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawSlip>& slips) {
+  std::vector<RawSlip> parts;
+  for (const RawSlip& slip : slips) {
+    std::size_t begin = slip.samples.begin;
+    for (const Step& step : motion.steps) {
+      if (step.end <= begin || step.begin >= slip.samples.end) continue;
+      RawSlip part = slip;
+      part.samples = {begin, std::min(step.end, slip.samples.end)};
+      begin = part.samples.end;
+      if (part.samples.size() > 0) parts.push_back(part);
+    }
+    if (begin < slip.samples.end) {
+      RawSlip part = slip;
+      part.samples.begin = begin;
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+double rms_block_velocity(const Motion& motion) {
+  double squares = 0;
+  const std::size_t n = motion.size();
+  if (motion.disc_velocity.empty()) {
+    const double disc = motion.constant_disc_velocity;
+    squares = kinematics::sum_of(motion.relative_velocity, [disc](double v) { return (disc - v) * (disc - v); });
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double v = motion.disc_velocity[i] - motion.relative_velocity[i];
+      squares += v * v;
+    }
+  }
+  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
+}
+
+void summarise(Segmentation& result) {
+  std::vector<double> peaks, sticks, slips, periods;
+  for (const Cycle& c : result.cycles) {
+    if (c.slip_complete) peaks.push_back(c.peak_velocity);
+    sticks.push_back(c.stick_time);
+    slips.push_back(c.slip_time);
+    periods.push_back(c.period);
+  }
+  if (peaks.empty()) {
+    for (const Cycle& c : result.cycles) peaks.push_back(c.peak_velocity);
+  }
+  result.frequency = segmentation::frequency_of(periods);
+  result.amplitude = segmentation::mean_over_cycles(std::move(peaks));
+  result.stick_time = segmentation::mean_over_cycles(std::move(sticks));
+  result.slip_time = segmentation::mean_over_cycles(std::move(slips));
+}
+
+void add_notes(Segmentation& result) {
+  const auto& cycles = result.cycles;
+  if (result.kind == MotionKind::always_sticking) result.notes.push_back("the record never slips");
+  if (result.kind == MotionKind::always_slipping) result.notes.push_back("the record never sticks");
+  if (result.kind != MotionKind::stick_slip) return;
+  if (cycles.front().stick.size() == 0) result.notes.push_back("the record begins in slip: the first break-away is not in it");
+  if (!cycles.back().slip_complete) result.notes.push_back("the last slip is cut off by the end of the record");
+  std::size_t complete = 0;
+  for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
+  if (complete < 3) result.notes.push_back(fmt::format("only {} complete cycles", complete));
+}
+
+}  // namespace
+
+Segmentation find_cycles(const Motion& motion) {
+  Segmentation result;
+  const Thresholds t = segmentation::thresholds_of(motion);
+  result.slip_threshold = t.slip;
+  result.stick_threshold = t.stick;
+  result.rms_velocity = rms_block_velocity(motion);
+  const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
+  result.cycles = phases(motion, slips, t);
+  const auto& cycles = result.cycles;
+  const bool ends_in_stick = !cycles.empty() && cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size();
+  const bool any_stick =
+      ends_in_stick || std::any_of(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
+  result.kind = slips.empty() ? MotionKind::always_sticking
+                : any_stick   ? MotionKind::stick_slip
+                              : MotionKind::always_slipping;
+  if (result.kind == MotionKind::always_slipping) {
+    result.cycles.clear();
+    for (const RawSlip& part : split_at_steps(motion, slips)) result.cycles.push_back(blank_cycle(part));
+  }
+  measure(motion, result.cycles);
+  summarise(result);
+  add_notes(result);
+  return result;
+}
+
+}  // namespace tribofit

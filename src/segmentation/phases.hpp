@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tribofit/kinematics/motion.hpp"
+#include "tribofit/segmentation/cycles.hpp"
+
+namespace tribofit::segmentation {
+
+/// Levels of |v_r - plateau| that part stick from slip [m/s].
+struct Thresholds {
+  double slip = 0;   ///< above: slip begins
+  double stick = 0;  ///< below: stick begins
+  double peak = 0;   ///< typical peak of a slip; 0 where nothing rises above the noise
+};
+
+/// Thresholds from the noise (8 and 5 standard deviations) and the typical peak (6 and 3 %), whichever is larger.
+/// Noise that is really ringing of the contact cannot push them beyond 15 and 7.5 % of the peak.
+Thresholds thresholds_of(const Motion& motion);
+
+/// A slip as the thresholds see it.
+struct RawSlip {
+  Span samples;       ///< from the sample that rises above the slip threshold to the last above the stick threshold
+  int direction = 1;  ///< sign of v_r
+  double peak = 0;    ///< largest |v_r - plateau| [m/s]
+  bool begins_within = false, ends_within = false;  ///< neither end is cut off by the record
+};
+
+/// Slips by hysteresis, without the chatter that follows a re-stick (much lower and shorter than the slips).
+std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& thresholds);
+
+/// v_r above the plateau of stick.
+inline double above_plateau(const Motion& motion, std::size_t i) {
+  return motion.relative_velocity[i] - motion.plateau_velocity;
+}
+
+/// True where the velocity between two slips of opposite direction merely passes through zero.
+bool only_reverses(const Motion& motion, const RawSlip& before, const RawSlip& after, const Thresholds& thresholds);
+
+}  // namespace tribofit::segmentation

@@ -1,0 +1,274 @@
+#include "tribofit/fit/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "synthetic.hpp"
+#include "tribofit/fit/uncertainty.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+Fit fit_record(const FrictionModel& model, const synthetic::Record& record, const FitOptions& options = {},
+               std::size_t values_per_slip = 200) {
+  const Observations observations = observe(record.motion, record.segmentation, model.needs(), values_per_slip);
+  return fit_model(model, record.motion, record.segmentation, observations, {}, options);
+}
+
+/// Every model returns the parameters it was simulated with.
+struct Case {
+  const char* name;
+  BaseLaw law;
+  std::vector<Effect> effects;
+  std::vector<double> extra;
+};
+
+class Recovers : public testing::TestWithParam<Case> {};
+
+TEST_P(Recovers, ParametersOfNoiseFreeData) {
+  const Case& c = GetParam();
+  const FrictionModel model(c.law, c.effects);
+  std::vector<double> truth = synthetic::table4_15mm(c.law);
+  if (c.law == BaseLaw::coulomb) truth.pop_back();
+  truth.insert(truth.end(), c.extra.begin(), c.extra.end());
+  for (const double direction : {1.0, -1.0}) {
+    synthetic::Options options;
+    options.direction = direction;
+    options.cycles = 12;
+    const Fit fit = fit_record(model, synthetic::make(model, truth, options), {}, 0);
+    ASSERT_EQ(fit.parameters.size(), truth.size());
+    EXPECT_TRUE(fit.converged);
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_NEAR(fit.parameters[k].value, truth[k], 1e-5 * std::abs(truth[k]) + 1e-9) << fit.parameters[k].parameter.name;
+    }
+    EXPECT_LT(fit.error.rmse, 1e-7);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, Recovers,
+    testing::Values(Case{"exponential", BaseLaw::exponential, {}, {}}, Case{"fractional", BaseLaw::fractional, {}, {}},
+                    Case{"coulomb", BaseLaw::coulomb, {}, {}},
+                    Case{"viscous", BaseLaw::exponential, {make_effect("viscous")}, {1.2}},
+                    Case{"rate_state", BaseLaw::exponential, {make_effect("rate-state")}, {60e-6, 0.004}},
+                    Case{"bristle", BaseLaw::exponential, {make_effect("bristle")}, {60e3, 2.0}},
+                    Case{"formula", BaseLaw::exponential,
+                         {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")}, {0.02, 25, 6}}),
+    [](const auto& c) { return std::string(c.param.name); });
+
+TEST(Fit, ReportsTheNoiseAsItsErrorAndItsFloor) {
+  const FrictionModel model(BaseLaw::exponential);
+  for (const double colour : {0.0, 0.9}) {
+    synthetic::Options options;
+    options.noise = 0.003;
+    options.colour = colour;
+    options.cycles = 60;
+    const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+    EXPECT_NEAR(fit.error.rmse, 0.003, 0.0001) << colour;
+    EXPECT_NEAR(fit.floor.noise, 0.003, 0.0001) << colour;
+    EXPECT_NEAR(fit.error.held_out_rmse, fit.error.rmse, 0.00003) << colour;
+    EXPECT_GT(fit.error.held_out_rmse, fit.error.rmse) << colour;
+    EXPECT_GT(fit.explained, 0.99);
+  }
+}
+
+TEST(Fit, FloorHoldsBreakAwayScatter) {
+  const FrictionModel model(BaseLaw::exponential);
+  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.scatter = 0.01;
+  options.cycles = 200;
+  const Fit fit = fit_record(model, synthetic::make(model, truth, options));
+  EXPECT_NEAR(fit.floor.scatter, 0.01, 0.0015);
+  EXPECT_NEAR(fit.floor.rmse, fit.error.rmse, 0.03 * fit.error.rmse);
+}
+
+TEST(Fit, PublishedProtocolCarriesTheBiasTheLawPredicts) {
+  // Without noise the minimum in slip is the law at the fastest slip, not mu_k: physics of [D] Eq 2.
+  const FrictionModel model(BaseLaw::exponential);
+  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  synthetic::Options options;
+  options.peak = 0.03;
+  const synthetic::Record record = synthetic::make(model, truth, options);
+  FitOptions published;
+  published.protocol = Protocol::published;
+  const Fit fit = fit_record(model, record, published);
+  double minimum = 0;
+  for (const Cycle& cycle : record.segmentation.cycles) {
+    minimum += (truth[1] + (truth[0] - truth[1]) * std::exp(-truth[2] * cycle.peak_velocity)) / 40;
+  }
+  EXPECT_NEAR(fit.parameters[0].value, truth[0], 5e-4);  // the last sample of the ramp is half a step before break-away
+  EXPECT_NEAR(fit.parameters[1].value, minimum, 1e-4);
+  EXPECT_GT(fit.parameters[2].value, 1.1 * truth[2]);
+}
+
+TEST(Fit, ComparisonPrefersTheGeneratingLaw) {
+  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    synthetic::Options options;
+    options.noise = 0.003;
+    options.colour = 0.9;
+    options.scatter = 0.004;
+    const synthetic::Record record = synthetic::make(FrictionModel(law), synthetic::table4_15mm(law), options);
+    const Fit right = fit_record(FrictionModel(law), record);
+    const Fit wrong =
+        fit_record(FrictionModel(law == BaseLaw::exponential ? BaseLaw::fractional : BaseLaw::exponential), record);
+    const Comparison comparison = compare_held_out(right, wrong);
+    EXPECT_TRUE(comparison.first_better);
+    EXPECT_LT(comparison.p_value, 0.01);
+  }
+}
+
+TEST(Fit, SaysWhatTheDataDoNotSay) {
+  synthetic::Options options;
+  options.noise = 0.001;
+  const auto has = [](const Fit& fit, const std::string& text) {
+    for (const std::string& message : fit.messages) {
+      if (message.find(text) != std::string::npos) return true;
+    }
+    return false;
+  };
+  // Slips that end far from mu_k leave it to extrapolation and tie it to the decay factor.
+  options.peak = 0.01;
+  const FrictionModel model(BaseLaw::exponential);
+  const Fit slow = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+  EXPECT_TRUE(has(slow, "mu_k is extrapolated"));
+  EXPECT_TRUE(has(slow, "strongly correlated"));
+  // A viscous term beyond its plausible bound ends there.
+  const FrictionModel viscous(BaseLaw::exponential, {make_effect("viscous")});
+  options.peak = 0.08;
+  const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 6.0}, options));
+  EXPECT_TRUE(bound.parameters[3].at_bound);
+  EXPECT_TRUE(has(bound, "sigma sits at its upper bound of 0.002 s/mm"));
+}
+
+TEST(Fit, FewerThanThreeCyclesIsAReasonNotAnException) {
+  synthetic::Options options;
+  options.cycles = 2;
+  const FrictionModel model(BaseLaw::exponential);
+  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+  EXPECT_FALSE(fit.converged);
+  ASSERT_FALSE(fit.messages.empty());
+  EXPECT_NE(fit.messages[0].find("fewer than three cycles"), std::string::npos);
+}
+
+TEST(Fit, FrictionThatRisesWithSpeedIsNotForcedToFall) {
+  const FrictionModel model(BaseLaw::exponential);
+  const std::vector<double> truth = {0.15, 0.21, 40};
+  synthetic::Options options;
+  options.noise = 0.002;
+  const Fit fit = fit_record(model, synthetic::make(model, truth, options));
+  EXPECT_LT(fit.parameters[0].value, fit.parameters[1].value);
+  EXPECT_NEAR(fit.parameters[0].value, truth[0], 0.001);
+  EXPECT_NEAR(fit.parameters[1].value, truth[1], 0.001);
+}
+
+TEST(Fit, RobustLossStandsBadSamples) {
+  const FrictionModel model(BaseLaw::exponential);
+  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.003;
+  synthetic::Record record = synthetic::make(model, truth, options);
+  for (std::size_t i = 0; i < record.motion.size(); i += 97) record.motion.friction[i] += 0.5;
+  const Observations every = observe(record.motion, record.segmentation, {}, 0);
+  const auto error_with = [&](Loss loss) {
+    FitOptions with;
+    with.loss = loss;
+    return std::abs(fit_model(model, record.motion, record.segmentation, every, {}, with).parameters[1].value - truth[1]);
+  };
+  EXPECT_GT(error_with(Loss::squares), 0.004);
+  EXPECT_LT(error_with(Loss::huber), 0.002);
+  EXPECT_LT(error_with(Loss::soft_l1), 0.002);
+}
+
+TEST(Fit, ProfileAgreesWithTheSymmetricIntervalWhereTheModelIsNearlyLinear) {
+  const FrictionModel model(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.cycles = 60;
+  FitOptions with;
+  with.profile = true;
+  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options), with);
+  for (const FitParameter& p : fit.parameters) {
+    const double width = p.upper95 - p.lower95;
+    EXPECT_NEAR(p.profile_lower95, p.lower95, 0.05 * width) << p.parameter.name;
+    EXPECT_NEAR(p.profile_upper95, p.upper95, 0.05 * width) << p.parameter.name;
+  }
+}
+
+TEST(Fit, SystematicPartFollowsADeclaredUncertainty) {
+  // An uncertain zero of the force sensor moves both levels by itself and nothing else.
+  const FrictionModel model(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.001;
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  Instruments instruments;
+  instruments.force_sensor.zero = Declared{0, 0.004};
+  const Observations observations = observe(record.motion, record.segmentation);
+  const Fit fit = fit_model(model, record.motion, record.segmentation, observations, instruments);
+  EXPECT_NEAR(fit.parameters[0].systematic, 0.004, 1e-6);
+  EXPECT_NEAR(fit.parameters[1].systematic, 0.004, 1e-6);
+  EXPECT_NEAR(fit.parameters[2].systematic, 0, 1e-3);
+}
+
+TEST(Fit, SameToTheLastBitForAnyNumberOfThreads) {
+  const FrictionModel model(BaseLaw::fractional, {make_effect("viscous")});
+  synthetic::Options options;
+  options.noise = 0.003;
+  const synthetic::Record record = synthetic::make(model, {0.509, 0.318, 95.33, 0.5}, options);
+  FitOptions one, many;
+  one.threads = 1;
+  many.threads = 4;
+  const Fit a = fit_record(model, record, one), b = fit_record(model, record, many);
+  EXPECT_EQ(a.error.held_out_rmse, b.error.held_out_rmse);
+  for (std::size_t k = 0; k < a.parameters.size(); ++k) {
+    EXPECT_EQ(a.parameters[k].value, b.parameters[k].value);
+    EXPECT_EQ(a.parameters[k].std_error, b.parameters[k].std_error);
+  }
+}
+
+TEST(Fit, HeldOutErrorIsThatOfRefitsOnEverySample) {
+  // The short cut through means over a few samples against refits evaluated sample by sample.
+  const FrictionModel model(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.rate = 40e3;
+  options.scatter = 0.01;
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const Observations reduced = observe(record.motion, record.segmentation), every = observe(record.motion, record.segmentation, {}, 0);
+  ASSERT_GT(reduced.samples_per_value, 5u);
+  ASSERT_EQ(every.samples_per_value, 1u);
+  const Fit a = fit_model(model, record.motion, record.segmentation, reduced);
+  const Fit b = fit_model(model, record.motion, record.segmentation, every);
+  EXPECT_NEAR(a.error.held_out_rmse / b.error.held_out_rmse, 1, 1e-4);
+  EXPECT_NEAR(a.error.rmse / b.error.rmse, 1, 1e-4);
+}
+
+/// Coverage of a mean's 95 % interval on 4000 series: white, and first-order autoregressive.
+TEST(Uncertainty, MeanErrorCovers) {
+  boost::random::mt19937_64 engine(7);
+  for (const double correlation : {0.0, 0.5, 0.7}) {
+    int covered = 0;
+    constexpr int kSeries = 4000;
+    for (int s = 0; s < kSeries; ++s) {
+      synthetic::ColouredNoise noise(correlation, engine);
+      std::vector<double> x(100);
+      double mean = 0;
+      for (double& value : x) {
+        value = noise();
+        mean += value / 100;
+      }
+      const MeanError error = mean_error(x);
+      covered += std::abs(mean) <= t_quantile_95(error.degrees_of_freedom) * error.std_error ? 1 : 0;
+    }
+    const double rate = covered / double(kSeries);
+    EXPECT_GE(rate, 0.935) << correlation;
+    EXPECT_LE(rate, 0.965) << correlation;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tribofit/friction/slip.hpp"
+
+namespace samples {
+
+/// A slip of prescribed speed with every channel present: peak * sin^2 over `duration`.
+struct ExampleSlip {
+  std::vector<double> time, velocity, acceleration, angle, distance, load, temperature;
+  tribofit::Slip slip;
+
+  explicit ExampleSlip(std::size_t n = 400, double peak = 0.08, double duration = 0.1, double direction = 1) {
+    double slid = 1.5;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+      time.push_back(3 + s * duration);
+      velocity.push_back(direction * peak * std::pow(std::sin(std::numbers::pi * s), 2));
+      acceleration.push_back(-direction * peak * std::numbers::pi / duration * std::sin(2 * std::numbers::pi * s));
+      angle.push_back(0.42 * time.back());
+      slid += std::abs(velocity.back()) * duration / static_cast<double>(n);
+      distance.push_back(slid);
+      load.push_back(50 + 5 * std::sin(40 * time.back()));
+      temperature.push_back(25 + s);
+    }
+    slip.time = time;
+    slip.velocity = velocity;
+    slip.acceleration = acceleration;
+    slip.angle = angle;
+    slip.distance = distance;
+    slip.load = load;
+    slip.temperature = temperature;
+    slip.from_stick = true;
+    slip.break_away_time = 3;
+    slip.stick_time = 0.1;
+    slip.stick_slope = 2;
+    slip.direction = direction;
+    slip.mean_load = 50;
+    slip.mean_temperature = 25;
+  }
+  ExampleSlip(const ExampleSlip&) = delete;
+  ExampleSlip& operator=(const ExampleSlip&) = delete;
+};
+
+}  // namespace samples

@@ -1,0 +1,121 @@
+// Each check speaks up for the fault it is named after, and is quiet on a sound record.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "stick_slip_truth.hpp"
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit {
+namespace {
+
+using ::testing::ElementsAre;
+using Status = HealthItem::Status;
+
+HealthItem item(const Motion& motion, const std::string& check) {
+  for (const HealthItem& i : motion.health) {
+    if (i.check == check) return i;
+  }
+  throw std::out_of_range(check);
+}
+
+truth::Rig long_rig() {
+  truth::Rig rig;
+  rig.duration = 36;  // 2.4 revolutions
+  rig.rate = 5000;
+  return rig;
+}
+
+TEST(Health, SoundRecordHasNineChecksAndNoComplaint) {
+  const Motion motion = compute_motion(truth::simulate(long_rig()).trace);
+  std::vector<std::string> names;
+  for (const HealthItem& i : motion.health) {
+    names.push_back(i.check);
+    EXPECT_EQ(i.status, Status::ok) << i.check << ": " << i.message;
+    EXPECT_FALSE(i.message.empty());
+  }
+  EXPECT_THAT(names, ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay", "revolutions",
+                                 "speed-ripple", "run-up", "plateau-speed"));
+}
+
+TEST(Health, ClippedVelocity) {
+  Trace trace = truth::simulate(truth::Rig{}).trace;
+  for (double& v : trace.velocity) v = std::max(v, -0.06);
+  EXPECT_EQ(item(compute_motion(std::move(trace)), "clipping").status, Status::problem);
+}
+
+TEST(Health, DropOutsAndGaps) {
+  Trace trace = truth::simulate(truth::Rig{}).trace;
+  for (std::size_t i = 1000; i < trace.size(); i += 20000) trace.velocity[i] += 0.05;
+  EXPECT_EQ(item(compute_motion(trace), "drop-outs").status, Status::warning);
+  Trace gap = truth::simulate(truth::Rig{}).trace;
+  for (std::size_t i = 50000; i < gap.size(); ++i) gap.time[i] += 4.0 / 20000;
+  const HealthItem found = item(compute_motion(gap), "drop-outs");
+  EXPECT_EQ(found.status, Status::warning);
+  EXPECT_THAT(found.message, ::testing::HasSubstr("1 gaps"));
+}
+
+TEST(Health, DelayBetweenTheChannels) {
+  for (double delay : {-1.5e-3, 2e-3}) {
+    truth::Rig rig;
+    const truth::Run run = truth::simulate(rig);
+    Trace trace = run.trace;
+    const auto shift = static_cast<std::ptrdiff_t>(std::lround(delay * rig.rate));
+    const auto n = static_cast<std::ptrdiff_t>(trace.size());
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      trace.friction[static_cast<std::size_t>(i)] =
+          run.trace.friction[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i - shift, 0, n - 1))];
+    }
+    const HealthItem found = item(compute_motion(std::move(trace)), "channel-delay");
+    EXPECT_EQ(found.status, Status::warning);
+    double value = 0;
+    ASSERT_EQ(std::sscanf(found.message.c_str(), "friction jumps %lf ms", &value), 1) << found.message;
+    EXPECT_NEAR(value, 1e3 * std::abs(delay), 0.15);
+    EXPECT_THAT(found.message, ::testing::HasSubstr(delay > 0 ? "after" : "before"));
+  }
+}
+
+TEST(Health, FewerThanTwoRevolutionsAreSaid) {
+  EXPECT_EQ(item(compute_motion(truth::simulate(truth::Rig{}).trace), "revolutions").status, Status::warning);
+}
+
+TEST(Health, SpeedRippleIsMeasured) {
+  truth::Rig rig = long_rig();
+  Trace trace = truth::simulate(rig).trace;
+  const double disc = rig.speed() * rig.radius;
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    if (std::abs(trace.velocity[i] - disc) < 1.5e-4) trace.velocity[i] += 0.05 * disc * std::cos(rig.speed() * trace.time[i] + 1);
+  }
+  const HealthItem found = item(compute_motion(std::move(trace)), "speed-ripple");
+  EXPECT_EQ(found.status, Status::warning);
+  double value = 0;
+  ASSERT_EQ(std::sscanf(found.message.c_str(), "the plateau follows the disc angle by %lf %%", &value), 1);
+  EXPECT_NEAR(value, 5, 0.2);
+}
+
+TEST(Health, BandwidthOfAFilteredChannel) {
+  truth::Rig rig;
+  rig.friction_noise = rig.velocity_noise = 0;
+  Trace trace = truth::simulate(rig).trace;
+  // Butterworth of second order at 100 Hz (bilinear transform), twice.
+  const double k = std::tan(std::numbers::pi * 100 / rig.rate), norm = 1 / (1 + std::sqrt(2.0) * k + k * k);
+  for (int pass = 0; pass < 2; ++pass) {
+    const double v0 = trace.velocity[0];
+    double x1 = v0, x2 = v0, y1 = v0, y2 = v0;
+    for (double& v : trace.velocity) {
+      const double y = norm * (k * k * (v + 2 * x1 + x2) - 2 * (k * k - 1) * y1 - (1 - std::sqrt(2.0) * k + k * k) * y2);
+      x2 = x1, x1 = v, y2 = y1, y1 = y, v = y;
+    }
+  }
+  const HealthItem found = item(compute_motion(std::move(trace)), "bandwidth");
+  EXPECT_EQ(found.status, Status::warning);
+  EXPECT_THAT(found.message, ::testing::HasSubstr("velocity falls"));
+  EXPECT_THAT(found.message, ::testing::HasSubstr("friction stands"));
+}
+
+}  // namespace
+}  // namespace tribofit

@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "cvode_slip.hpp"
+#include "rigs.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kDiscVelocity = 0.015 * 4 * 2 * std::numbers::pi / 60;
+
+double exponential(const Case& c, double speed) {
+  return c.p[1] + (c.p[0] - c.p[1]) * std::exp(-c.p[2] * speed);
+}
+
+Case with_effect(const char* key, std::vector<double> values) {
+  Case c = published_case(0.015, BaseLaw::exponential);
+  c.model = FrictionModel(BaseLaw::exponential, {make_effect(key)});
+  c.p.insert(c.p.end(), values.begin(), values.end());
+  return c;
+}
+
+// The LuGre equations written down again and solved by CVODE's stiff method; both costs are printed.
+TEST(Presliding, BristleAgreesWithCvode) {
+  const double load = 50;
+  for (const double sigma0 : {1e5, 2e6}) {
+    const double sigma1 = 10;
+    const Case c = with_effect("bristle", {sigma0, sigma1});
+    const auto friction = [&](const double* y) {
+      const double v = kDiscVelocity - y[1];
+      const double dz = v - sigma0 * std::abs(v) * y[2] / exponential(c, std::abs(v));
+      return std::pair{sigma0 * y[2] + sigma1 * dz, dz};
+    };
+    const double duration = 0.6;
+    auto begin = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const SimulatedMotion motion = simulate(c, {.duration = duration, .rate = 1000});
+    const double ours = seconds();
+    begin = std::chrono::steady_clock::now();
+    CvodeSolver solver(
+        CV_BDF, 3,
+        [&](double, const double* y, double* dy) {
+          const auto [mu, dz] = friction(y);
+          dy[0] = y[1];
+          dy[1] = (load * mu - c.rig.damping * y[1] - c.rig.stiffness * y[0]) / c.rig.mass;
+          dy[2] = dz;
+        },
+        [](double, const double*) { return 1.0; }, 1e-10, 1e-15);
+    solver.start()[1] = kDiscVelocity;
+    solver.restart(0);
+    for (std::size_t i = 1; i < motion.size(); ++i) {
+      double t = 0;
+      solver.advance(motion.time[i], t);
+      ASSERT_NEAR(motion.velocity[i], solver.start()[1], 2e-6) << "sigma0 " << sigma0 << " t " << motion.time[i];
+      ASSERT_NEAR(motion.friction[i], friction(solver.start()).first, 2e-5) << sigma0;
+    }
+    printf("  sigma0 = %g/mm: CVODE BDF %.2f ms, Dormand-Prince %.2f ms for %g s\n", 1e-3 * sigma0, 1e3 * seconds(),
+           1e3 * ours, duration);
+  }
+}
+
+// While mu << mu_s the contact is a spring of sigma0 behind that of the rig: v_r = (d mu/dt)/sigma0.
+TEST(Presliding, BristleCreepsInStick) {
+  const double sigma0 = 1e5;
+  const Case c = with_effect("bristle", {sigma0, 0});
+  const double rate = 20000;
+  const SimulatedMotion motion = simulate(c, {.duration = 0.06, .rate = rate});
+  const auto k = static_cast<std::size_t>(0.05 * rate);
+  ASSERT_GT(motion.size(), k);
+  const double slid = motion.distance[k], mu = motion.friction[k];
+  // dz = v_r (1 - sigma0 z/f) dt integrates to -ln(1 - mu/f)/sigma0 f at constant f = mu_s.
+  EXPECT_NEAR(slid / (-c.p[0] * std::log1p(-mu / c.p[0]) / sigma0), 1, 0.05);
+  for (std::size_t i = 0; i < motion.size(); ++i) EXPECT_TRUE(motion.sticks[i]);
+}
+
+TEST(Presliding, BristleSlipsAreFoundAndScatter) {
+  const Case c = with_effect("bristle", {1e5, 10});
+  const SimulatedMotion motion =
+      simulate(c, {.duration = 6, .rate = 20000, .settle = 3, .scatter = {0.01, 0}, .seed = 3});
+  // About the rhythm of the rigid contact (4.88 Hz), with every slip seen once.
+  EXPECT_NEAR(static_cast<double>(motion.break_away_count()), 6 * 4.88, 3);
+  const double n = static_cast<double>(motion.slips.size());
+  double mean_friction = 0, mean_offset = 0, product = 0, offsets = 0, levels = 0;
+  for (const SimulatedSlip& slip : motion.slips) {
+    mean_friction += slip.break_away_friction / n;
+    mean_offset += slip.mu_s_offset / n;
+  }
+  for (std::size_t i = 0; i < motion.slips.size(); ++i) {
+    const SimulatedSlip& slip = motion.slips[i];
+    const double level = slip.break_away_friction - mean_friction, offset = slip.mu_s_offset - mean_offset;
+    product += level * offset;
+    offsets += offset * offset;
+    levels += level * level;
+    if (i + 1 == motion.slips.size()) break;
+    EXPECT_LT(slip.break_away_time, slip.restick_time);
+    EXPECT_LT(slip.restick_time, motion.slips[i + 1].break_away_time);
+  }
+  // A contact with more static friction breaks away at more friction: by its offset, less what the law loses up to half
+  // the disc's speed.
+  EXPECT_GT(product / std::sqrt(offsets * levels), 0.999);
+  EXPECT_GT(product / offsets, std::exp(-c.p[2] * 0.5 * kDiscVelocity));
+  EXPECT_LT(product / offsets, 1);
+}
+
+// A stiff contact is a rigid one.
+TEST(Presliding, StiffBristleApproachesRigidStick) {
+  const SimulationOptions options{.duration = 4, .rate = 0, .settle = 3, .tolerance = 1e-8};
+  const double rigid = mean_period(simulate(published_case(0.015, BaseLaw::exponential), options));
+  const auto difference = [&](double sigma0) {
+    return std::abs(mean_period(simulate(with_effect("bristle", {sigma0, 1e-4 * sigma0}), options)) / rigid - 1);
+  };
+  EXPECT_LT(difference(2e6), 0.012);
+  EXPECT_LT(difference(2e7), 0.006);
+}
+
+// d phi/ds = (f - phi)/D_c along the slip, from the samples.
+TEST(Memory, RateStateFollowsItsDistance) {
+  const double critical_distance = 200e-6, direct = 0.01;
+  const Case c = with_effect("rate-state", {critical_distance, direct});
+  const SimulatedMotion motion = simulate(c, {.duration = 2, .rate = 200000});
+  const auto phi = [&](std::size_t i) {
+    return motion.friction[i] - direct * std::asinh(motion.relative_velocity[i] / 2e-3);
+  };
+  int checked = 0;
+  for (std::size_t i = 1; i + 1 < motion.size(); ++i) {
+    if (motion.sticks[i - 1] || motion.sticks[i + 1] || motion.relative_velocity[i] < 0.01) continue;
+    const double slope = (phi(i + 1) - phi(i - 1)) / (motion.distance[i + 1] - motion.distance[i - 1]);
+    const double expected = (exponential(c, motion.relative_velocity[i]) - phi(i)) / critical_distance;
+    EXPECT_NEAR(slope, expected, 0.02 + 2e-4 * std::abs(expected));
+    ++checked;
+  }
+  EXPECT_GT(checked, 10000);
+}
+
+// Slip begins from v_r = 0, where even a short distance takes time: the limit is reached slowly, but reached.
+TEST(Memory, ShortMemoryIsNone) {
+  const SimulationOptions options{.duration = 4, .rate = 0, .settle = 3, .tolerance = 1e-8};
+  const double without = mean_period(simulate(published_case(0.015, BaseLaw::exponential), options));
+  const auto difference = [&](double critical_distance) {
+    return mean_period(simulate(with_effect("rate-state", {critical_distance, 0}), options)) / without - 1;
+  };
+  EXPECT_LT(std::abs(difference(5e-7)), 1e-2);
+  EXPECT_LT(std::abs(difference(5e-8)), 2.5e-3);
+}
+
+}  // namespace
+}  // namespace tribofit

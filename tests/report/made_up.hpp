@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "tribofit/pipeline.hpp"
+
+namespace tribofit {
+
+/// A result with the published numbers of [D] at 15 mm, filled by hand: two cycles of four samples each.
+inline FitParameter made_up_parameter(const FrictionModel& model, std::size_t k, double value, double error) {
+  FitParameter p;
+  p.parameter = model.parameters()[k].parameter;
+  p.effect = model.parameters()[k].effect;
+  p.value = value;
+  p.std_error = error;
+  p.lower95 = value - 2 * error;
+  p.upper95 = value + 2 * error;
+  p.start = 0.9 * value;
+  p.profile_lower95 = p.profile_upper95 = std::numeric_limits<double>::quiet_NaN();
+  return p;
+}
+
+inline Fit made_up_fit(BaseLaw law, double decay, Protocol protocol = Protocol::joint) {
+  Fit fit;
+  fit.model = FrictionModel(law);
+  fit.protocol = protocol;
+  fit.parameters = {made_up_parameter(fit.model, 0, 0.509, 0.0012), made_up_parameter(fit.model, 1, 0.318, 0.0021),
+                    made_up_parameter(fit.model, 2, decay, 0.43)};
+  fit.error = {0.0031, 0.006, 0.05, 0.0032};
+  fit.floor = {0.0030, 0.0040, 0.0031, "stick"};
+  fit.explained = 0.9987;
+  fit.converged = true;
+  fit.observations = 6;
+  fit.cycles = 2;
+  fit.stick_rmse = std::numeric_limits<double>::quiet_NaN();
+  fit.fastest = 0.0839;
+  fit.covariance.assign(9, 0.0);
+  for (std::size_t k = 0; k < 3; ++k) fit.covariance[4 * k] = std::pow(fit.parameters[k].std_error, 2);
+  fit.cycle_squares = {1e-5, 2e-5};
+  fit.cycle_counts = {3, 3};
+  fit.fold_parameters = {fit.values(), fit.values()};
+  return fit;
+}
+
+inline Motion made_up_motion() {
+  Motion motion;
+  motion.step = 0.1;
+  const double v[] = {0, 0, 0.01, 0.05, 0.08, 0.04, 0, 0, 0.02, 0.06, 0.07, 0.03};
+  for (std::size_t i = 0; i < 12; ++i) {
+    motion.time.push_back(0.1 * static_cast<double>(i));
+    motion.relative_velocity.push_back(v[i]);
+    motion.friction.push_back(0.318 + 0.191 * std::exp(-52.14 * v[i]));
+  }
+  motion.constant_disc_velocity = 0.00628;
+  motion.conditions.radius = {0.015, "command line"};
+  motion.conditions.speed = {4 * 2 * 3.14159265358979323846 / 60, "plateau"};
+  motion.steps = {{0, 12, "", motion.conditions}};
+  motion.health = {{"clipping", HealthItem::Status::ok, "none"},
+                   {"revolutions", HealthItem::Status::warning, "1.3 revolutions recorded"}};
+  return motion;
+}
+
+inline Segmentation made_up_segmentation() {
+  Segmentation s;
+  s.slip_threshold = 0.005;
+  for (const std::size_t begin : {std::size_t{0}, std::size_t{6}}) {
+    Cycle c;
+    c.stick = {begin, begin + 2};
+    c.slip = {begin + 2, begin + 6};
+    c.stick_complete = begin > 0;
+    c.slip_complete = true;
+    c.break_away_time = 0.1 * static_cast<double>(begin) + 0.15;
+    c.stick_time = begin > 0 ? 0.175 : std::numeric_limits<double>::quiet_NaN();
+    c.slip_time = 0.0295;
+    c.period = begin == 0 ? 0.6 : std::numeric_limits<double>::quiet_NaN();
+    c.break_away_friction = 0.509;
+    c.stick_maximum = 0.512;
+    c.slip_minimum = 0.3205;
+    c.stick_slope = 2.03;
+    c.peak_velocity = 0.0839;
+    s.cycles.push_back(c);
+  }
+  s.frequency = {4.883, 0.012};
+  s.amplitude = {0.0839, 0.0002};
+  s.stick_time = {0.1754, 0.0003};
+  s.slip_time = {0.0295, 0.0001};
+  s.rms_velocity = 0.0191;
+  return s;
+}
+
+inline Identification made_up_result() {
+  Identification r;
+  r.path = "runs/r15.csv";
+  r.checksum = 0xabcdef;
+  r.samples = 2400000;
+  r.duration = 120;
+  r.rate = 20000;
+  r.motion = made_up_motion();
+  r.segmentation = made_up_segmentation();
+  r.spectral_peak = {4.881, 0.0264, 4.883, 0.6104};
+  r.fits = {made_up_fit(BaseLaw::exponential, 52.14), made_up_fit(BaseLaw::fractional, 95.33),
+            made_up_fit(BaseLaw::exponential, 60.1, Protocol::published)};
+  r.fits[1].error.held_out_rmse = 0.0060;
+  return r;
+}
+
+}  // namespace tribofit

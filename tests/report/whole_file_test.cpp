@@ -1,0 +1,107 @@
+#include "tribofit/report/whole_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "folder.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+/// Files may not grow beyond this while it lives: a disc that fills up (write() fails in the middle).
+class SmallDisc {
+ public:
+  explicit SmallDisc(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    previous_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallDisc() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, previous_);
+  }
+  SmallDisc(const SmallDisc&) = delete;
+  SmallDisc& operator=(const SmallDisc&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*previous_)(int) = SIG_DFL;
+};
+
+TEST(WholeFile, AppearsOnlyWhenCommitted) {
+  const Folder folder;
+  const std::string path = folder.path("a.json");
+  {
+    WholeFile file(path);
+    file.write("half");
+    file.finish();
+    EXPECT_FALSE(std::filesystem::exists(path));
+    file.commit();
+  }
+  EXPECT_EQ(contents(path), "half");
+  EXPECT_THAT(folder.names(), ::testing::ElementsAre("a.json"));
+}
+
+TEST(WholeFile, LeavesNothingBehindWhenAbandoned) {
+  const Folder folder;
+  { WholeFile(folder.path("a.json")).write("half"); }
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(WholeFile, ADiscThatFillsUpKeepsTheOldFile) {
+  const Folder folder;
+  const std::string path = folder.path("a.json");
+  write_whole(path, "old");
+  {
+    const SmallDisc disc(64 * 1024);
+    EXPECT_THROW(write_whole(path, std::string(1 << 20, 'x')), InputError);
+  }
+  EXPECT_EQ(contents(path), "old");
+  EXPECT_THAT(folder.names(), ::testing::ElementsAre("a.json"));
+}
+
+TEST(WholeFile, AFullDeviceIsNamedWithWhatToDo) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  try {
+    write_whole("/dev/full", "x");
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where().file, "/dev/full");
+    EXPECT_THAT(error.problem(), ::testing::HasSubstr("No space left"));
+    EXPECT_FALSE(error.advice().empty());
+  }
+}
+
+TEST(WholeFile, SaysWhatIsWrongWithThePlace) {
+  const Folder folder;
+  EXPECT_THROW(write_whole(folder.path("missing/a.json"), "x"), InputError);
+  EXPECT_THROW(write_whole(folder.path(""), "x"), InputError);  // a folder
+  EXPECT_THROW(write_whole("", "x"), InputError);
+}
+
+TEST(WholeFile, KeepsLinksAndRights) {
+  const Folder folder;
+  const std::string real = folder.path("real.json"), link = folder.path("link.json");
+  write_whole(real, "old");
+  std::filesystem::permissions(real, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink(real, link);
+  write_whole(link, "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(contents(real), "new");
+  struct stat status {};
+  ASSERT_EQ(::stat(real.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+}
+
+}  // namespace
+}  // namespace tribofit

@@ -1,0 +1,29 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "tribofit/friction/effects/all.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+void add_effects(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("effects", "List the effects that can be added to a law, or explain one");
+  const auto key = std::make_shared<std::string>();
+  verb->add_option("KEY", *key, "Effect to explain");
+  verb->callback([key, &status] {
+    TerminalOptions options;
+    options.colour = wants_colour();
+    options.width = terminal_width();
+    status = 0;
+    if (!key->empty()) {
+      print(render_effect(describe(make_effect(*key)), options));
+      return;
+    }
+    std::vector<EffectInfo> effects;
+    for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
+    print(render_effects(effects, options));
+  });
+}

@@ -1,0 +1,168 @@
+#include "settings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/units.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+const std::vector<std::string> kChannels = {"time", "mu",    "v_b",   "v_r",         "force", "torque",
+                                            "load", "speed", "angle", "temperature", "step"};
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+double positive(const std::string& text, Quantity quantity, const std::string& option, const std::string& bare_unit = "") {
+  const double value = parse_quantity(text, quantity, option, bare_unit);
+  if (!(value > 0)) {
+    throw InputError(option + ": '" + text + "' is not greater than zero",
+                     "give a " + std::string(to_string(quantity)) + " such as " + std::string(example_of(quantity)));
+  }
+  return value;
+}
+
+/// "15mm", or one radius per step: "6mm,9mm" or "6,9mm", where a bare number has the unit of the last.
+std::vector<double> radii_from(const std::string& text) {
+  constexpr double kLargest = 10;  // m; more is a forgotten unit
+  const std::vector<std::string> parts = split(text, ',');
+  const std::size_t unit_at = parts.back().find_first_not_of("+-.0123456789 ");
+  const std::string unit = unit_at == std::string::npos ? "" : parts.back().substr(unit_at);
+  std::vector<double> radii;
+  for (const std::string& part : parts) {
+    radii.push_back(positive(part, Quantity::length, "--radius", unit));
+    if (radii.back() > kLargest) {
+      throw InputError("--radius: '" + part + "' would be more than 10 m", "give the unit, as in 15mm (a bare number is in m)");
+    }
+  }
+  return radii;
+}
+
+/// "time=t,mu=COF": a comma separates only where a channel and "=" follow, so that columns may hold commas themselves.
+void add_pairs(const std::string& text, const std::string& option, std::map<std::string, std::string>& pairs) {
+  std::vector<std::string> items;
+  for (const std::string& part : split(text, ',')) {
+    if (part.find('=') != std::string::npos || items.empty()) {
+      items.push_back(part);
+    } else {
+      items.back() += "," + part;
+    }
+  }
+  for (const std::string& item : items) {
+    const std::size_t equals = item.find('=');
+    const std::string channel = item.substr(0, equals);
+    if (equals == std::string::npos || equals + 1 == item.size()) {
+      throw InputError(option + ": '" + item + "' is not CHANNEL=" + (option == "--units" ? "UNIT" : "COLUMN"),
+                       option == "--units" ? "write it as v_b=mm/s" : "write it as v_b=Velocity or v_b=Velocity:mm/s");
+    }
+    if (std::find(kChannels.begin(), kChannels.end(), channel) == kChannels.end()) {
+      std::string known;
+      for (const std::string& name : kChannels) known += (known.empty() ? "" : ", ") + name;
+      throw InputError(option + ": there is no channel '" + channel + "'",
+                       "did you mean '" + nearest_name(channel, kChannels) + "'? The channels are " + known);
+    }
+    if (!pairs.emplace(channel, item.substr(equals + 1)).second) {
+      throw InputError(option + ": the channel '" + channel + "' is given twice", "give it once");
+    }
+  }
+}
+
+void read_conditions(const Settings& s, Conditions& conditions, std::vector<double>& step_radii) {
+  const std::string source = "command line";
+  if (!s.radius.empty()) {
+    const std::vector<double> radii = radii_from(s.radius);
+    if (radii.size() == 1) {
+      conditions.radius = {radii[0], source};
+    } else {
+      step_radii = radii;
+    }
+  }
+  if (!s.speed.empty()) conditions.speed = {positive(s.speed, Quantity::angular_velocity, "--speed"), source};
+  if (!s.load.empty()) conditions.load = {positive(s.load, Quantity::force, "--load"), source};
+}
+
+Loss loss_from(const std::string& name) {
+  if (name == "huber") return Loss::huber;
+  return name == "soft-l1" ? Loss::soft_l1 : Loss::squares;
+}
+
+bool is_trace_name(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // The manifest of a folder of runs holds their conditions, not a run.
+  return (extension == ".csv" || extension == ".tsv") && path.filename() != "manifest.csv" &&
+         path.filename().string().front() != '.';
+}
+
+}  // namespace
+
+IdentifyOptions options_from(const Settings& s) {
+  IdentifyOptions options;
+  read_conditions(s, options.read.conditions, options.read.step_radii);
+  for (const std::string& text : s.columns) add_pairs(text, "--columns", options.read.columns);
+  for (const std::string& text : s.units) add_pairs(text, "--units", options.read.units);
+  if (!s.rate.empty()) options.read.rate = positive(s.rate, Quantity::frequency, "--rate");
+  options.read.second_file = s.second_file;
+  options.read.continued_in = s.continued_in;
+  options.read.threads = options.fit.threads = s.threads;
+  options.motion.trim = s.trim;
+  if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
+
+  if (!s.laws.empty()) options.laws.clear();
+  for (const std::string& law : s.laws) {
+    const auto found = find_law(law);
+    const bool again = found && std::find(options.laws.begin(), options.laws.end(), *found) != options.laws.end();
+    if (found && !again) options.laws.push_back(*found);
+  }
+  for (const std::string& key : s.effects) options.effects.push_back(make_effect(key));
+  for (const std::string& formula : s.formulas) options.effects.emplace_back(Formula(formula));
+
+  options.published_protocol = s.protocol == "both";
+  options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;
+  options.fit.loss = loss_from(s.loss);
+  options.fit.starts = s.starts;
+  options.fit.folds = s.folds;
+  options.fit.profile = s.profile;
+  options.fit.seed = s.seed;
+  return options;
+}
+
+std::vector<std::string> traces_from(const std::vector<std::string>& names) {
+  std::vector<std::string> traces;
+  for (const std::string& name : names) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(name, error)) {
+      traces.push_back(name);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (std::filesystem::directory_iterator it(name, error), end; !error && it != end; it.increment(error)) {
+      if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
+    }
+    if (error) throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {name, 0, ""});
+    if (found.empty()) {
+      throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {name, 0, ""});
+    }
+    std::sort(found.begin(), found.end());
+    traces.insert(traces.end(), found.begin(), found.end());
+  }
+  return traces;
+}

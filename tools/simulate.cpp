@@ -1,0 +1,427 @@
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "console.hpp"
+#include "tribofit/friction/model.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/units.hpp"
+#include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/sensors.hpp"
+#include "tribofit/oscillator/simulate.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "tribofit/version.hpp"
+#include "verbs.hpp"
+
+namespace tribofit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The command line as given; empty means: from the published test of the nearest radius.
+struct Request {
+  std::string radius = "15mm", speed, load, law = "exponential";
+  std::string mu_s, mu_k, alpha, beta, mass, stiffness, damping_ratio;
+  std::vector<std::string> effects, formulas;
+  std::string noise_mu = "0", noise_v = "0mm/s", noise_colour = "0", scatter = "0", wander = "0";
+  std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
+  std::string velocity_gain = "1";
+  std::string duration = "20s", rate = "20kHz", run_up, reversing, out;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+
+/// What is simulated.
+struct Plan {
+  Rig rig;
+  Drive drive;
+  FrictionModel model{BaseLaw::exponential};
+  std::vector<double> parameters;
+  Sensors sensors;
+  SimulationOptions options;
+  double speed = 0;          ///< [rad/s], the amplitude where the drive reverses
+  double run_up = 0;         ///< [s]
+  double reversing = 0;      ///< [Hz]
+  double preset_radius = 0;  ///< of the published test the defaults come from [m]
+};
+
+constexpr double kRpm = 2 * std::numbers::pi / 60;
+
+double number(const std::string& text, const char* option) {
+  return parse_quantity(text, Quantity::dimensionless, option);
+}
+
+double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
+                double otherwise) {
+  return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
+}
+
+/// An effect and its parameters in SI, in the order of its info().
+struct ChosenEffect {
+  Effect effect;
+  std::vector<double> values;
+};
+
+/// Reads "KEY" or "KEY:name=value,name=value"; a bare number is in the unit of the catalogue, what is not named keeps
+/// its start.
+ChosenEffect read_effect(const std::string& text) {
+  const auto colon = text.find(':');
+  ChosenEffect chosen{make_effect(std::string_view(text).substr(0, colon)), {}};
+  const EffectInfo info = describe(chosen.effect);
+  std::vector<std::string> names;
+  for (const Parameter& parameter : info.parameters) {
+    names.push_back(parameter.name);
+    chosen.values.push_back(parameter.start * parameter.si);
+  }
+  std::size_t begin = colon == std::string::npos ? text.size() : colon + 1;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    begin = end + 1;
+    const auto equals = part.find('=');
+    if (equals == std::string::npos) {
+      throw InputError("'" + part + "' in --effect " + text + " is not name=value",
+                       "write it as " + info.key + ":" + names.front() + "=VALUE");
+    }
+    const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
+    if (found == names.end()) {
+      throw InputError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) + "'",
+                       "did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
+    }
+    const auto k = static_cast<std::size_t>(found - names.begin());
+    const Parameter& parameter = info.parameters[k];
+    const std::optional<Unit> unit = find_unit(parameter.unit);
+    chosen.values[k] = parse_quantity(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
+                                      info.key + ":" + parameter.name, parameter.unit);
+  }
+  return chosen;
+}
+
+BaseLaw read_law(const std::string& name) {
+  if (const std::optional<BaseLaw> law = find_law(name)) return *law;
+  const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
+  throw InputError("there is no law '" + name + "'", "did you mean '" + nearest_name(name, known) + "'?");
+}
+
+void plan_friction(const Request& request, const PublishedTest& test, BaseLaw law, Plan& plan) {
+  plan.parameters = {given_or(request.mu_s, Quantity::dimensionless, "--mu-s", "", test.friction.mu_s),
+                     given_or(request.mu_k, Quantity::dimensionless, "--mu-k", "", test.friction.mu_k)};
+  const bool exponential = law == BaseLaw::exponential, fractional = law == BaseLaw::fractional;
+  if ((!request.alpha.empty() && !exponential) || (!request.beta.empty() && !fractional)) {
+    throw InputError("the law '" + std::string(to_string(law)) + "' does not have the decay factor that was given",
+                     "--alpha is of the exponential law, --beta of the fractional one");
+  }
+  if (law != BaseLaw::coulomb) {
+    plan.parameters.push_back(given_or(exponential ? request.alpha : request.beta, Quantity::inverse_velocity,
+                                       exponential ? "--alpha" : "--beta", "s/mm", test.friction.decay));
+  }
+  std::vector<Effect> effects;
+  for (const std::string& text : request.effects) {
+    const ChosenEffect chosen = read_effect(text);
+    effects.push_back(chosen.effect);
+    plan.parameters.insert(plan.parameters.end(), chosen.values.begin(), chosen.values.end());
+  }
+  for (const std::string& text : request.formulas) {
+    const Formula formula(text);
+    effects.emplace_back(formula);
+    for (const Parameter& parameter : formula.info().parameters) {
+      plan.parameters.push_back(parameter.start * parameter.si);
+    }
+  }
+  plan.model = FrictionModel(law, std::move(effects));
+}
+
+void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
+  Drive& drive = plan.drive;
+  drive.radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
+  drive.mean_load = given_or(request.load, Quantity::force, "--load", "N", test.load);
+  plan.speed = given_or(request.speed, Quantity::angular_velocity, "--speed", "rpm", test.speed);
+  plan.run_up = given_or(request.run_up, Quantity::time, "--run-up", "s", 0);
+  plan.reversing = given_or(request.reversing, Quantity::frequency, "--reversing", "Hz", 0);
+  if (!request.run_up.empty() && !request.reversing.empty()) {
+    throw InputError("--run-up and --reversing exclude each other", "give one of them");
+  }
+  if (!request.run_up.empty() && !(plan.run_up > 0)) {
+    throw InputError("--run-up is not positive", "give it as e.g. 1s, or leave it out");
+  }
+  drive.speed = constant_speed(plan.speed);
+  if (plan.run_up > 0) drive.speed = run_up_speed(plan.speed, plan.run_up);
+  if (!request.reversing.empty()) drive.speed = reversing_speed(plan.speed, plan.reversing);
+}
+
+Sensors plan_sensors(const Request& request) {
+  return {.mass_below = parse_quantity(request.mass_below, Quantity::mass, "--mass-below", "kg"),
+          .force_bandwidth = parse_quantity(request.force_bandwidth, Quantity::frequency, "--force-bandwidth", "Hz"),
+          .force_damping = number(request.force_damping, "--force-damping"),
+          .friction_delay = parse_quantity(request.delay, Quantity::time, "--delay", "s"),
+          .velocity_gain = number(request.velocity_gain, "--velocity-gain"),
+          .velocity_high_pass = parse_quantity(request.high_pass, Quantity::frequency, "--high-pass", "Hz"),
+          .friction_noise = number(request.noise_mu, "--noise-mu"),
+          .velocity_noise = parse_quantity(request.noise_v, Quantity::velocity, "--noise-v", "mm/s"),
+          .noise_colour = number(request.noise_colour, "--noise-colour"),
+          .seed = request.seed};
+}
+
+Plan make_plan(const Request& request) {
+  Plan plan;
+  const BaseLaw law = read_law(request.law);
+  const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
+  const PublishedTest test = published_test(radius, law);
+  plan.preset_radius = test.radius;
+  plan_friction(request, test, law, plan);
+  plan_drive(request, test, plan);
+  plan.rig = rig_with_damping_ratio(
+      given_or(request.mass, Quantity::mass, "--mass", "kg", test.rig.mass),
+      given_or(request.stiffness, Quantity::stiffness, "--stiffness", "N/mm", test.rig.stiffness),
+      given_or(request.damping_ratio, Quantity::dimensionless, "--damping-ratio", "", test.rig.damping_ratio()));
+  plan.sensors = plan_sensors(request);
+  plan.options = {.duration = parse_quantity(request.duration, Quantity::time, "--duration", "s"),
+                  .rate = parse_quantity(request.rate, Quantity::frequency, "--rate", "Hz"),
+                  .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
+                  .seed = request.seed};
+  if (!(plan.options.rate > 0)) throw InputError("--rate is not positive", "give it as e.g. 20kHz");
+  if (plan.drive.speed.constant && plan.rig.mass > 0 && plan.rig.stiffness > 0) {
+    plan.options.settle = settling_time(plan.rig, plan.drive, plan.parameters);
+  }
+  return plan;
+}
+
+/// A column of a CSV file: one value a row, in the unit of its header, with a fixed number of decimals.
+struct Column {
+  const char* header;
+  const std::vector<double>* values;
+  double per_si;
+  int decimals;
+};
+
+/// Appends value with a fixed number of decimals; the integer route is several times faster than printing a double.
+void append_fixed(std::string& text, double value, int decimals) {
+  constexpr std::array<double, 10> kPower = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+  const auto scaled = std::llround(value * kPower[static_cast<std::size_t>(decimals)]);
+  const auto unit = static_cast<long long>(kPower[static_cast<std::size_t>(decimals)]);
+  std::array<char, 24> digits{};
+  const long long magnitude = scaled < 0 ? -scaled : scaled;
+  if (scaled < 0) text += '-';
+  const auto put = [&](long long n, std::size_t width) {
+    const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr;
+    const auto length = static_cast<std::size_t>(end - digits.data());
+    if (length < width) text.append(width - length, '0');
+    text.append(digits.data(), length);
+  };
+  put(magnitude / unit, 1);
+  if (decimals == 0) return;
+  text += '.';
+  put(magnitude % unit, static_cast<std::size_t>(decimals));
+}
+
+/// Decimals that give every multiple of the sampling interval exactly, at most nine.
+int time_decimals(double rate) {
+  double ticks = 1 / rate;
+  int decimals = 0;
+  while (decimals < 9 && std::abs(ticks - std::round(ticks)) > 1e-9 * ticks) {
+    ticks *= 10;
+    ++decimals;
+  }
+  return decimals;
+}
+
+void write_trace(WholeFile& file, const Trace& trace, double rate, bool with_speed) {
+  std::vector<Column> columns = {{"time_s", &trace.time, 1, time_decimals(rate)},
+                                 {"mu", &trace.friction, 1, 5},
+                                 {"v_b_mm_s", &trace.velocity, 1e3, 4}};
+  if (with_speed) columns.push_back({"speed_rpm", &trace.disc_speed, 1 / kRpm, 5});
+  std::string text;
+  for (const Column& column : columns) text.append(text.empty() ? "" : ",").append(column.header);
+  text += '\n';
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    for (const Column& column : columns) {
+      append_fixed(text, (*column.values)[i] * column.per_si, column.decimals);
+      text += &column == &columns.back() ? '\n' : ',';
+    }
+    constexpr std::size_t kChunk = 1 << 16;
+    if (text.size() > kChunk) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+}
+
+Json parameters_json(const Plan& plan) {
+  Json list = Json::array();
+  const auto slots = plan.model.parameters();
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const Parameter& parameter = slots[i].parameter;
+    list.push_back({{"name", parameter.name},
+                    {"value", plan.parameters[i] / parameter.si},
+                    {"unit", parameter.unit},
+                    {"effect", slots[i].effect.empty() ? Json() : Json(slots[i].effect)}});
+  }
+  return list;
+}
+
+Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
+  Json list = Json::array();
+  for (const SimulatedSlip& slip : motion.slips) {
+    list.push_back({{"break_away_s", slip.break_away_time},
+                    {"restick_s", std::isnan(slip.restick_time) ? Json() : Json(slip.restick_time)},
+                    {"stick_s", slip.stick_time},
+                    {"direction", slip.direction},
+                    {"mu_s", plan.parameters[0] + slip.mu_s_offset},
+                    {"break_away_friction", slip.break_away_friction}});
+  }
+  return list;
+}
+
+/// The whole truth about a simulated trace.
+Json truth(const Request& request, const Plan& plan, const SimulatedMotion& motion, double floor) {
+  const Sensors& sensors = plan.sensors;
+  return {{"tool", {{"name", "identify simulate"}, {"version", version}}},
+          {"trace",
+           {{"path", request.out},
+            {"samples", motion.size()},
+            {"duration_s", plan.options.duration},
+            {"rate_hz", plan.options.rate},
+            {"resolution", {{"mu", 1e-5}, {"v_b_mm_s", 1e-4}}}}},
+          {"conditions",
+           {{"radius_mm", 1e3 * plan.drive.radius},
+            {"speed_rpm", plan.speed / kRpm},
+            {"load_N", plan.drive.mean_load},
+            {"run_up_s", plan.run_up},
+            {"reversing_hz", plan.reversing},
+            {"settled_before_s", plan.options.settle}}},
+          {"law", to_string(plan.model.law())},
+          {"effects", plan.model.effect_keys()},
+          {"formulas", request.formulas},
+          {"parameters", parameters_json(plan)},
+          {"rig",
+           {{"mass_kg", plan.rig.mass},
+            {"stiffness_N_per_mm", 1e-3 * plan.rig.stiffness},
+            {"damping_ratio", plan.rig.damping_ratio()},
+            {"damping_N_s_per_mm", 1e-3 * plan.rig.damping},
+            {"defaults_from_radius_mm", 1e3 * plan.preset_radius}}},
+          {"scatter", {{"deviation", plan.options.scatter.deviation}, {"wander", plan.options.scatter.wander}}},
+          {"sensors",
+           {{"noise_mu", sensors.friction_noise},
+            {"noise_v_mm_s", 1e3 * sensors.velocity_noise},
+            {"noise_colour", sensors.noise_colour},
+            {"delay_ms", 1e3 * sensors.friction_delay},
+            {"mass_below_kg", sensors.mass_below},
+            {"force_bandwidth_hz", sensors.force_bandwidth},
+            {"force_damping_ratio", sensors.force_damping},
+            {"velocity_gain", sensors.velocity_gain},
+            {"velocity_high_pass_hz", sensors.velocity_high_pass}}},
+          {"seed", request.seed},
+          {"floor_rmse", floor},
+          {"break_aways", motion.break_away_count()},
+          {"cycles", cycles_json(plan, motion)}};
+}
+
+/// trace.csv -> trace.json.
+std::string json_path(const std::string& csv) {
+  const auto slash = csv.find_last_of('/');
+  const auto dot = csv.find_last_of('.');
+  const bool has_ending = dot != std::string::npos && dot != 0 && (slash == std::string::npos || dot > slash + 1);
+  const std::string stem = has_ending ? csv.substr(0, dot) : csv;
+  const std::string path = stem + ".json";
+  if (path == csv) throw InputError("--out " + csv + " is where the truth is written", "give a name ending in .csv");
+  return path;
+}
+
+void run(const Request& request) {
+  const std::string truth_path = json_path(request.out);
+  const Plan plan = make_plan(request);
+  WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
+  const SimulatedMotion motion = simulate(plan.rig, plan.drive, plan.model, plan.parameters, plan.options);
+  const Recording recording = record(motion, plan.model, plan.parameters, plan.sensors);
+  const double floor = floor_rmse(motion, recording, plan.model, plan.parameters);
+  write_trace(trace_file, recording.trace, plan.options.rate, plan.reversing > 0);
+  truth_file.write(truth(request, plan, motion, floor).dump(1) + "\n");
+  trace_file.finish();
+  truth_file.finish();
+  trace_file.commit();
+  truth_file.commit();
+  if (request.quiet) return;
+  std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
+                                 motion.break_away_count(), plan.model.name());
+  text += fmt::format("{}: the truth; over slip the true law leaves {:.6f} (RMSE)\n", truth_path, floor);
+  if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
+    text += fmt::format("what was not given is that of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
+  }
+  print(text + fmt::format("next: identify --radius {:g}mm {}\n", 1e3 * plan.drive.radius, request.out));
+}
+
+void add_options(CLI::App& verb, Request& r) {
+  const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
+    return verb.add_option(flag, value, help)->group(name);
+  };
+  verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json")->required();
+  verb.add_option("--duration", r.duration, "of the record")->capture_default_str();
+  verb.add_option("--rate", r.rate, "samples per second")->capture_default_str();
+  verb.add_option("--seed", r.seed, "of noise and scatter")->capture_default_str();
+  verb.add_flag("--quiet", r.quiet, "print nothing");
+  const char* rig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
+  group(rig, "--radius", r.radius, "friction radius")->capture_default_str();
+  group(rig, "--speed", r.speed, "disc speed, e.g. 4rpm");
+  group(rig, "--load", r.load, "normal force, e.g. 50N");
+  group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
+  group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
+  group(rig, "--damping-ratio", r.damping_ratio, "of the block on its spring, e.g. 0.02");
+  group(rig, "--run-up", r.run_up, "start from standstill and reach the speed in this time; else the start is settled");
+  group(rig, "--reversing", r.reversing,
+        "the disc goes forth and back as a sine of this frequency; --speed is its peak");
+  const char* law = "Friction (default: the published values at the nearest radius)";
+  group(law, "--law", r.law, "exponential, fractional or coulomb")->capture_default_str();
+  group(law, "--mu-s", r.mu_s, "static friction");
+  group(law, "--mu-k", r.mu_k, "kinetic friction");
+  group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");
+  group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
+  group(law, "--effect", r.effects, "KEY:name=value,... (repeatable; `identify effects` lists them)")
+      ->take_all()
+      ->expected(1);
+  group(law, "--formula", r.formulas,
+        "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
+      ->take_all()
+      ->expected(1);
+  group(law, "--scatter", r.scatter, "standard deviation of mu_s from cycle to cycle")->capture_default_str();
+  group(law, "--wander", r.wander, "correlation of the scatter between neighbouring cycles")->capture_default_str();
+  const char* sensors = "Sensors";
+  group(sensors, "--noise-mu", r.noise_mu, "standard deviation of the noise on mu")->capture_default_str();
+  group(sensors, "--noise-v", r.noise_v, "of the noise on v_b")->capture_default_str();
+  group(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white")
+      ->capture_default_str();
+  group(sensors, "--delay", r.delay, "mu is recorded later than v_b")->capture_default_str();
+  group(sensors, "--mass-below", r.mass_below, "mass below the force sensor")->capture_default_str();
+  group(sensors, "--force-bandwidth", r.force_bandwidth, "second-order low-pass on mu; 0: none")->capture_default_str();
+  group(sensors, "--force-damping", r.force_damping, "its damping ratio")->capture_default_str();
+  group(sensors, "--velocity-gain", r.velocity_gain, "vibrometer reading over true velocity")->capture_default_str();
+  group(sensors, "--high-pass", r.high_pass, "first-order high-pass of the vibrometer; 0: none")->capture_default_str();
+}
+
+}  // namespace
+}  // namespace tribofit
+
+void add_simulate(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("simulate", "Writes a simulated trace with the truth beside it");
+  auto request = std::make_shared<tribofit::Request>();
+  tribofit::add_options(*verb, *request);
+  verb->callback([request, &status] {
+    tribofit::run(*request);
+    status = 0;
+  });
+}
