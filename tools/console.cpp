@@ -41,4 +41,6 @@ void progress(const std::string& text) {
   if (::isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", text.c_str());
 }
 
-void complain(const std::string& text) { std::fprintf(stderr, "identify: error: %s\n", text.c_str()); }
+void complain(const std::string& text) {
+  std::fprintf(stderr, "identify: error: %s\n", text.c_str());
+}

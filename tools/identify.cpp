@@ -49,10 +49,12 @@ void add_fit_options(CLI::App& app, Settings& s) {
   fit("--law", s.laws, "exponential, fractional or coulomb (repeatable; default the first two)")
       ->check(CLI::IsMember({"exponential", "fractional", "coulomb"}))
       ->allow_extra_args(false);
-  fit("--effect", s.effects, "Effect to add to every law (repeatable; see `identify effects`)")->allow_extra_args(false);
+  fit("--effect", s.effects, "Effect to add to every law (repeatable; see `identify effects`)")
+      ->allow_extra_args(false);
   fit("--formula", s.formulas, "Effect of your own: 'name = a*exp(-v/w); a=0.02, w=6mm/s' (repeatable)")
       ->allow_extra_args(false);
-  fit("--protocol", s.protocol, "joint, published, or both (default)")->check(CLI::IsMember({"both", "joint", "published"}));
+  fit("--protocol", s.protocol, "joint, published, or both (default)")
+      ->check(CLI::IsMember({"both", "joint", "published"}));
   fit("--loss", s.loss, "squares (default), huber or soft-l1")->check(CLI::IsMember({"squares", "huber", "soft-l1"}));
   fit("--starts", s.starts, "Starting points of the search (default 5)")->check(CLI::Range(1, 1000));
   fit("--folds", s.folds, "Blocks of cycles held out in turn (default 5)")->check(CLI::Range(2, 1000));
@@ -61,7 +63,8 @@ void add_fit_options(CLI::App& app, Settings& s) {
 }
 
 void add_output_options(CLI::App& app, Settings& s) {
-  app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")->group("Output");
+  app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
+      ->group("Output");
   app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder")->group("Output");
   app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
       ->check(CLI::Range(0, 1024))
@@ -108,7 +111,8 @@ void check_usage(const Settings& s, const std::vector<std::string>& traces) {
   inputs.insert(inputs.end(), s.continued_in.begin(), s.continued_in.end());
   inputs.push_back(s.second_file);
   for (const std::string& input : inputs) {
-    if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite the trace " + input);
+    if (!s.json.empty() && same_file(s.json, input))
+      throw CLI::ValidationError("--json would overwrite the trace " + input);
   }
 }
 
@@ -137,8 +141,8 @@ int run_one(const Settings& s, const std::string& trace, const IdentifyOptions& 
     terminal.arguments = arguments;
     print(render_terminal(result, terminal));
   }
-  const bool fitted =
-      std::any_of(result.fits.begin(), result.fits.end(), [](const Fit& f) { return f.converged && !f.parameters.empty(); });
+  const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
+                                  [](const Fit& f) { return f.converged && !f.parameters.empty(); });
   if (result.analysed && fitted) return kDone;
   std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
   complain(trace + ": the analysis could not be done: " + reason);
@@ -171,16 +175,16 @@ void add_identify(CLI::App& app, int& status) {
   add_input_options(app, *settings);
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
+  app.parse_complete_callback([settings, &app] {  // runs before that of a verb
+    const auto verbs = app.get_subcommands();
+    if (verbs.empty() || (own_options(app).empty() && settings->traces.empty())) return;
+    const std::string verb = verbs.front()->get_name();
+    throw CLI::ValidationError("options of `identify " + verb + "` stand behind '" + verb + "'");
+  });
   app.callback([settings, &app, &status] {
+    if (!app.get_subcommands().empty()) return;
     const Settings& s = *settings;
     const std::vector<std::string> arguments = own_options(app);
-    if (const auto verbs = app.get_subcommands(); !verbs.empty()) {
-      const std::string verb = verbs.front()->get_name();
-      if (!arguments.empty() || !s.traces.empty()) {
-        throw CLI::ValidationError("options of `identify " + verb + "` stand behind '" + verb + "'");
-      }
-      return;
-    }
     if (s.traces.empty()) throw CLI::ValidationError("no trace given; try `identify --radius 15mm trace.csv`");
     const IdentifyOptions options = options_from(s);
     const std::vector<std::string> traces = traces_from(s.traces);

@@ -42,14 +42,17 @@ std::string nearest_option(const CLI::App& app, const std::string& message) {
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     }
   }
-  return "; did you mean " + tribofit::nearest_name(word, known) + "?";
+  const std::string nearest = tribofit::nearest_name(word, known);
+  constexpr std::size_t kAlike = 4;  // two dashes and two letters: anything less is not a misspelling
+  return nearest.substr(0, kAlike) == word.substr(0, kAlike) ? "; did you mean " + nearest + "?" : "";
 }
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) text += nearest_option(app, text);
   const auto verbs = app.get_subcommands();
-  complain(text + "\n`identify " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") + "--help` lists the options");
+  complain(text + "\n`identify " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") +
+           "--help` lists the options");
   return kWrongUsage;
 }
 
@@ -75,6 +78,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // `identify ... | head` is no accident
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disc
   try {
     return run(argc, argv);
   } catch (const tribofit::InputError& error) {

@@ -30,7 +30,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-double positive(const std::string& text, Quantity quantity, const std::string& option, const std::string& bare_unit = "") {
+double positive(const std::string& text, Quantity quantity, const std::string& option,
+                const std::string& bare_unit = "") {
   const double value = parse_quantity(text, quantity, option, bare_unit);
   if (!(value > 0)) {
     throw InputError(option + ": '" + text + "' is not greater than zero",
@@ -49,7 +50,8 @@ std::vector<double> radii_from(const std::string& text) {
   for (const std::string& part : parts) {
     radii.push_back(positive(part, Quantity::length, "--radius", unit));
     if (radii.back() > kLargest) {
-      throw InputError("--radius: '" + part + "' would be more than 10 m", "give the unit, as in 15mm (a bare number is in m)");
+      throw InputError("--radius: '" + part + "' would be more than 10 m",
+                       "give the unit, as in 15mm (a bare number is in m)");
     }
   }
   return radii;
@@ -157,7 +159,8 @@ std::vector<std::string> traces_from(const std::vector<std::string>& names) {
     for (std::filesystem::directory_iterator it(name, error), end; !error && it != end; it.increment(error)) {
       if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
     }
-    if (error) throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {name, 0, ""});
+    if (error)
+      throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {name, 0, ""});
     if (found.empty()) {
       throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {name, 0, ""});
     }

@@ -28,6 +28,6 @@ struct Settings {
 /// What is typed, in SI and checked. Throws tribofit::InputError that names the option.
 tribofit::IdentifyOptions options_from(const Settings& settings);
 
-/// The traces named, folders replaced by the CSV files in them in order of name. Throws tribofit::InputError for a folder
-/// without traces.
+/// The traces named, folders replaced by the CSV files in them in order of name. Throws tribofit::InputError for a
+/// folder without traces.
 std::vector<std::string> traces_from(const std::vector<std::string>& names);

@@ -53,10 +53,16 @@ struct Job {
   const FitOptions& options;
   Bounds bounds{};
   ModelResiduals::Options loss{};
+  std::vector<ModelResiduals::Whitening> whitening{};  ///< of every slip; empty: plain least squares
 
+  ModelResiduals residuals(const std::vector<std::size_t>& slips) const {
+    ModelResiduals out(model, observations, slips, loss);
+    if (!whitening.empty()) out.whiten(whitening);
+    return out;
+  }
   SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
                      const SolverOptions& solver) const {
-    return minimize(ModelResiduals(model, observations, slips, loss), start, bounds.lower, bounds.upper, solver);
+    return minimize(residuals(slips), start, bounds.lower, bounds.upper, solver);
   }
 };
 
@@ -85,8 +91,9 @@ ExtremeMean mean_extreme(const Observations& observations, const Segmentation& s
   return out;
 }
 
-/// Best of several starts: compared on a part of the slips, then settled on all of them.
-SolverResult joint_estimate(const Job& job, Fit& fit, std::vector<double>& start) {
+/// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the scatter of
+/// break-away, then with that scatter taken out.
+SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   const auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
   SolverOptions quick;
@@ -102,7 +109,10 @@ SolverResult joint_estimate(const Job& job, Fit& fit, std::vector<double>& start
   }
   start = starts[0];
   if (best != 0) fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
-  return job.solve(all_slips(job.observations), tries[best].p, SolverOptions());
+  const std::vector<std::size_t> all = all_slips(job.observations);
+  const std::vector<double> plain = job.solve(all, tries[best].p, quick).p;
+  job.whitening = job.residuals(all).whitening_at(plain.data());
+  return job.solve(all, plain, SolverOptions());
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
@@ -141,9 +151,6 @@ void hold_out(const Job& job, const std::vector<double>& p, const SampleErrors& 
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
-  const ModelResiduals whole(job.model, job.observations, all);
-  std::vector<double> at_best(whole.count());
-  whole.evaluate(p.data(), at_best.data(), nullptr);
   SolverOptions quick;
   quick.max_iterations = 25;
   quick.relative_cost = 1e-6;
@@ -208,10 +215,16 @@ void fill_parameters(const Job& job, const SolverResult& solution, const std::ve
   fit.covariance.assign(spread.covariance.data(), spread.covariance.data() + spread.covariance.size());
 }
 
-void fill_floor(const Job& job, const NormalEquations& equations, const SampleErrors& errors, Fit& fit) {
+void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   fit.floor = estimate_floor(job.motion, job.segmentation);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
-  const double scatter = std::pow(fit.floor.scatter, 2) * equations.level_sensitivity / std::max(1.0, count);
+  const std::vector<ModelResiduals::Whitening> whitening =
+      job.whitening.empty() ? job.residuals(all_slips(job.observations)).whitening_at(p.data()) : job.whitening;
+  double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
+  for (const auto& slip : whitening) {
+    for (const double g : slip.g) sensitivity += g * g;
+  }
+  const double scatter = std::pow(fit.floor.scatter, 2) * sensitivity / std::max(1.0, count);
   fit.floor.rmse = std::sqrt(std::pow(fit.floor.noise, 2) + scatter);
   const double above = std::pow(errors.constant_rmse, 2) - std::pow(fit.floor.rmse, 2);
   const double left = std::pow(fit.error.rmse, 2) - std::pow(fit.floor.rmse, 2);
@@ -267,7 +280,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   if (published && !std::isfinite(extremes[0].value + extremes[1].value)) return fit;
 
   const std::vector<double>& p = solution.p;
-  const ModelResiduals residuals(model, observations, all_slips(observations), job.loss);
+  const ModelResiduals residuals = job.residuals(all_slips(observations));
   const NormalEquations equations = normal_equations(residuals, observations, p);
   const std::vector<bool> silent = equations.silent();
   std::vector<bool> free(p.size()), inside(p.size());
@@ -290,7 +303,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   const SampleErrors errors = sample_errors(model, p, record, observations);
   fit.error = errors.figures;
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
-  fill_floor(job, equations, errors, fit);
+  fill_floor(job, p, errors, fit);
   hold_out(job, p, errors, fit);
   const std::vector<double> systematic = systematic_errors(model, p, motion, observations, instruments, inside);
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];

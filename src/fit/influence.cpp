@@ -35,7 +35,6 @@ NormalEquations normal_equations(const ModelResiduals& residuals, const Observat
     if (residuals.break_away_row(k) < residuals.count()) add(cycle, residuals.break_away_row(k), 1);
   }
   for (const Eigen::MatrixXd& c : equations.curvature) equations.total += c;
-  equations.level_sensitivity = equations.total(0, 0);
   return equations;
 }
 

@@ -13,7 +13,6 @@ struct NormalEquations {
   std::vector<Eigen::MatrixXd> curvature;  ///< J'J of each cycle
   std::vector<Eigen::VectorXd> gradient;   ///< J'r of each cycle
   Eigen::MatrixXd total;                   ///< sum of the curvatures
-  double level_sensitivity = 0;            ///< sum of squares of d model/d mu_s over the rows, weighted by samples
 
   /// Parameters the data say nothing about: their column of J is zero.
   std::vector<bool> silent() const;

@@ -81,7 +81,11 @@ bool ModelResiduals::run(const T* p, Write&& write) const {
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
-  if (jacobian == nullptr) return run<double>(p, [&](std::size_t row, double r) { residual[row] = r; });
+  if (jacobian == nullptr) {
+    if (!run<double>(p, [&](std::size_t row, double r) { residual[row] = r; })) return false;
+    apply_whitening(residual, nullptr);
+    return true;
+  }
   const std::size_t n = parameter_count();
   std::vector<Dual> dual(n);
   for (std::size_t first = 0; first < n; first += kStride) {
@@ -95,7 +99,69 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
     });
     if (!finite) return false;
   }
+  apply_whitening(residual, jacobian);
   return true;
+}
+
+void ModelResiduals::apply_whitening(double* residual, double* jacobian) const {
+  if (whitening_ == nullptr) return;
+  const std::size_t n = parameter_count();
+  std::vector<double> projected(n + 1);
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    const Whitening& w = (*whitening_)[slips_[k]];
+    if (w.g.empty()) continue;
+    const auto each_row = [&](auto&& visit) {
+      for (std::size_t i = 0; i < rows_[k].size(); ++i) visit(rows_[k].begin + i, w.g[i]);
+      visit(break_away_rows_[k], w.g.back());
+    };
+    double norm = 0;
+    std::fill(projected.begin(), projected.end(), 0.0);
+    each_row([&](std::size_t row, double g) {
+      norm += g * g;
+      projected[n] += g * residual[row];
+      for (std::size_t j = 0; jacobian != nullptr && j < n; ++j) projected[j] += g * jacobian[row * n + j];
+    });
+    for (double& x : projected) x *= w.part / norm;
+    each_row([&](std::size_t row, double g) {
+      residual[row] -= g * projected[n];
+      for (std::size_t j = 0; jacobian != nullptr && j < n; ++j) jacobian[row * n + j] -= g * projected[j];
+    });
+  }
+}
+
+std::vector<ModelResiduals::Whitening> ModelResiduals::whitening_at(const double* p) const {
+  const std::size_t n = parameter_count();
+  std::vector<double> residual(count_), jacobian(count_ * n);
+  std::vector<Whitening> out(observations_.slips.size());
+  if (!evaluate(p, residual.data(), jacobian.data())) return out;
+  // delta_i of each slip by least squares, and what noise is left once it is taken out.
+  std::vector<double> deltas, norms(slips_.size(), 0.0);
+  double left = 0, rows = 0;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (!observations_.slips[slips_[k]].from_stick) continue;
+    Whitening& w = out[slips_[k]];
+    double projection = 0, squares = 0;
+    const auto add = [&](std::size_t row) {
+      const double g = jacobian[row * n];
+      w.g.push_back(g);
+      norms[k] += g * g;
+      projection += g * residual[row];
+      squares += residual[row] * residual[row];
+    };
+    for (std::size_t row = rows_[k].begin; row < rows_[k].end; ++row) add(row);
+    add(break_away_rows_[k]);
+    deltas.push_back(projection / norms[k]);
+    left += squares - projection * projection / norms[k];
+    rows += static_cast<double>(w.g.size()) - 1;
+  }
+  double mean = 0, scatter = 0;
+  for (const double delta : deltas) mean += delta / static_cast<double>(deltas.size());
+  for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / static_cast<double>(deltas.size());
+  const double noise = rows > 0 ? left / rows : 0;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (norms[k] > 0 && noise > 0) out[slips_[k]].part = 1 - 1 / std::sqrt(1 + scatter * norms[k] / noise);
+  }
+  return out;
 }
 
 }  // namespace tribofit

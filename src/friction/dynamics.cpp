@@ -1,6 +1,5 @@
 #include "tribofit/friction/dynamics.hpp"
 
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -27,7 +26,7 @@ struct OneSample {
     slip.load = one(load);
     slip.temperature = one(temperature);
     slip.stick_time = at.stick_time;
-    slip.direction = at.velocity < 0 ? -1 : 1;
+    slip.direction = at.direction;
     slip.mean_load = at.mean_load;
     slip.mean_temperature = at.mean_temperature;
   }
@@ -68,7 +67,8 @@ void FrictionDynamics::begin_slip(double stick_time, double direction, double of
 
 double FrictionDynamics::break_away_friction(const Instant<double>& at) const {
   Instant<double> rest = at;
-  rest.velocity = direction_ * std::numeric_limits<double>::min();  // at rest, but with a sign
+  rest.velocity = 0;
+  rest.direction = direction_;
   return direction_ * modulated(model_, p_.data(), rest, direction_ * law_.mu_s);
 }
 
@@ -76,8 +76,10 @@ void FrictionDynamics::states_at_break_away(std::span<double> state) const {
   for (double& phi : state) phi = law_.mu_s;
 }
 
-double FrictionDynamics::run(const Instant<double>& at, std::span<const double> state, std::span<double> rate,
+double FrictionDynamics::run(const Instant<double>& now, std::span<const double> state, std::span<double> rate,
                              bool want_rates) const {
+  Instant<double> at = now;
+  if (at.velocity != 0) at.direction = at.velocity < 0 ? -1 : 1;
   double mu = steady_friction(model_, p_.data(), law_, at);
   std::size_t k = 0;
   bool is_signed = false;
@@ -94,7 +96,7 @@ double FrictionDynamics::run(const Instant<double>& at, std::span<const double> 
       ++k;
     }
   });
-  if (!is_signed && at.velocity < 0) mu = -mu;
+  if (!is_signed && at.direction < 0) mu = -mu;
   return want_rates ? mu : modulated(model_, p_.data(), at, mu);
 }
 

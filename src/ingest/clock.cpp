@@ -66,7 +66,7 @@ class Clock {
   /// A column called "step" that changes all the time counts samples, not steps of a recipe.
   void ignore_counter() {
     std::size_t changes = 0;
-    for (std::size_t i = 1; i < step_.size(); ++i) changes += step_[i] != step_[i - 1] ? 1 : 0;
+    for (std::size_t i = 1; i < step_.size(); ++i) changes += step_[i] != step_[i - 1] ? 1U : 0U;
     if (changes <= 10 || changes * 10 <= step_.size()) return;
     recording_.warnings.push_back(fmt::format("column {} changes {} times and was not taken for steps of a recipe",
                                               recording_.location(0, Channel::step).column, changes));

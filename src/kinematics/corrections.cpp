@@ -48,7 +48,8 @@ void correct_crosstalk(Trace& trace, double part) {
 void shift_earlier(std::span<double> signal, double delay, double step) {
   const std::size_t n = signal.size();
   if (n < 2 || delay == 0) return;
-  // A negative delay is a positive one on the reversed signal; walking forwards then only reads what is not yet written.
+  // A negative delay is a positive one on the reversed signal; walking forwards then only reads what is not yet
+  // written.
   const bool reversed = delay < 0;
   if (reversed) std::reverse(signal.begin(), signal.end());
   const double samples = std::abs(delay) / step;
@@ -137,8 +138,8 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
     // Second order with zeta = 0.7 (flat response): group delay 2 zeta / (2 pi f_0) at low frequency.
     const double delay = 2 * 0.7 / (two_pi * sensor.bandwidth->value);
     correct_delay(trace.friction, delay, step, ends);
-    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {:.4g} Hz", 1e3 * delay,
-                                sensor.bandwidth->value));
+    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {:.4g} Hz",
+                                1e3 * delay, sensor.bandwidth->value));
   }
   return ends;
 }

@@ -25,7 +25,8 @@ std::vector<double> disc_angle(const Motion& motion) {
   if (!motion.disc_speed.empty()) {
     angle[0] = motion.disc_speed[0] * motion.time[0];
     for (std::size_t i = 1; i < n; ++i) {
-      angle[i] = angle[i - 1] + 0.5 * (motion.disc_speed[i - 1] + motion.disc_speed[i]) * (motion.time[i] - motion.time[i - 1]);
+      angle[i] = angle[i - 1] +
+                 0.5 * (motion.disc_speed[i - 1] + motion.disc_speed[i]) * (motion.time[i] - motion.time[i - 1]);
     }
     return angle;
   }

@@ -116,7 +116,8 @@ Band band_of(std::span<const double> signal, double step) {
   std::size_t upper = 1;
   for (std::size_t k = 2; k + 2 < n; ++k) {
     const double smooth = (spectrum.amplitude[k - 2] + spectrum.amplitude[k - 1] + spectrum.amplitude[k] +
-                           spectrum.amplitude[k + 1] + spectrum.amplitude[k + 2]) / 5;
+                           spectrum.amplitude[k + 1] + spectrum.amplitude[k + 2]) /
+                          5;
     if (smooth > 2 * floor) upper = k;
     if (k > 4 * upper + 16) break;  // a lone line far above is not content
   }
@@ -126,8 +127,9 @@ Band band_of(std::span<const double> signal, double step) {
 
 std::string describe(const char* name, const Band& band) {
   if (band.upper <= 0) return fmt::format("{}: too short to say", name);
-  if (band.filtered) return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {:.3g} Hz", name,
-                                        band.floor, band.upper);
+  if (band.filtered)
+    return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {:.3g} Hz", name, band.floor,
+                       band.upper);
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
@@ -136,7 +138,8 @@ std::string describe(const char* name, const Band& band) {
 HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chunks& velocity,
                           const Instruments& instruments) {
   HealthItem item{"clipping", Status::ok, "no runs of identical samples at the end of a channel's range"};
-  const auto look = [&](const char* name, std::span<const double> channel, const Chunks& chunks, double factor, const char* unit) {
+  const auto look = [&](const char* name, std::span<const double> channel, const Chunks& chunks, double factor,
+                        const char* unit) {
     double at = 0;
     if (repeats_everywhere(channel)) return;
     const std::size_t count = clipped_samples(channel, chunks, at);
@@ -153,7 +156,8 @@ HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chun
     const double range = instruments.vibrometer.range->value;
     if (largest >= 0.995 * range) {
       item.status = Status::warning;
-      item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest, 1e3 * range);
+      item.message =
+          fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest, 1e3 * range);
     }
   }
   return item;
@@ -169,8 +173,10 @@ HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chu
   if (gaps.count == 0 && spikes == 0) return item;
   const bool many = static_cast<double>(gaps.count + spikes) > 1e-3 * static_cast<double>(n);
   item.status = many ? Status::problem : Status::warning;
-  item.message = fmt::format("{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms), {} lone samples far "
-                             "from their neighbours", gaps.count, 1e3 * gaps.longest, 1e3 * step, spikes);
+  item.message = fmt::format(
+      "{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms), {} lone samples far "
+      "from their neighbours",
+      gaps.count, 1e3 * gaps.longest, 1e3 * step, spikes);
   return item;
 }
 
@@ -180,19 +186,24 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
     item.message = fmt::format("the declared high-pass of {:.3g} Hz is undone", *declared);
   } else if (undone) {
     item.status = Status::warning;
-    item.message = fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz ({} plateaus); "
-                               "undone", estimate.corner, estimate.std_error, estimate.plateaus);
+    item.message = fmt::format(
+        "the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz ({} plateaus); "
+        "undone",
+        estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (estimate.significant) {
     item.status = Status::problem;
-    item.message = fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz; left as it is",
-                               estimate.corner, estimate.std_error);
+    item.message =
+        fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz; left as it is",
+                    estimate.corner, estimate.std_error);
   } else if (estimate.creeping) {
-    item.message = fmt::format("the plateau falls faster towards break-away (as a high-pass: {:.3f} Hz in its first half, "
-                               "{:.3f} Hz in its second): creep of the contact, no high-pass", estimate.first_half,
-                               estimate.second_half);
+    item.message = fmt::format(
+        "the plateau falls faster towards break-away (as a high-pass: {:.3f} Hz in its first half, "
+        "{:.3f} Hz in its second): creep of the contact, no high-pass",
+        estimate.first_half, estimate.second_half);
   } else if (estimate.plateaus >= 3) {
-    item.message = fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +- {:.4f} Hz ({} plateaus)",
-                               estimate.corner, estimate.std_error, estimate.plateaus);
+    item.message =
+        fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +- {:.4f} Hz ({} plateaus)",
+                    estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (sticks) {
     item.message = "too few plateaus to look for a high-pass";
   }
@@ -228,7 +239,8 @@ HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::si
     const double sign = v[i] > motion.plateau_velocity ? 1 : -1;
     // The velocity still needs edge/|dv/dt| to reach zero.
     const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
-    const double rest = slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 0.25 * static_cast<double>(half)) : 0;
+    const double rest =
+        slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 0.25 * static_cast<double>(half)) : 0;
     const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
     if (zero + half + 1 >= n) continue;
     for (std::size_t k = 0; k < 2 * half; ++k) jump[k] += sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
@@ -241,12 +253,13 @@ HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::si
   squares -= *sharpest * *sharpest;
   const double spread = std::sqrt(squares / static_cast<double>(jump.size() - 1));
   if (-*sharpest < 8 * spread) {
-    item.message = fmt::format("friction does not jump at re-stick ({} slips): no statement on a delay between the channels", used);
+    item.message = fmt::format(
+        "friction does not jump at re-stick ({} slips): no statement on a delay between the channels", used);
     return item;
   }
   const double delay = motion.step * (static_cast<double>(sharpest - jump.begin()) - static_cast<double>(half) + 0.5);
-  item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)", 1e3 * std::abs(delay),
-                             delay >= 0 ? "after" : "before", used);
+  item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)",
+                             1e3 * std::abs(delay), delay >= 0 ? "after" : "before", used);
   if (std::abs(delay) > std::max(3e-4, 2.5 * motion.step)) item.status = Status::warning;
   return item;
 }
@@ -299,8 +312,9 @@ HealthItem check_speed_ripple(const Motion& motion, const Rests& rests, std::siz
   const double once = std::hypot(x(1), x(2)), twice = std::hypot(x(3), x(4));
   const double scale = 1 / std::abs(motion.constant_disc_velocity);
   const double error = spread * std::sqrt(2.0 / static_cast<double>(n));
-  item.message = fmt::format("the plateau follows the disc angle by {:.2f} % once and {:.2f} % twice a revolution (+- {:.2f} %)",
-                             100 * once * scale, 100 * twice * scale, 100 * error * scale);
+  item.message =
+      fmt::format("the plateau follows the disc angle by {:.2f} % once and {:.2f} % twice a revolution (+- {:.2f} %)",
+                  100 * once * scale, 100 * twice * scale, 100 * error * scale);
   const double largest = std::max(once, twice);
   if (largest * scale > 0.02 && largest > 5 * error) item.status = Status::warning;
   return item;

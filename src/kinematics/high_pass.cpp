@@ -78,7 +78,12 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
     integral += h * velocity.mean[b];
     if (!disc.empty()) restored[b] -= disc[b];
   }
-  if (rests.empty()) return terms;
+  if (rests.empty()) {  // no plateau to be level: no drift and no net displacement of the block
+    const Line line = fit_line(restored);
+    terms.slope = -line.slope / h;
+    terms.offset = -line.value + 0.5 * line.slope * static_cast<double>(restored.size());
+    return terms;
+  }
   // Straight line through the levels of the plateaus; those of a run-up or a mistaken rest are left out by halves.
   struct Level {
     double time, value, weight;
@@ -87,8 +92,8 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
   for (const Rest& run : rests.runs) {
     const std::size_t n = run.inner_end() - run.inner_begin();
     const Line line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
-    levels.push_back({0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()), line.value,
-                      static_cast<double>(n)});
+    levels.push_back(
+        {0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()), line.value, static_cast<double>(n)});
   }
   double offset = 0, slope = 0, limit = HUGE_VAL;
   for (int pass = 0; pass < 4; ++pass) {
@@ -124,7 +129,8 @@ void restore(std::span<double> velocity, double step, const HighPassTerms& terms
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     const double v = velocity[i];
     // Trapezoid: half of the sample now, half with the next.
-    velocity[i] = v + terms.rate * (integral + 0.5 * step * v) + terms.offset + terms.slope * step * static_cast<double>(i);
+    velocity[i] =
+        v + terms.rate * (integral + 0.5 * step * v) + terms.offset + terms.slope * step * static_cast<double>(i);
     integral += step * v;
   }
 }

@@ -15,14 +15,14 @@
 namespace tribofit {
 namespace {
 
+using kinematics::add_sensor_mass;
 using kinematics::block_means;
 using kinematics::BlockMeans;
+using kinematics::find_rests;
 using kinematics::HighPassEstimate;
 using kinematics::LevelRange;
 using kinematics::Rest;
 using kinematics::Rests;
-using kinematics::add_sensor_mass;
-using kinematics::find_rests;
 
 /// omega r of every sample, or one value for all.
 struct Disc {
@@ -32,15 +32,19 @@ struct Disc {
   double largest = 0;           // |omega r|
 };
 
-const Condition& first_known(const Condition& a, const Condition& b) { return a.known() ? a : b; }
+const Condition& first_known(const Condition& a, const Condition& b) {
+  return a.known() ? a : b;
+}
 
 void require_channels(const Trace& trace) {
   const std::size_t n = trace.size();
   const InputLocation where{trace.path, 0, ""};
   if (n < 2) throw InputError("the trace has fewer than two samples", "give a longer record", where);
-  if (trace.friction.size() != n) throw InputError("the trace has no friction for every sample", "name the friction column", where);
+  if (trace.friction.size() != n)
+    throw InputError("the trace has no friction for every sample", "name the friction column", where);
   if (trace.velocity_kind != VelocityKind::fixed_block && trace.velocity.size() != n) {
-    throw InputError("the trace has no velocity for every sample", "name the column with --columns v_b=NAME or v_r=NAME", where);
+    throw InputError("the trace has no velocity for every sample",
+                     "name the column with --columns v_b=NAME or v_r=NAME", where);
   }
 }
 
@@ -74,7 +78,8 @@ Disc disc_of(const Trace& trace) {
   }
   disc.varying.resize(n);
   for (const auto& [step, value] : parts) {
-    for (std::size_t i = step->begin; i < step->end; ++i) disc.varying[i] = channel ? value * trace.disc_speed[i] : value;
+    for (std::size_t i = step->begin; i < step->end; ++i)
+      disc.varying[i] = channel ? value * trace.disc_speed[i] : value;
   }
   for (double v : disc.varying) disc.largest = std::max(disc.largest, std::abs(v));
   return disc;
@@ -99,10 +104,10 @@ double largest_of(std::span<const double> values) {
 
 /// The velocity in blocks, where it rests, and what its noise is.
 struct Survey {
-  BlockMeans blocks;   // of v_b, or of v_r where that was measured
-  BlockMeans disc;     // of omega r, where it varies
-  Rests rests;         // of blocks minus disc where that varies, else of blocks
-  double noise = 0;    // [m/s]
+  BlockMeans blocks;  // of v_b, or of v_r where that was measured
+  BlockMeans disc;    // of omega r, where it varies
+  Rests rests;        // of blocks minus disc where that varies, else of blocks
+  double noise = 0;   // [m/s]
   bool sticks = false;
 };
 
@@ -172,7 +177,8 @@ std::vector<double> disc_slopes(const Survey& s) {
   std::vector<double> slopes;
   if (s.disc.mean.empty()) return slopes;
   for (const Rest& run : s.rests.runs) {
-    const auto part = std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
+    const auto part =
+        std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
     slopes.push_back(kinematics::fit_line(part).slope / s.blocks.step);
   }
   return slopes;
@@ -212,12 +218,13 @@ std::size_t run_up_blocks(const Survey& s) {
   for (std::size_t r = 1; r < s.rests.runs.size(); ++r) {
     gaps.push_back(static_cast<double>(s.rests.runs[r].begin - s.rests.runs[r - 1].end));
   }
-  const bool slow_head = static_cast<double>(head) > 3 * kinematics::median(std::move(gaps)) &&
-                         std::abs(v[0]) < 0.5 * std::abs(level);
+  const bool slow_head =
+      static_cast<double>(head) > 3 * kinematics::median(std::move(gaps)) && std::abs(v[0]) < 0.5 * std::abs(level);
   std::size_t k = 0;
   if (std::abs(pieces.front().level) < 0.9 * std::abs(level)) {
     while (k < pieces.size() && !settled(pieces[k])) ++k;
-    const auto later = static_cast<double>(std::count_if(pieces.begin() + static_cast<std::ptrdiff_t>(k), pieces.end(), settled));
+    const auto later =
+        static_cast<double>(std::count_if(pieces.begin() + static_cast<std::ptrdiff_t>(k), pieces.end(), settled));
     if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
     // Ringing after a re-stick at the very beginning is no run-up either.
     std::vector<double> durations;
@@ -346,8 +353,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   const std::size_t head = std::max(lost.head, options.trim ? run_up : 0);
 
   if (block) make_relative(trace.velocity, disc);
-  for (auto* channel : {&trace.time, &trace.friction, &trace.velocity, &trace.load, &trace.temperature, &trace.disc_speed,
-                        &trace.disc_angle, &disc.varying}) {
+  for (auto* channel : {&trace.time, &trace.friction, &trace.velocity, &trace.load, &trace.temperature,
+                        &trace.disc_speed, &trace.disc_angle, &disc.varying}) {
     drop_ends(*channel, head, lost.tail);
   }
   motion.trimmed = head;
@@ -366,7 +373,9 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   motion.velocity_noise = s.noise;
   if (s.sticks) {
     const double level = s.rests.level;
-    motion.plateau_velocity = !block ? level : motion.disc_velocity.empty() ? motion.constant_disc_velocity - level : -level;
+    motion.plateau_velocity = !block                         ? level
+                              : motion.disc_velocity.empty() ? motion.constant_disc_velocity - level
+                                                             : -level;
   }
   double scale = s.rests.depth;
   if (scale == 0) scale = largest_of(motion.relative_velocity);
@@ -381,9 +390,10 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   motion.health = {std::move(clipping),
                    std::move(drop_outs),
                    kinematics::check_sagging(sag, declared, undo, s.sticks),
-                   kinematics::check_bandwidth(motion.friction, motion.velocity_kind == VelocityKind::fixed_block
-                                                                    ? std::span<const double>()
-                                                                    : std::span<const double>(motion.relative_velocity),
+                   kinematics::check_bandwidth(motion.friction,
+                                               motion.velocity_kind == VelocityKind::fixed_block
+                                                   ? std::span<const double>()
+                                                   : std::span<const double>(motion.relative_velocity),
                                                motion.step),
                    kinematics::check_channel_delay(motion, rests, s.blocks.length),
                    kinematics::check_revolutions(motion),

@@ -8,8 +8,8 @@ namespace tribofit::kinematics {
 namespace {
 
 constexpr std::size_t most_blocks = std::size_t{1} << 17;
-constexpr double band = 0.12;          // of the largest excursion: what still counts as near the level
-constexpr double flatness = 0.10;      // of the band: how far the middle of a rest may stand out from its shoulders
+constexpr double band = 0.12;      // of the largest excursion: what still counts as near the level
+constexpr double flatness = 0.10;  // of the band: how far the middle of a rest may stand out from its shoulders
 constexpr std::size_t least_blocks = 4;
 
 // Evenly spaced subset, so that sorting costs the same for any length of record.
@@ -118,8 +118,8 @@ Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> ran
   if (range) {
     const auto first = std::lower_bound(sorted.begin(), sorted.end(), range->low);
     const auto last = std::upper_bound(first, sorted.end(), range->high);
-    candidates = candidates.subspan(static_cast<std::size_t>(first - sorted.begin()),
-                                    static_cast<std::size_t>(last - first));
+    candidates =
+        candidates.subspan(static_cast<std::size_t>(first - sorted.begin()), static_cast<std::size_t>(last - first));
   }
   if (candidates.size() < least_blocks) return rests;
   const double mode = half_sample_mode(candidates);

@@ -67,12 +67,12 @@ struct Line {
   double frequency = 0, amplitude = 0;
 };
 
-// Short slips are pulses, whose second harmonic can exceed the fundamental: a line of half the height at a half, a third
-// or a quarter of the strongest is taken for what it is.
+// Short slips are pulses, whose harmonics can exceed the fundamental: a line of half the height at a half, a third ...
+// a tenth of the strongest is taken for what it is.
 std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strongest, std::size_t first) {
-  for (std::size_t divisor = 4; divisor >= 2; --divisor) {
+  for (std::size_t divisor = 10; divisor >= 2; --divisor) {
     const std::size_t near = strongest / divisor;
-    if (near < first + 2) continue;
+    if (near <= first) continue;
     const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(near - 1);
     const auto peak = std::max_element(begin, begin + 3 + static_cast<std::ptrdiff_t>(near / 50));
     if (*peak > 0.5 * lines[strongest]) return static_cast<std::size_t>(peak - lines.begin());
@@ -132,7 +132,8 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
   return spectrum;
 }
 
-Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment, std::size_t most_segments) {
+Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment,
+                           std::size_t most_segments) {
   Spectrum average;
   if (signal.size() < 4) return average;
   segment = std::min(segment, signal.size());
@@ -141,7 +142,8 @@ Spectrum averaged_spectrum(std::span<const double> signal, double step, std::siz
   for (std::size_t s = 0; s < count; ++s) {
     const Spectrum part = amplitude_spectrum(signal.subspan(s * stride, segment), step);
     if (s == 0) average = {part.bin_width, std::vector<double>(part.amplitude.size(), 0.0)};
-    for (std::size_t k = 0; k < part.amplitude.size(); ++k) average.amplitude[k] += part.amplitude[k] * part.amplitude[k];
+    for (std::size_t k = 0; k < part.amplitude.size(); ++k)
+      average.amplitude[k] += part.amplitude[k] * part.amplitude[k];
   }
   for (double& a : average.amplitude) a = std::sqrt(a / static_cast<double>(count));
   return average;

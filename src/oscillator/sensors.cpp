@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -231,12 +230,7 @@ double floor_rmse(const SimulatedMotion& motion, const Recording& recording, con
     std::vector<double> velocity(motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(begin),
                                  motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(end));
     if (!recording.velocity_noise.empty()) {
-      // Noise must not turn a slip round where it is slow.
-      const double slowest = std::numeric_limits<double>::min();
-      for (std::size_t i = begin; i < end; ++i) {
-        const double speed = event.direction * (velocity[i - begin] - recording.velocity_noise[i]);
-        velocity[i - begin] = event.direction * std::max(speed, slowest);
-      }
+      for (std::size_t i = begin; i < end; ++i) velocity[i - begin] -= recording.velocity_noise[i];
     }
     Slip slip;
     slip.time = part(motion.time, begin, end);

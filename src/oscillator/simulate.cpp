@@ -199,8 +199,10 @@ double Simulation::spring_pull(double x, double t) const {
 double Simulation::gap_to_break_away(double t) {
   const double pull = spring_pull(stuck_position(t), t);
   const double stick_time = t - stick_begin_;
-  friction_.begin_slip(stick_time, pull < 0 ? -1 : 1, scatter_.value());
+  const double direction = pull < 0 ? -1 : 1;
+  friction_.begin_slip(stick_time, direction, scatter_.value());
   const Instant<double> at = {.velocity = 0,
+                              .direction = direction,
                               .acceleration = setup_.disc_acceleration(t),
                               .time = std::max(t, 0.0),
                               .angle = setup_.drive.speed.angle(t),

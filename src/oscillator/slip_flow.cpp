@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tribofit {
 
@@ -21,9 +20,8 @@ double SlipFlow::slid(double t, const BlockState& y) const {
 
 double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,
                              BlockState* dy) const {
-  // The least number keeps the sign of the direction at rest.
-  const double signed_speed = direction_ * std::max(speed, std::numeric_limits<double>::min());
-  const Instant<double> at = {.velocity = signed_speed,
+  const Instant<double> at = {.velocity = direction_ * speed,
+                              .direction = direction_,
                               .acceleration = block_acceleration,
                               .time = std::max(t, 0.0),
                               .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,

@@ -125,11 +125,13 @@ void write_cycles(WholeFile& file, const Identification& result, const Membershi
   const std::vector<Cycle>& cycles = result.segmentation.cycles;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
     const Cycle& c = cycles[k];
-    row.count(k) << static_cast<double>(c.direction) << c.break_away_time << c.break_away_time_std_error << c.restick_time
-                 << c.stick_time << c.slip_time << c.period << c.break_away_friction << c.break_away_friction_std_error
-                 << c.stick_slope << c.stick_maximum << c.slip_minimum << c.peak_velocity / kMillimetre
-                 << c.plateau_velocity / kMillimetre << (c.stick_complete ? "1" : "0") << (c.slip_complete ? "1" : "0");
-    row.count(c.slip.size() > 0 && c.slip.begin < member.fold.size() ? member.fold[c.slip.begin] : Membership::none).end();
+    row.count(k) << static_cast<double>(c.direction) << c.break_away_time << c.break_away_time_std_error
+                 << c.restick_time << c.stick_time << c.slip_time << c.period << c.break_away_friction
+                 << c.break_away_friction_std_error << c.stick_slope << c.stick_maximum << c.slip_minimum
+                 << c.peak_velocity / kMillimetre << c.plateau_velocity / kMillimetre << (c.stick_complete ? "1" : "0")
+                 << (c.slip_complete ? "1" : "0");
+    row.count(c.slip.size() > 0 && c.slip.begin < member.fold.size() ? member.fold[c.slip.begin] : Membership::none)
+        .end();
   }
 }
 

@@ -28,7 +28,9 @@ std::string line(const Style& style, std::string_view name, std::string_view tex
   return fmt::format("  {:<{}}", name, kIndent - 2) + wrapped(text, style.width, kIndent) + "\n";
 }
 
-std::string bound(double value) { return fmt::format("{:g}", value); }
+std::string bound(double value) {
+  return fmt::format("{:g}", value);
+}
 
 }  // namespace
 

@@ -16,17 +16,26 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A number, or null for what is not known.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
-Json interval(double lower, double upper) { return Json::array({number(lower), number(upper)}); }
+Json interval(double lower, double upper) {
+  return Json::array({number(lower), number(upper)});
+}
 
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
 
 std::string_view name_of(HealthItem::Status status) {
   switch (status) {
-    case HealthItem::Status::ok: return "ok";
-    case HealthItem::Status::warning: return "warning";
-    case HealthItem::Status::problem: break;
+    case HealthItem::Status::ok:
+      return "ok";
+    case HealthItem::Status::warning:
+      return "warning";
+    case HealthItem::Status::problem:
+      break;
   }
   return "problem";
 }
@@ -85,9 +94,12 @@ Json measure_json(const Measure& measure, std::size_t cycles, double unit) {
 
 std::string_view name_of(MotionKind kind) {
   switch (kind) {
-    case MotionKind::stick_slip: return "stick-slip";
-    case MotionKind::always_slipping: return "always-slipping";
-    case MotionKind::always_sticking: break;
+    case MotionKind::stick_slip:
+      return "stick-slip";
+    case MotionKind::always_slipping:
+      return "always-slipping";
+    case MotionKind::always_sticking:
+      break;
   }
   return "always-sticking";
 }
@@ -134,8 +146,9 @@ Json fit_json(const Fit& fit, const Motion& motion) {
   for (const FitParameter& p : fit.parameters) parameters.push_back(parameter_json(p, motion));
   Json correlations = Json::array();
   for (const Correlation& c : fit.correlations) {
-    correlations.push_back({{"parameters", {fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name}},
-                            {"value", number(c.value)}});
+    correlations.push_back(
+        {{"parameters", {fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name}},
+         {"value", number(c.value)}});
   }
   return {{"law", to_string(fit.model.law())},
           {"protocol", to_string(fit.protocol)},

@@ -18,8 +18,9 @@ Interval interval_of(const Measure& measure, std::size_t cycles) {
 }
 
 std::size_t count_of_cycles(const Segmentation& segmentation) {
-  return static_cast<std::size_t>(std::count_if(segmentation.cycles.begin(), segmentation.cycles.end(),
-                                                [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
+  return static_cast<std::size_t>(
+      std::count_if(segmentation.cycles.begin(), segmentation.cycles.end(),
+                    [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
 }
 
 std::vector<LawComparison> compare_laws(const Identification& result) {

@@ -34,7 +34,9 @@ std::string significant(double value, int digits) {
   return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - power));
 }
 
-std::string brief(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+std::string brief(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
 
 int places_for(double std_error) {
   if (!std::isfinite(std_error) || std_error <= 0) return kMostPlaces;
@@ -86,14 +88,18 @@ std::string rate_text(double hertz) {
   return hertz >= 1000 ? fmt::format("{:.4g} kHz", hertz / 1000) : fmt::format("{:.4g} Hz", hertz);
 }
 
-std::string friction_unit(const Motion& motion) { return motion.friction_kind == FrictionKind::force ? "N" : "1"; }
+std::string friction_unit(const Motion& motion) {
+  return motion.friction_kind == FrictionKind::force ? "N" : "1";
+}
 
 std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
   const bool level = parameter.effect.empty() && parameter.parameter.unit == "1";
   return level ? friction_unit(motion) : parameter.parameter.unit;
 }
 
-double shown(const FitParameter& parameter, double si_value) { return si_value / parameter.parameter.si; }
+double shown(const FitParameter& parameter, double si_value) {
+  return si_value / parameter.parameter.si;
+}
 
 Table::Table(std::vector<std::string> header, std::vector<bool> left) : left_(std::move(left)) {
   left_.resize(header.size(), false);

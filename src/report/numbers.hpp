@@ -15,7 +15,8 @@ inline constexpr double kMillimetre = 1e-3;
 inline constexpr double kMillisecond = 1e-3;
 inline constexpr double kRpm = 2 * 3.14159265358979323846 / 60;
 
-/// `value` with `digits` significant digits: plain ("0.0521", "83.9") between 1e-4 and 1e6, else "1.2e-05". "-" for NaN.
+/// `value` with `digits` significant digits: plain ("0.0521", "83.9") between 1e-4 and 1e6, else "1.2e-05". "-" for
+/// NaN.
 std::string significant(double value, int digits);
 
 /// Up to four digits without trailing zeros, for conditions: "15", "4.001".
@@ -28,8 +29,8 @@ int places_for(double std_error);
 /// `value` rounded to `places` decimal places.
 std::string fixed(double value, int places);
 
-/// A value and its standard error to the same place: "0.05214 +/- 0.00043", or four digits of the value when the error is
-/// unknown.
+/// A value and its standard error to the same place: "0.05214 +/- 0.00043", or four digits of the value when the error
+/// is unknown.
 std::string with_error(double value, double std_error);
 
 /// "1.3 %", "0.05 %", "130 %".
@@ -47,7 +48,8 @@ std::string rate_text(double hertz);
 /// Unit of friction levels: "1", or "N" where friction is a force.
 std::string friction_unit(const Motion& motion);
 
-/// Unit in which a parameter is shown: its own, except that levels of friction are in newtons where friction is a force.
+/// Unit in which a parameter is shown: its own, except that levels of friction are in newtons where friction is a
+/// force.
 std::string shown_unit(const FitParameter& parameter, const Motion& motion);
 
 /// A SI quantity of this parameter in the unit people read.

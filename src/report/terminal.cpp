@@ -26,7 +26,8 @@ std::string item(const Style& style, std::string_view name, std::string_view tex
 
 std::string trace_lines(const Identification& r, const Style& style) {
   std::string text = fmt::format("{}tribofit {}{}  {}\n", style.bold, version, style.off, r.path);
-  std::string line = fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
+  std::string line =
+      fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
   if (r.motion.trimmed > 0) {
     line += fmt::format("; the first {} s (run-up) left out",
                         significant(static_cast<double>(r.motion.trimmed) * r.motion.step, 3));
@@ -85,7 +86,8 @@ std::string health_lines(const Identification& r, const Style& style) {
     ++found;
     const bool problem = check.status == HealthItem::Status::problem;
     const std::string_view colour = problem ? style.red : style.yellow;
-    const std::string head = fmt::format("  {}{:<8}{} {:<16} ", colour, problem ? "problem" : "warning", style.off, check.check);
+    const std::string head =
+        fmt::format("  {}{:<8}{} {:<16} ", colour, problem ? "problem" : "warning", style.off, check.check);
     text += head + wrapped(check.message, style.width, 28) + "\n";
   }
   if (found == 0) text += fmt::format("  no problems found ({} checks)\n", r.motion.health.size());
@@ -94,9 +96,12 @@ std::string health_lines(const Identification& r, const Style& style) {
 
 std::string motion_sentence(const Segmentation& s) {
   switch (s.kind) {
-    case MotionKind::always_slipping: return "the block never sticks: no cycles, friction is fitted over the whole slip";
-    case MotionKind::always_sticking: return "the block never slips: there is no sliding friction to fit";
-    case MotionKind::stick_slip: break;
+    case MotionKind::always_slipping:
+      return "the block never sticks: no cycles, friction is fitted over the whole slip";
+    case MotionKind::always_sticking:
+      return "the block never slips: there is no sliding friction to fit";
+    case MotionKind::stick_slip:
+      break;
   }
   return fmt::format("{} with a stick and a slip", count_of_cycles(s));
 }
@@ -114,9 +119,10 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
     measure("frequency", s.frequency, 1, "Hz", " (+/- is one standard error, here and below)");
     const SpectralPeak& peak = r.spectral_peak;
     if (peak.frequency > 0) {
-      text += item(style, "spectrum of v_r",
-                   fmt::format("peak at {} Hz; a plain FFT would say {} Hz, in bins of {} Hz", significant(peak.frequency, 4),
-                               significant(peak.bin_frequency, 4), significant(peak.bin_width, 3)));
+      text += item(
+          style, "spectrum of v_r",
+          fmt::format("peak at {} Hz; a plain FFT would say {} Hz, in bins of {} Hz", significant(peak.frequency, 4),
+                      significant(peak.bin_frequency, 4), significant(peak.bin_width, 3)));
     }
     measure("amplitude of v_r", s.amplitude, kMillimetre, "mm/s");
     measure("stick time", s.stick_time, kMillisecond, "ms");

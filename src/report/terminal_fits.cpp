@@ -16,9 +16,12 @@ namespace {
 
 std::string_view equation(BaseLaw law) {
   switch (law) {
-    case BaseLaw::exponential: return "mu = mu_k + (mu_s - mu_k) exp(-alpha v)";
-    case BaseLaw::fractional: return "mu = mu_k + (mu_s - mu_k) / (1 + beta v)";
-    case BaseLaw::coulomb: break;
+    case BaseLaw::exponential:
+      return "mu = mu_k + (mu_s - mu_k) exp(-alpha v)";
+    case BaseLaw::fractional:
+      return "mu = mu_k + (mu_s - mu_k) / (1 + beta v)";
+    case BaseLaw::coulomb:
+      break;
   }
   return "mu = mu_k in slip, mu_s at break-away";
 }
@@ -29,14 +32,14 @@ std::string flags_of(const Fit& fit, std::size_t index) {
   const auto add = [&](std::string_view flag) { flags += (flags.empty() ? "" : ", ") + std::string(flag); };
   if (p.at_bound) add("at bound");
   if (p.value == p.start && fit.protocol == Protocol::joint) add("unmoved");
-  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(), [&](const Correlation& c) {
-    return c.first == index || c.second == index;
-  });
+  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
+                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
   if (correlated) add("correlated");
   return flags;
 }
 
 std::string bracket(double lower, double upper, int places) {
+  if (!std::isfinite(lower) && !std::isfinite(upper)) return "-";
   return "[" + fixed(lower, places) + ", " + fixed(upper, places) + "]";
 }
 
@@ -49,8 +52,9 @@ int places_of(const FitParameter& p) {
 }
 
 std::string parameter_table(const Fit& fit, const Motion& motion, const TerminalOptions& options, const Style& style) {
-  const bool profile = std::any_of(fit.parameters.begin(), fit.parameters.end(),
-                                   [](const FitParameter& p) { return std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95; });
+  const bool profile = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const FitParameter& p) {
+    return std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
+  });
   std::vector<std::string> header = {"parameter", "value", "std error", "", "95 % interval"};
   if (profile) header.push_back("by profile");
   if (options.instruments_declared) header.push_back("systematic");
@@ -78,10 +82,10 @@ std::string parameter_table(const Fit& fit, const Motion& motion, const Terminal
 std::string error_lines(const Fit& fit, const Motion& motion, const Style& style) {
   const std::string unit = friction_unit(motion) == "N" ? " N" : "";
   const auto level = [&](double value) { return significant(value, 3) + unit; };
-  std::string text = fmt::format("RMSE {}, on held-out data {}; floor {} (noise {} from {}, break-away scatter {})",
-                                 level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
-                                 level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
-                                 level(fit.floor.scatter));
+  std::string text =
+      fmt::format("RMSE {}, on held-out data {}; floor {} (noise {} from {}, break-away scatter {})",
+                  level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse), level(fit.floor.noise),
+                  fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter));
   std::string lines = "  " + wrapped(text, style.width, 2) + "\n";
   text = fmt::format("relative error (Eq 5) mean {}, largest {}; explains {} of the error above the floor",
                      percent(fit.error.mean_relative), percent(fit.error.max_relative), share_text(fit.explained));
@@ -96,9 +100,13 @@ std::string one_fit(const Identification& r, const Fit& fit, const TerminalOptio
   const bool best = &fit == &r.fits[r.best] && r.fits.size() > 1;
   std::string text = fmt::format("\n{}{}, {} protocol{}{}   {}", style.bold, fit.model.name(), to_string(fit.protocol),
                                  style.off, best ? " (best)" : "", equation(fit.model.law()));
-  for (const Effect& effect : fit.model.effects()) text += ";  " + describe(effect).equation;
+  for (const Effect& effect : fit.model.effects()) {
+    const EffectInfo info = describe(effect);
+    text += "\n  " + info.key + ":  " + wrapped(info.equation, style.width, info.key.size() + 5);
+  }
   text += "\n";
-  if (!fit.converged) text += fmt::format("  {}did not converge{}: this is not a fit to rely on\n", style.red, style.off);
+  if (!fit.converged)
+    text += fmt::format("  {}did not converge{}: this is not a fit to rely on\n", style.red, style.off);
   if (!fit.parameters.empty()) {
     text += parameter_table(fit, r.motion, options, style);
     text += error_lines(fit, r.motion, style);
@@ -122,7 +130,8 @@ bool differs(const FitParameter& published, const FitParameter& joint) {
 
 /// What the published protocol makes of the same data, and by how much it is off the joint fit.
 std::string protocol_lines(const Identification& r, const Style& style) {
-  Table table({"law", "parameter", "published", "joint", "difference", "unit"}, {true, true, false, false, false, true});
+  Table table({"law", "parameter", "published", "joint", "difference", "unit"},
+              {true, true, false, false, false, true});
   bool compared = false, different = false;
   std::string notes;
   for (const Fit& fit : r.fits) {
@@ -136,22 +145,26 @@ std::string protocol_lines(const Identification& r, const Style& style) {
       compared = true;
       different = different || differs(a, b);
       table.add({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
-                 fixed(shown(b, b.value), places), b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
+                 fixed(shown(b, b.value), places),
+                 b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
                  shown_unit(b, r.motion)});
     }
     if (!fit.parameters.empty() && fit.converged) continue;
-    for (const std::string& message : fit.messages) notes += "  " + wrapped(fit.model.name() + ": " + message, style.width, 2) + "\n";
+    for (const std::string& message : fit.messages)
+      notes += "  " + wrapped(fit.model.name() + ": " + message, style.width, 2) + "\n";
   }
   std::string text = style.heading("Published protocol beside the joint fit");
   if (!compared) return notes.empty() ? "" : text + notes;
   if (!different) return text + "  agrees within the 95 % intervals of the joint fit\n" + notes;
   text += table.text(2, style.dim, style.off);
-  text += "  " +
-          wrapped("The published protocol takes mu_s and mu_k from the extremes of each cycle: noise widens extremes, and the "
-                  "minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
-                  "values, the published one to compare with papers that used it.",
-                  style.width, 2) +
-          "\n" + notes;
+  text +=
+      "  " +
+      wrapped(
+          "The published protocol takes mu_s and mu_k from the extremes of each cycle: noise widens extremes, and the "
+          "minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
+          "values, the published one to compare with papers that used it.",
+          style.width, 2) +
+      "\n" + notes;
   return text;
 }
 
@@ -159,14 +172,15 @@ std::string comparison_lines(const Identification& r, const Style& style) {
   std::string text;
   for (const LawComparison& c : compare_laws(r)) {
     const std::string first = r.fits[c.first].model.name(), second = r.fits[c.second].model.name();
-    const std::string figures = fmt::format("held-out RMSE {} against {}, p = {}",
-                                            significant(r.fits[c.first].error.held_out_rmse, 3),
-                                            significant(r.fits[c.second].error.held_out_rmse, 3),
-                                            c.comparison.p_value < 1e-4 ? "below 0.0001" : significant(c.comparison.p_value, 2));
+    const std::string figures =
+        fmt::format("held-out RMSE {} against {}, p {}", significant(r.fits[c.first].error.held_out_rmse, 3),
+                    significant(r.fits[c.second].error.held_out_rmse, 3),
+                    c.comparison.p_value < 1e-4 ? "< 0.0001" : "= " + significant(c.comparison.p_value, 2));
     const bool clear = c.comparison.p_value < 0.05;
     const std::string line =
         clear ? fmt::format("{} predicts data it has not seen better than {} ({})",
-                            c.comparison.first_better ? first : second, c.comparison.first_better ? second : first, figures)
+                            c.comparison.first_better ? first : second, c.comparison.first_better ? second : first,
+                            figures)
               : fmt::format("{} and {} cannot be told apart with these data ({})", first, second, figures);
     text += "  " + wrapped(line, style.width, 2) + "\n";
   }
@@ -191,21 +205,28 @@ std::string fit_lines(const Identification& result, const TerminalOptions& optio
     text += one_fit(result, fit, options, style);
   }
   if (!options.instruments_declared) {
-    text += "\n  " +
-            wrapped("Intervals are statistical, from cycle to cycle; no instrument uncertainties declared (--instruments), so "
-                    "no systematic part.",
-                    style.width, 2) +
-            "\n";
+    text +=
+        "\n  " +
+        wrapped(
+            "Intervals are statistical, from cycle to cycle; no instrument uncertainties declared (--instruments), so "
+            "no systematic part.",
+            style.width, 2) +
+        "\n";
   } else {
-    text += "\n  " + wrapped("Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the "
-                             "declared instruments, not part of them.",
-                             style.width, 2) + "\n";
+    text += "\n  " +
+            wrapped(
+                "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the "
+                "declared instruments, not part of them.",
+                style.width, 2) +
+            "\n";
   }
   const double fastest = result.fits[result.best].fastest;
   if (fastest > 0) {
-    text += "  " + wrapped(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
-                                       significant(fastest / kMillimetre, 3)),
-                           style.width, 2) + "\n";
+    text += "  " +
+            wrapped(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
+                                significant(fastest / kMillimetre, 3)),
+                    style.width, 2) +
+            "\n";
   }
   if (published) text += protocol_lines(result, style);
   text += comparison_lines(result, style);

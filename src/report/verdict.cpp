@@ -22,9 +22,13 @@ constexpr double kFarAbove = 100;
 /// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
 constexpr double kClose = 0.02, kOutline = 0.08;
 
-bool usable(const Fit& fit) { return fit.converged && !fit.parameters.empty(); }
+bool usable(const Fit& fit) {
+  return fit.converged && !fit.parameters.empty();
+}
 
 double over_floor(const Fit& fit) {
+  constexpr double kRounding = 1e-9;
+  if (fit.error.held_out_rmse < kRounding) return 1;  // simulated without noise
   return fit.floor.rmse > 0 ? fit.error.held_out_rmse / fit.floor.rmse : std::nan("");
 }
 
@@ -36,26 +40,29 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
   const std::string held_out = significant(fit.error.held_out_rmse, 2) + unit;
   const std::string floor = significant(fit.floor.rmse, 2) + unit;
   if (ratio <= kAtTheFloor) {
-    return fmt::format("{} describes this trace as well as its noise allows: its error on data it has not seen is "
-                       "{}, and the floor is {}.",
-                       name, held_out, floor);
+    return fmt::format(
+        "{} describes this trace as well as its noise allows: its error on data it has not seen is "
+        "{}, and the floor is {}.",
+        name, held_out, floor);
   }
   const std::string typical = percent(fit.error.mean_relative);
   std::string remains = fmt::format("its error on data it has not seen is {}", held_out);
   if (ratio > kFarAbove) remains += fmt::format(", far above the floor of {}", floor);
   if (ratio <= kFarAbove) remains += fmt::format(", {} times the floor of {}", significant(ratio, 2), floor);
   if (ratio <= kNearTheFloor && fit.error.mean_relative <= kOutline) {
-    return fmt::format("{} describes this trace well (typically {} off): {}. Little is left to explain.", name, typical, remains);
-  }
-  if (fit.error.mean_relative <= kClose) {
-    return fmt::format("{} is close (typically {} off), but {}: something small is missing from it.", name, typical, remains);
-  }
-  if (fit.error.mean_relative <= kOutline) {
-    return fmt::format("{} gives the outline only (typically {} off): {}, so something is missing from it.", name, typical,
+    return fmt::format("{} describes this trace well (typically {} off): {}. Little is left to explain.", name, typical,
                        remains);
   }
-  return fmt::format("{} does not describe this trace (typically {} off): {}. Do not rely on its values.", name, typical,
-                     remains);
+  if (fit.error.mean_relative <= kClose) {
+    return fmt::format("{} is close (typically {} off), but {}: something small is missing from it.", name, typical,
+                       remains);
+  }
+  if (fit.error.mean_relative <= kOutline) {
+    return fmt::format("{} gives the outline only (typically {} off): {}, so something is missing from it.", name,
+                       typical, remains);
+  }
+  return fmt::format("{} does not describe this trace (typically {} off): {}. Do not rely on its values.", name,
+                     typical, remains);
 }
 
 bool has_option(const std::vector<std::string>& arguments, const std::string& name) {
@@ -101,7 +108,8 @@ Suggestion next_command(const Identification& result, const TerminalOptions& opt
   const bool fitted = result.analysed && !result.fits.empty() && usable(result.fits[result.best]);
   if (!fitted) {
     if (result.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim")) {
-      return {"to see whether the run-up that was left out shows more", command_line(options, "--no-trim", result.path)};
+      return {"to see whether the run-up that was left out shows more",
+              command_line(options, "--no-trim", result.path)};
     }
     if (!options.csv_written) {
       return {"to look at the trace sample by sample", command_line(options, "--csv " + folder, result.path)};
@@ -125,8 +133,7 @@ Suggestion next_command(const Identification& result, const TerminalOptions& opt
 }
 
 std::string shell_quoted(const std::string& argument) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
   std::string text = "'";
   for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);

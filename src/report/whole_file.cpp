@@ -20,13 +20,19 @@ constexpr std::size_t kBufferSize = 1 << 18;
 std::string advice_for(int error) {
   switch (error) {
     case ENOSPC:
-    case EDQUOT: return "free some space or name another disc; nothing was left behind";
+    case EFBIG:
+    case EDQUOT:
+      return "free some space or name another disc; nothing was left behind";
     case EACCES:
     case EPERM:
-    case EROFS: return "name a place you may write to";
-    case ENOENT: return "make the folder first";
-    case EISDIR: return "name a file, not a folder";
-    default: return "name another place";
+    case EROFS:
+      return "name a place you may write to";
+    case ENOENT:
+      return "make the folder first";
+    case EISDIR:
+      return "name a file, not a folder";
+    default:
+      return "name another place";
   }
 }
 

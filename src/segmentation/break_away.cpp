@@ -71,7 +71,8 @@ double growth_time(const Motion& m, const std::vector<Rise>& rises, double level
 Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   Window w;
   const std::size_t crossing = rises_above(m, r, level);
-  // Eight time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp onset.
+  // Eight time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp
+  // onset.
   const auto stick = static_cast<double>(r.onset.slip - r.onset.stick_begin);
   const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick / 4))));
   w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
@@ -88,8 +89,8 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
 
 // Residuals of a window and their derivatives, summed into normal equations. The exponential runs by recurrence.
 struct Sums {
-  double rss = 0, h = 0, g = 0;                      // t0
-  Eigen::Vector3d mixed = Eigen::Vector3d::Zero();   // t0 with (log A, log lambda, B)
+  double rss = 0, h = 0, g = 0;                     // t0
+  Eigen::Vector3d mixed = Eigen::Vector3d::Zero();  // t0 with (log A, log lambda, B)
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
@@ -257,8 +258,8 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
     fit = jump;
     colour = noise_of(with_jump_pool, fit.growth);
   }
-  // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a factor
-  // of three on the rates, a jump of the size of the window.
+  // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
+  // factor of three on the rates, a jump of the size of the window.
   const double variance = std::max(colour.effective(), 1e-12 * level * level);
   const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
   const Eigen::Matrix3d information = fit.information / variance + Eigen::Matrix3d(plausible.asDiagonal());
@@ -288,7 +289,8 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
       const double own = variance / s.h + std::max(0.0, lever.dot(covariance * lever));
       error = std::min(error, std::sqrt(own + 1.0 / 144));  // at best a fraction of a sample
     } else {
-      // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
+      // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the
+      // stick.
       std::size_t i = w.v.size() - 1;
       while (i > 0 && w.v[i] > 0.25 * level) --i;
       w.t0 = static_cast<double>(i);
@@ -304,11 +306,13 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
 
 double locate_restick(const Motion& motion, Span slip, std::size_t next, int direction, double peak) {
   const double noise = motion.velocity_noise;
-  const double low = std::min(4 * noise, 0.02 * peak), high = std::max({0.02 * peak, std::min(25 * noise, 0.06 * peak)});
+  const double low = std::min(4 * noise, 0.02 * peak),
+               high = std::max({0.02 * peak, std::min(25 * noise, 0.06 * peak)});
   const auto u = [&](std::size_t i) { return direction * above_plateau(motion, i); };
   // First sample on the plateau, or the slowest where the motion turns before it gets there.
   std::size_t last = slip.end;
-  for (std::size_t i = slip.end; i < std::min(next, slip.end + 64) && u(last) > low; ++i) last = u(i) < u(last) ? i : last;
+  for (std::size_t i = slip.end; i < std::min(next, slip.end + 64) && u(last) > low; ++i)
+    last = u(i) < u(last) ? i : last;
   std::size_t first = last;
   while (first > slip.begin && u(first - 1) < high) --first;
   if (last - first < 2) {  // steeper than the sampling: the last two samples of the slip point to the plateau

@@ -189,7 +189,8 @@ void add_notes(Segmentation& result) {
   if (result.kind == MotionKind::always_sticking) result.notes.push_back("the record never slips");
   if (result.kind == MotionKind::always_slipping) result.notes.push_back("the record never sticks");
   if (result.kind != MotionKind::stick_slip) return;
-  if (cycles.front().stick.size() == 0) result.notes.push_back("the record begins in slip: the first break-away is not in it");
+  if (cycles.front().stick.size() == 0)
+    result.notes.push_back("the record begins in slip: the first break-away is not in it");
   if (!cycles.back().slip_complete) result.notes.push_back("the last slip is cut off by the end of the record");
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
@@ -207,7 +208,8 @@ Segmentation find_cycles(const Motion& motion) {
   const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
   result.cycles = phases(motion, slips, t);
   const auto& cycles = result.cycles;
-  const bool ends_in_stick = !cycles.empty() && cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size();
+  const bool ends_in_stick =
+      !cycles.empty() && cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size();
   const bool any_stick =
       ends_in_stick || std::any_of(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
   result.kind = slips.empty() ? MotionKind::always_sticking

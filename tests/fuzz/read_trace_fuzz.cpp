@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,8 @@ void require_valid(const tribofit::Trace& trace) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string path = "/tmp/tribofit-fuzz-" + std::to_string(::getpid()) + ".csv";
+  static const std::string path =
+      (std::filesystem::temp_directory_path() / ("tribofit-fuzz-" + std::to_string(::getpid()) + ".csv")).string();
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) return 0;
   std::fwrite(data, 1, size, file);

@@ -30,7 +30,7 @@ std::string random_decimal(std::mt19937_64& random) {
     case 4:
       return fmt::format("{}", static_cast<long long>(value * 1e6));
     case 5:
-      return fmt::format("{:.{}E}", value * 1e200, decimals(random));
+      return fmt::format("{:.{}E}", value * 1e60, decimals(random));
     default:
       return fmt::format(".{}", decimals(random));
   }

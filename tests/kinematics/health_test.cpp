@@ -38,8 +38,8 @@ TEST(Health, SoundRecordHasNineChecksAndNoComplaint) {
     EXPECT_EQ(i.status, Status::ok) << i.check << ": " << i.message;
     EXPECT_FALSE(i.message.empty());
   }
-  EXPECT_THAT(names, ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay", "revolutions",
-                                 "speed-ripple", "run-up", "plateau-speed"));
+  EXPECT_THAT(names, ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay",
+                                 "revolutions", "speed-ripple", "run-up", "plateau-speed"));
 }
 
 TEST(Health, ClippedVelocity) {
@@ -88,7 +88,8 @@ TEST(Health, SpeedRippleIsMeasured) {
   Trace trace = truth::simulate(rig).trace;
   const double disc = rig.speed() * rig.radius;
   for (std::size_t i = 0; i < trace.size(); ++i) {
-    if (std::abs(trace.velocity[i] - disc) < 1.5e-4) trace.velocity[i] += 0.05 * disc * std::cos(rig.speed() * trace.time[i] + 1);
+    if (std::abs(trace.velocity[i] - disc) < 1.5e-4)
+      trace.velocity[i] += 0.05 * disc * std::cos(rig.speed() * trace.time[i] + 1);
   }
   const HealthItem found = item(compute_motion(std::move(trace)), "speed-ripple");
   EXPECT_EQ(found.status, Status::warning);
@@ -107,7 +108,8 @@ TEST(Health, BandwidthOfAFilteredChannel) {
     const double v0 = trace.velocity[0];
     double x1 = v0, x2 = v0, y1 = v0, y2 = v0;
     for (double& v : trace.velocity) {
-      const double y = norm * (k * k * (v + 2 * x1 + x2) - 2 * (k * k - 1) * y1 - (1 - std::sqrt(2.0) * k + k * k) * y2);
+      const double y =
+          norm * (k * k * (v + 2 * x1 + x2) - 2 * (k * k - 1) * y1 - (1 - std::sqrt(2.0) * k + k * k) * y2);
       x2 = x1, x1 = v, y2 = y1, y1 = y, v = y;
     }
   }

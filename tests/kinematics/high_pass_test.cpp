@@ -10,7 +10,9 @@
 namespace tribofit {
 namespace {
 
-const HealthItem& sagging(const Motion& motion) { return motion.health.at(2); }
+const HealthItem& sagging(const Motion& motion) {
+  return motion.health.at(2);
+}
 
 TEST(HighPass, CornerIsFoundAndTheVelocityRestored) {
   for (double corner : {0.02, 0.1, 0.2, 0.5, 1.0}) {
@@ -117,7 +119,8 @@ TEST(HighPass, ARippleOfTheDiscIsNotMistakenForIt) {
   Trace trace = run.trace;
   const double disc = rig.speed() * rig.radius;
   for (std::size_t i = 0; i < trace.size(); ++i) {
-    if (std::abs(trace.velocity[i] - disc) < 1.5e-4) trace.velocity[i] += 0.05 * disc * std::cos(rig.speed() * trace.time[i]);
+    if (std::abs(trace.velocity[i] - disc) < 1.5e-4)
+      trace.velocity[i] += 0.05 * disc * std::cos(rig.speed() * trace.time[i]);
   }
   EXPECT_EQ(compute_motion(std::move(trace)).high_pass, 0);
 }

@@ -224,7 +224,8 @@ TEST(Motion, AccelerationAngleAndDistanceOfAKnownMotion) {
     EXPECT_NEAR(a[i], 0.002 * w * std::cos(w * motion.time[i]), i < 5 || i + 5 >= a.size() ? 4e-4 : 8e-5);
   }
   EXPECT_NEAR(disc_angle(motion).back(), 2 * motion.time.back(), 1e-12);
-  EXPECT_NEAR(sliding_distance(motion).back(), 0.02 * motion.time.back() - 0.002 / w * (1 - std::cos(w * motion.time.back())), 1e-8);
+  EXPECT_NEAR(sliding_distance(motion).back(),
+              0.02 * motion.time.back() - 0.002 / w * (1 - std::cos(w * motion.time.back())), 1e-8);
 }
 
 TEST(Motion, FrictionRecordedWithTheOtherSignIsTurned) {

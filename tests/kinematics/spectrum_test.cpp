@@ -15,7 +15,8 @@ constexpr double two_pi = 2 * std::numbers::pi;
 
 std::vector<double> sine(std::size_t n, double step, double frequency, double amplitude, double mean = 0) {
   std::vector<double> x(n);
-  for (std::size_t i = 0; i < n; ++i) x[i] = mean + amplitude * std::sin(two_pi * frequency * step * static_cast<double>(i) + 0.7);
+  for (std::size_t i = 0; i < n; ++i)
+    x[i] = mean + amplitude * std::sin(two_pi * frequency * step * static_cast<double>(i) + 0.7);
   return x;
 }
 

@@ -12,7 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-json parsed(const Identification& result) { return json::parse(to_json(result, {{"--radius", "15mm"}})); }
+json parsed(const Identification& result) {
+  return json::parse(to_json(result, {{"--radius", "15mm"}}));
+}
 
 std::vector<std::string> keys(const json& object) {
   std::vector<std::string> names;
@@ -23,7 +25,8 @@ std::vector<std::string> keys(const json& object) {
 TEST(Json, HasTheAgreedNames) {
   const json j = parsed(made_up_result());
   using ::testing::IsSupersetOf;
-  EXPECT_THAT(keys(j), IsSupersetOf({"tool", "trace", "conditions", "health", "stick_slip", "fits", "best", "warnings"}));
+  EXPECT_THAT(keys(j),
+              IsSupersetOf({"tool", "trace", "conditions", "health", "stick_slip", "fits", "best", "warnings"}));
   EXPECT_THAT(keys(j["tool"]), IsSupersetOf({"name", "version"}));
   EXPECT_THAT(keys(j["trace"]), IsSupersetOf({"path", "samples", "duration_s", "rate_hz"}));
   EXPECT_THAT(keys(j["conditions"]), IsSupersetOf({"radius_mm", "speed_rpm", "speed_source", "load_N"}));

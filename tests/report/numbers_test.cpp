@@ -21,7 +21,9 @@ TEST(Numbers, AnErrorThatIsNotKnownIsNotMadeUp) {
   EXPECT_EQ(with_error(std::nan(""), 0.1), "-");
 }
 
-TEST(Numbers, DigitsOfAMeasuredValueStopAtSix) { EXPECT_EQ(with_error(4.877842069, 5e-8), "4.87784 +/- 5e-08"); }
+TEST(Numbers, DigitsOfAMeasuredValueStopAtSix) {
+  EXPECT_EQ(with_error(4.877842069, 5e-8), "4.87784 +/- 5e-08");
+}
 
 TEST(Numbers, SignificantDigits) {
   EXPECT_EQ(significant(0.0031234, 3), "0.00312");

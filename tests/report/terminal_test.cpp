@@ -20,12 +20,15 @@ TerminalOptions with_radius() {
   return options;
 }
 
-std::string rendered(const Identification& result) { return render_terminal(result, with_radius()); }
+std::string rendered(const Identification& result) {
+  return render_terminal(result, with_radius());
+}
 
 TEST(Terminal, ShowsConditionsWithTheirSource) {
-  EXPECT_THAT(rendered(made_up_result()),
-              AllOf(HasSubstr("runs/r15.csv"), HasSubstr("2 400 000 samples, 120.0 s at 20 kHz"),
-                    HasSubstr("15 mm (command line)"), HasSubstr("4 rpm (plateau)"), HasSubstr("load              not known")));
+  EXPECT_THAT(
+      rendered(made_up_result()),
+      AllOf(HasSubstr("runs/r15.csv"), HasSubstr("2 400 000 samples, 120.0 s at 20 kHz"),
+            HasSubstr("15 mm (command line)"), HasSubstr("4 rpm (plateau)"), HasSubstr("load              not known")));
 }
 
 TEST(Terminal, HealthNamesWhatIsWrongOrThatNothingIs) {
@@ -44,7 +47,8 @@ TEST(Terminal, StickSlipMeasuresHaveUncertaintiesAndUnits) {
 TEST(Terminal, ParametersStandWithErrorIntervalUnitAndStart) {
   const std::string text = rendered(made_up_result());
   // 52.14 s/m with a standard error of 0.43 s/m, both to the same place in s/mm.
-  EXPECT_THAT(text, ContainsRegex("alpha +0\\.05214 +0\\.00043 +\\(0\\.82 %\\) +\\[0\\.05128, 0\\.05300\\] +s/mm +0\\.0469"));
+  EXPECT_THAT(text,
+              ContainsRegex("alpha +0\\.05214 +0\\.00043 +\\(0\\.82 %\\) +\\[0\\.05128, 0\\.05300\\] +s/mm +0\\.0469"));
   EXPECT_THAT(text, ContainsRegex("mu_s +0\\.5090 +0\\.0012"));
   EXPECT_THAT(text, HasSubstr("no instrument uncertainties declared"));
 }
@@ -75,9 +79,8 @@ TEST(Terminal, TheBiasOfThePublishedProtocolStandsBesideTheJointFit) {
 }
 
 TEST(Terminal, ErrorsStandBesideTheFloor) {
-  EXPECT_THAT(rendered(made_up_result()),
-              AllOf(HasSubstr("RMSE 0.00310, on held-out data 0.00320; floor 0.00310"),
-                    HasSubstr("mean 0.60 %, largest 5.0 %"), HasSubstr("explains 99.8 %")));
+  EXPECT_THAT(rendered(made_up_result()), AllOf(HasSubstr("RMSE 0.00310, on held-out data 0.00320; floor 0.00310"),
+                                                HasSubstr("mean 0.60 %, largest 5.0 %"), HasSubstr("explains 99.8 %")));
 }
 
 TEST(Terminal, TheVerdictFollowsTheErrorAboveTheFloor) {
@@ -106,8 +109,8 @@ TEST(Terminal, ATraceThatCouldNotBeAnalysedStillSaysWhatIsKnown) {
   result.analysed = false;
   result.segmentation.kind = MotionKind::always_sticking;
   result.warnings = {"the block never slips"};
-  EXPECT_THAT(rendered(result), AllOf(HasSubstr("15 mm"), HasSubstr("the block never slips"), HasSubstr("No law was fitted"),
-                                      HasSubstr("identify --radius 15mm --csv")));
+  EXPECT_THAT(rendered(result), AllOf(HasSubstr("15 mm"), HasSubstr("the block never slips"),
+                                      HasSubstr("No law was fitted"), HasSubstr("identify --radius 15mm --csv")));
 }
 
 TEST(Terminal, ForcesAreInNewtons) {

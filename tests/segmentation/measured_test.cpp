@@ -100,7 +100,9 @@ TEST(Measured, HiddenEffectsOfAnIndependentSimulator) {
   std::ifstream truth(folder / "truth.jsonl");
   std::string line;
   int checked = 0;
-  const auto field = [&line](const std::string& key) { return line.substr(line.find("\"" + key + "\":") + key.size() + 3); };
+  const auto field = [&line](const std::string& key) {
+    return line.substr(line.find("\"" + key + "\":") + key.size() + 3);
+  };
   while (std::getline(truth, line)) {
     const std::string name = field("name").substr(2, field("name").find('"', 2) - 2);
     const auto path = folder / (name + ".csv");

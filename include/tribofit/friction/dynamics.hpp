@@ -40,7 +40,7 @@ class FrictionDynamics {
   void rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const;
 
  private:
-  double run(const Instant<double>& at, std::span<const double> state, std::span<double> rate, bool want_rates) const;
+  double run(const Instant<double>& now, std::span<const double> state, std::span<double> rate, bool want_rates) const;
 
   FrictionModel model_;
   std::vector<double> p_;

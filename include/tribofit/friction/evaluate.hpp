@@ -120,9 +120,8 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, s
 template <class T>
 void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
-  using std::abs;
   const std::size_t n = slip.size();
-  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * abs(velocity[i]);
+  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Reduces<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.reduce(q, mu[i]);
@@ -177,10 +176,8 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
       }
     });
   }
-  if (!is_signed) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (scalar_part(velocity[i]) < 0) mu[i] = T(-mu[i]);
-    }
+  if (!is_signed && slip.direction < 0) {
+    for (std::size_t i = 0; i < n; ++i) mu[i] = T(-mu[i]);
   }
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) {

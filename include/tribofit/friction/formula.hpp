@@ -37,7 +37,7 @@ class Formula {
     std::vector<double> values(count), terms(n), slopes;
     for (std::size_t k = 0; k < count; ++k) values[k] = scalar_part(p[k]);
     std::vector<double> speed(n);
-    for (std::size_t i = 0; i < n; ++i) speed[i] = std::abs(scalar_part(velocity[i]));
+    for (std::size_t i = 0; i < n; ++i) speed[i] = slip.speed(scalar_part(velocity[i]));
     evaluate(values, slip, speed, terms);
     std::vector<T> sum(terms.begin(), terms.end());
     if constexpr (!std::is_arithmetic_v<T>) {
@@ -48,12 +48,11 @@ class Formula {
         for (std::size_t i = 0; i < n; ++i) sum[i] += slopes[i] * (p[k] - values[k]);
       }
       if (n > 0 && varies(velocity[0])) {
-        using std::abs;
         differentiate(count, values, slip, speed, slopes);
-        for (std::size_t i = 0; i < n; ++i) sum[i] += slopes[i] * (abs(velocity[i]) - speed[i]);
+        for (std::size_t i = 0; i < n; ++i) sum[i] += slopes[i] * (slip.speed(velocity[i]) - speed[i]);
       }
     }
-    for (std::size_t i = 0; i < n; ++i) mu[i] += scalar_part(velocity[i]) < 0 ? T(-sum[i]) : sum[i];
+    for (std::size_t i = 0; i < n; ++i) mu[i] += slip.direction * sum[i];
   }
 
   std::size_t parameter_count() const;

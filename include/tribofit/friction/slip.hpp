@@ -7,10 +7,21 @@
 
 namespace tribofit {
 
+/// The value of a number that may carry derivatives (a dual number with members a and v, such as a Ceres Jet).
+template <class T>
+double scalar_part(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return x;
+  } else {
+    return x.a;
+  }
+}
+
 /// One instant as a friction law may see it. SI.
 template <class T>
 struct Instant {
   T velocity;               ///< v_r [m/s], signed
+  double direction = 1;     ///< of sliding: the sign of v_r, also at rest
   double acceleration = 0;  ///< of the block [m/s^2]
   double time = 0;          ///< from the trace's first sample [s]
   double angle = 0;         ///< of the disc [rad]
@@ -35,12 +46,21 @@ struct Slip {
 
   std::size_t size() const { return time.size(); }
 
+  /// Speed |v_r| of a sample. Sensor noise near rest can turn the reading round although the slip has one direction; such a
+  /// sample is at rest.
+  template <class T>
+  T speed(const T& v) const {
+    const T forward = direction * v;
+    return scalar_part(forward) > 0 ? forward : T(0.0 * forward);
+  }
+
   template <class T>
   Instant<T> at(std::size_t i, const T& v) const {
     const auto value = [i](std::span<const double> channel, double otherwise) {
       return channel.empty() ? otherwise : channel[i];
     };
-    return {v,
+    return {T(direction * speed(v)),
+            direction,
             value(acceleration, 0),
             time[i],
             value(angle, 0),
@@ -52,15 +72,5 @@ struct Slip {
             mean_temperature};
   }
 };
-
-/// The value of a number that may carry derivatives (a dual number with members a and v, such as a Ceres Jet).
-template <class T>
-double scalar_part(const T& x) {
-  if constexpr (std::is_arithmetic_v<T>) {
-    return x;
-  } else {
-    return x.a;
-  }
-}
 
 }  // namespace tribofit

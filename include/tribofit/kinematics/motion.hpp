@@ -19,21 +19,22 @@ struct Motion {
   std::vector<double> friction;           ///< mu [1], or force [N] (see friction_kind); positive when v_r is
   std::vector<double> relative_velocity;  ///< v_r [m/s]
   std::vector<double> disc_velocity;      ///< omega r [m/s]; empty when it is constant
-  double constant_disc_velocity = 0;      ///< omega r [m/s] where disc_velocity is empty; 0 when v_r was measured without a speed
+  double constant_disc_velocity =
+      0;  ///< omega r [m/s] where disc_velocity is empty; 0 when v_r was measured without a speed
 
   std::vector<double> load, temperature, disc_speed, disc_angle;  ///< as in Trace
 
   FrictionKind friction_kind = FrictionKind::coefficient;
   VelocityKind velocity_kind = VelocityKind::block;
-  Conditions conditions;   ///< speed and its source filled in, from the plateau where nobody said it
+  Conditions conditions;    ///< speed and its source filled in, from the plateau where nobody said it
   std::vector<Step> steps;  ///< in samples of this Motion
 
-  std::size_t trimmed = 0;     ///< samples of the run-up that were cut off
-  double velocity_noise = 0;   ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
-  double plateau_velocity = 0; ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
-  double high_pass = 0;        ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
+  std::size_t trimmed = 0;      ///< samples of the run-up that were cut off
+  double velocity_noise = 0;    ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
+  double plateau_velocity = 0;  ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
+  double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
   double high_pass_std_error = 0;  ///< [Hz]
-  bool sticks = false;         ///< the trace has a plateau of stick
+  bool sticks = false;             ///< the trace has a plateau of stick
 
   std::vector<HealthItem> health;  ///< in a fixed order, one per check
   std::vector<std::string> notes;  ///< corrections made and conventions settled, for the report
@@ -46,15 +47,22 @@ struct Motion {
 };
 
 struct MotionOptions {
-  bool trim = true;             ///< cut the run-up where the plateau is not within 2 % of its final value
-  bool undo_high_pass = true;   ///< undo a first-order high-pass found on the velocity
+  bool trim = true;            ///< cut the run-up where the plateau is not within 2 % of its final value
+  bool undo_high_pass = true;  ///< undo a first-order high-pass found on the velocity
 };
 
 /// Computes the motion: declared instrument corrections first, then run-up, high-pass, speed, v_r, health.
-/// `trace` is consumed so that no channel is held twice. Throws InputError when no radius and no speed can make v_r.
+///
+/// The plateau of stick (the level on which v_b rests, found as the half-sample mode of block means) gives the speed
+/// where nobody said it, the noise of v_r, the direction of the vibrometer and, by its sag dv_m/dt = -2 pi f_c v_m, an
+/// undeclared high-pass. A high-pass is undone by v_b = v_m + 2 pi f_c integral(v_m) dt; the integration constant comes
+/// from omega r, or from no net displacement of the block, and a straight drift from the levels of the plateaus.
+/// `trace` is consumed so that no channel is held twice. Throws InputError when v_r cannot be made: channels missing,
+/// or neither speed and radius nor a plateau. Cost: about six passes over the samples.
 Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});
 
-/// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1 samples).
+/// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1
+/// samples).
 std::vector<double> block_acceleration(const Motion& motion, std::size_t half_window = 10);
 
 /// Disc angle [rad] of every sample: measured where there is a channel, else the integral of the disc speed from

@@ -23,13 +23,14 @@ struct Spectrum {
 /// Amplitude spectrum (Hann window) of `signal` sampled every `step` seconds.
 Spectrum amplitude_spectrum(std::span<const double> signal, double step);
 
-/// Root mean square of the amplitude spectra of up to `most_segments` stretches of `segment` samples, spread evenly over
-/// the signal: the noise of a single spectrum averaged down, at a cost that does not grow with the record.
+/// Root mean square of the amplitude spectra of up to `most_segments` stretches of `segment` samples, spread evenly
+/// over the signal: the noise of a single spectrum averaged down, at a cost that does not grow with the record.
 Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment = 4096,
                            std::size_t most_segments = 8);
 
-/// The fundamental of a periodic signal: interpolated peak of the windowed spectrum of the whole record, beside the bin a plain
-/// FFT of `plain_size` samples (32768 in [D]) would report. Signals are reduced before the transform where their rate is far above the band.
+/// The fundamental of a periodic signal: interpolated peak of the windowed spectrum of the whole record, beside the bin
+/// a plain FFT of `plain_size` samples (32768 in [D]) would report. Signals are reduced before the transform where
+/// their rate is far above the band.
 SpectralPeak fundamental(std::span<const double> signal, double step, std::size_t plain_size = 32768);
 
 }  // namespace tribofit

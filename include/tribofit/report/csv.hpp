@@ -14,8 +14,9 @@ struct Identification;  // pipeline.hpp
 /// curves.csv   mu(v) of every fit with its 95 % band, to a quarter beyond the fastest slip
 /// errors.csv   residual and relative error ([D] Eq 5) of the best fit against time and v_r, slip samples only
 ///
-/// Where friction is a force, mu and mu_model are in newtons, as "friction_unit" in the JSON says; other columns carry their unit
-/// in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in samples.
+/// Where friction is a force, mu and mu_model are in newtons, as "friction_unit" in the JSON says; other columns carry
+/// their unit in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in
+/// samples.
 void write_csv_folder(const std::string& folder, const Identification& result);
 
 }  // namespace tribofit

@@ -13,10 +13,10 @@ struct Identification;  // pipeline.hpp
 
 struct TerminalOptions {
   bool colour = false;
-  std::size_t width = 100;                ///< columns; sentences are broken there, tables are not
-  bool instruments_declared = false;      ///< an instruments file was given
-  bool csv_written = false;               ///< the CSV folder of this result exists already
-  std::vector<std::string> arguments;     ///< the user's own options without traces and outputs, for the next command
+  std::size_t width = 100;             ///< columns; sentences are broken there, tables are not
+  bool instruments_declared = false;   ///< an instruments file was given
+  bool csv_written = false;            ///< the CSV folder of this result exists already
+  std::vector<std::string> arguments;  ///< the user's own options without traces and outputs, for the next command
 };
 
 /// What a person reads after a run: trace and conditions, health, stick-slip, one table of parameters per fit with

@@ -23,20 +23,21 @@ struct Cycle {
   bool slip_complete = false;   ///< the slip ends in stick within the record
   int direction = 1;            ///< sign of v_r in the slip
 
-  double break_away_time = 0;  ///< sub-sample [s]
+  double break_away_time = 0;            ///< sub-sample [s]
   double break_away_time_std_error = 0;  ///< [s]
-  double restick_time = 0;     ///< sub-sample [s]
-  double stick_time = 0;       ///< [s]
-  double slip_time = 0;        ///< [s]
-  double period = 0;           ///< from this break-away to the next of the same direction [s]
+  double restick_time = 0;               ///< sub-sample [s]
+  double stick_time = 0;                 ///< [s]
+  double slip_time = 0;                  ///< [s]
+  double period = 0;                     ///< from this break-away to the next of the same direction [s]
 
-  double break_away_friction = 0;  ///< friction at break_away_time, from a line through the stick before it (times direction) [1 or N]
+  double break_away_friction =
+      0;  ///< friction at break_away_time, from a line through the stick before it (times direction) [1 or N]
   double break_away_friction_std_error = 0;
-  double stick_slope = 0;          ///< d friction/dt of that line [1/s or N/s]
-  double stick_maximum = 0;        ///< largest sample in stick: static friction of [D] 3.2
-  double slip_minimum = 0;         ///< smallest sample in slip: kinetic friction of [D] 3.2
-  double peak_velocity = 0;        ///< largest |v_r| in the slip [m/s]
-  double plateau_velocity = 0;     ///< mean of v_r in the stick [m/s]
+  double stick_slope = 0;       ///< d friction/dt of that line [1/s or N/s]
+  double stick_maximum = 0;     ///< largest sample in stick: static friction of [D] 3.2
+  double slip_minimum = 0;      ///< smallest sample in slip: kinetic friction of [D] 3.2
+  double peak_velocity = 0;     ///< largest |v_r| in the slip [m/s]
+  double plateau_velocity = 0;  ///< mean of v_r in the stick [m/s]
 };
 
 /// What kind of motion the record holds.
@@ -54,14 +55,14 @@ struct Measure {
 /// Stick and slip of a whole record.
 struct Segmentation {
   MotionKind kind = MotionKind::stick_slip;
-  std::vector<Cycle> cycles;  ///< in order of time; a record that never sticks is one slip per direction and step
-  double slip_threshold = 0;  ///< |v_r| above which slip begins [m/s]
+  std::vector<Cycle> cycles;   ///< in order of time; a record that never sticks is one slip per direction and step
+  double slip_threshold = 0;   ///< |v_r| above which slip begins [m/s]
   double stick_threshold = 0;  ///< |v_r| below which stick begins [m/s]
 
-  Measure frequency;  ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
-  Measure amplitude;  ///< of v_r: peak |v_r| over cycles [m/s]
-  Measure stick_time, slip_time;  ///< [s]
-  double rms_velocity = 0;        ///< of the block velocity [m/s]
+  Measure frequency;               ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
+  Measure amplitude;               ///< of v_r: peak |v_r| over cycles [m/s]
+  Measure stick_time, slip_time;   ///< [s]
+  double rms_velocity = 0;         ///< of the block velocity [m/s]
   std::vector<std::string> notes;  ///< what a person should know ("never sticks", "the first slip is cut off")
 };
 

@@ -25,14 +25,13 @@ struct Bristle {
   template <class T>
   Relaxation<T> relaxation(const T* p, const Instant<T>& x, const T& steady) const {
     using std::abs;
-    return {p[0] * abs(x.velocity) / steady, scalar_part(x.velocity) < 0 ? T(-steady) : steady};
+    return {p[0] * abs(x.velocity) / steady, T(x.direction * steady)};
   }
 
   /// sigma1 dz/dt = sigma1 v (1 - F/(f sign v)), written with F = sigma0 z.
   template <class T>
   T output(const T* p, const Instant<T>& x, const T& steady, const T& force) const {
-    const double sign = scalar_part(x.velocity) < 0 ? -1.0 : 1.0;
-    return force + p[1] * x.velocity * (1.0 - sign * force / steady);
+    return force + p[1] * x.velocity * (1.0 - x.direction * force / steady);
   }
 
   /// F at the first slipping sample. Until inertia matters the spring imposes dF/dt, and dF/dt = sigma0 v (1 - F/f).

@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Identify : public ::testing::Test {
+ protected:
+  void SetUp() override { shop_.write("trace.csv", good_trace()); }
+  Workshop shop_;
+};
+
+TEST_F(Identify, PrintsATableAndKeepsStandardErrorSilent) {
+  const Outcome outcome = shop_.identify("--radius 15mm trace.csv");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("15 mm (command line)"), HasSubstr("mu_s"), HasSubstr("alpha"),
+                                 HasSubstr("beta"), HasSubstr("floor"), HasSubstr("Next, ")));
+}
+
+/// Every run ends by naming a command; whatever it is, it runs.
+TEST_F(Identify, TheCommandItNamesRuns) {
+  std::string arguments = "--radius 15mm trace.csv";
+  for (int step = 0; step < 3; ++step) {
+    const Outcome outcome = shop_.identify(arguments);
+    ASSERT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
+    const std::string last = lines_of(outcome.out).back();
+    ASSERT_EQ(last.rfind("  identify ", 0), 0u) << last;
+    arguments = last.substr(11);
+  }
+}
+
+TEST_F(Identify, FindsTheTruthOfASimulatedTrace) {
+  ASSERT_EQ(shop_.identify("--radius 15mm --quiet --json r.json trace.csv").status, 0);
+  const json result = json::parse(contents(shop_ / "r.json"));
+  const json& best = result["fits"][result["best"].get<std::size_t>()];
+  EXPECT_EQ(best["law"], "exponential");
+  // 14 cycles only: published values of [D] at 15 mm within what their scatter allows.
+  EXPECT_NEAR(best["parameters"][0]["value"].get<double>(), 0.509, 0.01);
+  EXPECT_NEAR(best["parameters"][1]["value"].get<double>(), 0.318, 0.005);
+  EXPECT_NEAR(best["parameters"][2]["value"].get<double>(), 0.05214, 0.004);
+  EXPECT_NEAR(result["stick_slip"]["frequency_hz"]["value"].get<double>(), 4.88, 0.1);
+  EXPECT_NEAR(result["conditions"]["speed_rpm"].get<double>(), 4, 0.04);
+  EXPECT_EQ(result["trace"]["samples"], 15000);
+}
+
+TEST_F(Identify, ResultsAreTheSameForAnyNumberOfThreads) {
+  for (const char* threads : {"1", "2"}) {
+    const std::string t(threads);
+    ASSERT_EQ(shop_.identify("--radius 15mm --quiet --threads " + t + " --json " + t + ".json trace.csv").status, 0);
+  }
+  json one = json::parse(contents(shop_ / "1.json")), two = json::parse(contents(shop_ / "2.json"));
+  one.erase("tool");
+  two.erase("tool");
+  EXPECT_EQ(one.dump(), two.dump());
+}
+
+TEST_F(Identify, WritesTheFolderOfTables) {
+  ASSERT_EQ(shop_.identify("--radius 15mm --quiet --csv out trace.csv").status, 0);
+  EXPECT_EQ(contents(shop_ / "out/samples.csv")
+                .substr(0, 80)
+                .find("time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold\n"),
+            0u);
+  for (const char* name : {"cycles.csv", "curves.csv", "errors.csv"}) {
+    EXPECT_GT(lines_of(contents(shop_ / (std::string("out/") + name))).size(), 10u) << name;
+  }
+  EXPECT_EQ(lines_of(contents(shop_ / "out/samples.csv")).size(), 15001u);
+}
+
+TEST_F(Identify, JsonToStandardOutputStandsAlone) {
+  const Outcome outcome = shop_.identify("--radius 15mm --json - trace.csv");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(json::accept(outcome.out));
+}
+
+TEST_F(Identify, QuietPrintsNothing) {
+  const Outcome outcome = shop_.identify("--radius 15mm --quiet trace.csv");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
+}
+
+TEST_F(Identify, AReaderThatLeavesIsNoError) {
+  const Outcome outcome = shop_.shell("{ identify --radius 15mm trace.csv trace.csv; echo status $? >&2; } | head -1");
+  EXPECT_THAT(outcome.err, HasSubstr("status 0"));
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("error")));
+}
+
+TEST_F(Identify, OneOfSeveralFailing) {
+  shop_.write("bad.csv", "a,b\n1,2\n");
+  const Outcome outcome = shop_.identify("--radius 15mm trace.csv bad.csv trace.csv");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("bad.csv"));
+  const std::size_t first = outcome.out.find("tribofit ");
+  EXPECT_NE(outcome.out.find("tribofit ", first + 1), std::string::npos);  // the others were analysed
+}
+
+TEST_F(Identify, AFolderIsEveryTraceInIt) {
+  std::filesystem::create_directory(shop_ / "runs");
+  for (const char* name : {"runs/b.csv", "runs/a.csv"}) shop_.write(name, good_trace());
+  shop_.write("runs/manifest.csv", "file,radius\n");
+  shop_.write("runs/notes.txt", "x\n");
+  const Outcome outcome = shop_.identify("--radius 15mm runs");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LT(outcome.out.find("runs/a.csv"), outcome.out.find("runs/b.csv"));
+}
+
+TEST_F(Identify, RadiiBySteps) {
+  const Outcome one = shop_.identify("--radius 15mm,15mm trace.csv");
+  EXPECT_NE(one.status, 2);  // understood; whether the steps match the file is the reader's to say
+  EXPECT_NE(one.status, 0);
+}
+
+TEST_F(Identify, AddsEffectsAndFormulas) {
+  ASSERT_EQ(shop_.identify("--radius 15mm --quiet --law exponential --effect viscous --json r.json trace.csv").status,
+            0);
+  const json result = json::parse(contents(shop_ / "r.json"));
+  EXPECT_EQ(result["fits"][0]["effects"], json({"viscous"}));
+  EXPECT_EQ(result["fits"][0]["parameters"][3]["unit"], "s/mm");
+  const Outcome formula = shop_.identify(
+      "--radius 15mm --law exponential --formula 'hump = a*exp(-((v-v0)/w)^2); a=0.02, "
+      "v0=25mm/s, w=6mm/s' trace.csv");
+  EXPECT_EQ(formula.status, 0) << formula.err;
+  EXPECT_THAT(formula.out, HasSubstr("hump.v0"));
+}
+
+}  // namespace

@@ -1,0 +1,78 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+struct Wrong {
+  std::string name, arguments;
+  std::string says;
+};
+
+class WrongUsage : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongUsage, IsStatusTwo) {
+  const Workshop shop;
+  shop.write("a.csv", good_trace());
+  shop.write("b.csv", good_trace());
+  const Outcome outcome = shop.identify(GetParam().arguments);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("identify: error: "), HasSubstr(GetParam().says), HasSubstr("--help")));
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(contents(shop / "a.csv"), good_trace());
+}
+
+INSTANTIATE_TEST_SUITE_P(Usages, WrongUsage,
+                         ::testing::Values(Wrong{"Nothing", "", "no trace given"},
+                                           Wrong{"UnknownOption", "--bogus a.csv", "--bogus"},
+                                           Wrong{"Misspelt", "--radus 15mm a.csv", "did you mean --radius?"},
+                                           Wrong{"ValueMissing", "a.csv --radius", "--radius"},
+                                           Wrong{"UnknownLaw", "--law quadratic a.csv", "exponential"},
+                                           Wrong{"UnknownLoss", "--loss cubic a.csv", "huber"},
+                                           Wrong{"OneFold", "--folds 1 a.csv", "--folds"},
+                                           Wrong{"NoStart", "--starts 0 a.csv", "--starts"},
+                                           Wrong{"Threads", "--threads -1 a.csv", "--threads"},
+                                           Wrong{"JsonOfTwo", "--json r.json a.csv b.csv", "one trace"},
+                                           Wrong{"CsvOfTwo", "--csv out a.csv b.csv", "one trace"},
+                                           Wrong{"JsonOntoTheTrace", "--json a.csv a.csv", "overwrite"},
+                                           Wrong{"OptionsBeforeTheVerb", "--radius 15mm effects", "effects"}),
+                         [](const auto& param_info) { return param_info.param.name; });
+
+TEST(Usage, HelpAndVersion) {
+  const Workshop shop;
+  const Outcome help = shop.identify("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* option :
+       {"--radius",  "--speed",    "--load",    "--instruments", "--json",  "--csv",      "--columns",
+        "--units",   "--rate",     "--threads", "--seed",        "--quiet", "--law",      "--effect",
+        "--formula", "--protocol", "--loss",    "--starts",      "--folds", "--profile",  "--no-trim",
+        "--with",    "--continue", "--version", "simulate",      "effects", "Exit status"}) {
+    EXPECT_THAT(help.out, HasSubstr(option));
+  }
+  EXPECT_THAT(help.err, IsEmpty());
+  const Outcome version = shop.identify("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, StartsWith("identify "));
+}
+
+TEST(Usage, EffectsListsAndExplains) {
+  const Workshop shop;
+  const Outcome list = shop.identify("effects");
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.out, AllOf(HasSubstr("viscous"), HasSubstr("rate-state"), HasSubstr("bristle")));
+  const Outcome page = shop.identify("effects bristle");
+  EXPECT_EQ(page.status, 0);
+  EXPECT_THAT(page.out, AllOf(HasSubstr("sigma0"), HasSubstr("1/mm"), HasSubstr("doi:"), HasSubstr("2000")));
+  const Outcome unknown = shop.identify("effects brisle");
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bristle'"));
+}
+
+}  // namespace
