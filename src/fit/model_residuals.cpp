@@ -109,10 +109,10 @@ void ModelResiduals::apply_whitening(double* residual, double* jacobian) const {
   std::vector<double> projected(n + 1);
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     const Whitening& w = (*whitening_)[slips_[k]];
-    if (w.g.empty()) continue;
+    if (w.part <= 0) continue;
     const auto each_row = [&](auto&& visit) {
       for (std::size_t i = 0; i < rows_[k].size(); ++i) visit(rows_[k].begin + i, w.g[i]);
-      visit(break_away_rows_[k], w.g.back());
+      if (break_away_rows_[k] < count_) visit(break_away_rows_[k], w.g.back());
     };
     double norm = 0;
     std::fill(projected.begin(), projected.end(), 0.0);
@@ -133,12 +133,14 @@ std::vector<ModelResiduals::Whitening> ModelResiduals::whitening_at(const double
   const std::size_t n = parameter_count();
   std::vector<double> residual(count_), jacobian(count_ * n);
   std::vector<Whitening> out(observations_.slips.size());
+  const bool breaks_away = std::any_of(break_away_rows_.begin(), break_away_rows_.end(),
+                                       [this](std::size_t row) { return row < count_; });
+  if (!breaks_away) return out;
   if (!evaluate(p, residual.data(), jacobian.data())) return out;
   // delta_i of each slip by least squares, and what noise is left once it is taken out.
   std::vector<double> deltas, norms(slips_.size(), 0.0);
   double left = 0, rows = 0;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!observations_.slips[slips_[k]].from_stick) continue;
     Whitening& w = out[slips_[k]];
     double projection = 0, squares = 0;
     const auto add = [&](std::size_t row) {
@@ -149,7 +151,8 @@ std::vector<ModelResiduals::Whitening> ModelResiduals::whitening_at(const double
       squares += residual[row] * residual[row];
     };
     for (std::size_t row = rows_[k].begin; row < rows_[k].end; ++row) add(row);
-    add(break_away_rows_[k]);
+    if (break_away_rows_[k] < count_) add(break_away_rows_[k]);
+    if (!(norms[k] > 0)) continue;
     deltas.push_back(projection / norms[k]);
     left += squares - projection * projection / norms[k];
     rows += static_cast<double>(w.g.size()) - 1;

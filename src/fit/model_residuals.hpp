@@ -42,12 +42,12 @@ class ModelResiduals final : public Residuals {
 
   /// How the break-away scatter of one slip is taken out of its rows: r - part g (g'r)/(g'g).
   struct Whitening {
-    std::vector<double> g;  ///< the slip's rows, then its break-away
-    double part = 0;        ///< 1 - 1/sqrt(1 + s^2 g'g/sigma^2)
+    std::vector<double> g;  ///< the slip's rows, then its break-away if it has one
+    double part = 0;        ///< 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
   };
-  /// One for each slip of the observations; slips without scatter have an empty g.
+  /// One for each slip of the observations.
   void whiten(const std::vector<Whitening>& by_slip) { whitening_ = &by_slip; }
-  /// The whitening that the residuals at p call for.
+  /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
   std::vector<Whitening> whitening_at(const double* p) const;
 
  private:
