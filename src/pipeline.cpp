@@ -73,7 +73,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   if (!out.analysed) return out;
 
   // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
-  const std::size_t values_per_slip = options.effects.empty() ? 200 : 1000;
+  const std::size_t values_per_slip = options.effects.empty() ? 80 : 1000;
   const Observations observations = observe(
       out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, options.effects).needs(), values_per_slip);
   if (observations.cycles < 3) {

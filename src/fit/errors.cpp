@@ -22,6 +22,7 @@ Slip FullRecord::slip(const Observations::Range& range) const {
   Slip slip = observations_.slip(range);
   slip.time = part(motion_.time);
   slip.velocity = part(motion_.relative_velocity);
+  slip.velocity_variance = {};
   slip.acceleration = part(acceleration_);
   slip.angle = part(angle_);
   slip.distance = part(distance_);

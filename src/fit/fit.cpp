@@ -13,7 +13,6 @@
 #include "starts.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
-#include "tribofit/fit/parallel.hpp"
 #include "tribofit/fit/uncertainty.hpp"
 
 namespace tribofit {
@@ -144,39 +143,41 @@ Eigen::MatrixXd published_influence(const NormalEquations& equations, const std:
   return out;
 }
 
-/// Error on cycles that took no part: refits that leave out contiguous blocks of cycles.
-void hold_out(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
+/// Error on cycles that took no part: contiguous blocks of cycles are left out in turn and the rest fitted, by one
+/// Gauss-Newton step from the fit of all. The step is short (a fraction of a standard error), so it ends where a refit would.
+void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
+              const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
   const std::size_t folds = fold_count(job.observations, job.options);
-  const std::vector<std::size_t> all = all_slips(job.observations);
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
-  SolverOptions quick;
-  quick.max_iterations = 25;
-  quick.relative_cost = 1e-6;
-  quick.relative_step = 1e-6;
-  quick.careful = false;
-  run_tasks(folds, job.options.threads, [&](std::size_t fold) {
-    std::vector<std::size_t> kept, held;
-    for (const std::size_t s : all) {
-      const bool out = fold_of_cycle(job.observations.slips[s].cycle, job.observations.cycles, folds) == fold;
-      (out ? held : kept).push_back(s);
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    Eigen::MatrixXd curvature = equations.total;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(curvature.rows());
+    for (std::size_t c = 0; c < job.observations.cycles; ++c) {
+      if (fold_of_cycle(c, job.observations.cycles, folds) == fold) {
+        curvature -= equations.curvature[c];
+      } else {
+        gradient += equations.gradient[c];
+      }
     }
-    const std::vector<double> q = job.solve(kept, p, quick).p;
-    fit.fold_parameters[fold] = q;
+    const Eigen::VectorXd step = -inverse_over(curvature, free) * gradient;
+    std::vector<double>& q = fit.fold_parameters[fold];
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      q[k] = std::clamp(q[k] + step(static_cast<Eigen::Index>(k)), job.bounds.lower[k], job.bounds.upper[k]);
+    }
+    std::vector<std::size_t> held;
+    for (const std::size_t s : all_slips(job.observations)) {
+      if (fold_of_cycle(job.observations.slips[s].cycle, job.observations.cycles, folds) == fold) held.push_back(s);
+    }
     // The squares on every sample at p are known; means over a few samples give their change exactly
     // where the two curves differ by a nearly constant amount within such a mean.
     const ModelResiduals residuals(job.model, job.observations, held);
-    std::vector<double> r(residuals.count()), at_p(residuals.count());
-    residuals.evaluate(q.data(), r.data(), nullptr);
-    residuals.evaluate(p.data(), at_p.data(), nullptr);
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      double change = 0;
-      for (std::size_t i = residuals.rows(k).begin; i < residuals.rows(k).end; ++i) change += r[i] * r[i] - at_p[i] * at_p[i];
-      if (const std::size_t b = residuals.break_away_row(k); b < r.size()) change += r[b] * r[b] - at_p[b] * at_p[b];
-      fit.cycle_squares[job.observations.slips[held[k]].cycle] += change;
+    const std::vector<double> at_q = residuals.squares(q.data()), at_p = residuals.squares(p.data());
+    for (std::size_t k = 0; k < std::min(at_q.size(), at_p.size()); ++k) {
+      fit.cycle_squares[job.observations.slips[held[k]].cycle] += at_q[k] - at_p[k];
     }
-  });
+  }
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
   const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);
   fit.error.held_out_rmse = std::sqrt(std::max(0.0, squares) / counts);
@@ -222,7 +223,7 @@ void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors
       job.whitening.empty() ? job.residuals(all_slips(job.observations)).whitening_at(p.data()) : job.whitening;
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
   for (const auto& slip : whitening) {
-    for (const double g : slip.g) sensitivity += g * g;
+    sensitivity += slip.g.squaredNorm();
   }
   const double scatter = std::pow(fit.floor.scatter, 2) * sensitivity / std::max(1.0, count);
   fit.floor.rmse = std::sqrt(std::pow(fit.floor.noise, 2) + scatter);
@@ -304,7 +305,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   fit.error = errors.figures;
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
   fill_floor(job, p, errors, fit);
-  hold_out(job, p, errors, fit);
+  hold_out(job, p, equations, inside, errors, fit);
   const std::vector<double> systematic = systematic_errors(model, p, motion, observations, instruments, inside);
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
   if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, segmentation);

@@ -1,4 +1,3 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -17,20 +16,24 @@ struct Residual {
 
 Residual about_parabola(const std::vector<double>& x, std::size_t begin, std::size_t end) {
   const std::size_t n = end - begin;
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0;
-  const double base = x[begin];
+  const auto count = static_cast<double>(n);
+  // Moments of the data about the first sample, over u in [-1, 1].
+  double y0 = 0, y1 = 0, y2 = 0, yy = 0;
+  const double scale = 2 / (count - 1);
   for (std::size_t i = 0; i < n; ++i) {
-    const double u = 2.0 * static_cast<double>(i) / static_cast<double>(n - 1) - 1;
-    const Eigen::Vector3d row(1, u, u * u);
-    const double y = x[begin + i] - base;
-    normal += row * row.transpose();
-    right += y * row;
-    squares += y * y;
+    const double u = scale * static_cast<double>(i) - 1, y = x[begin + i] - x[begin];
+    y0 += y;
+    y1 += u * y;
+    y2 += u * u * y;
+    yy += y * y;
   }
-  const Eigen::Vector3d solution = normal.ldlt().solve(right);
-  return {std::max(0.0, squares - solution.dot(right)), static_cast<double>(n) - 3};
+  // Sums of u^2 and u^4 over the grid; odd ones vanish.
+  const double u2 = count * (count + 1) / (3 * (count - 1));
+  const double u4 = u2 * (3 * count * count - 7) / (5 * (count - 1) * (count - 1));
+  const double line = y1 * y1 / u2;
+  const double curve = y2 - y0 * u2 / count;
+  const double squares = yy - y0 * y0 / count - line - curve * curve / (u4 - u2 * u2 / count);
+  return {std::max(0.0, squares), count - 3};
 }
 
 /// Noise as the pooled spread, leaving out stretches that hold something else (an event, a drop-out).

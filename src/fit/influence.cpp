@@ -22,17 +22,14 @@ NormalEquations normal_equations(const ModelResiduals& residuals, const Observat
   equations.gradient.assign(observations.cycles, Eigen::VectorXd::Zero(n));
   equations.total = Eigen::MatrixXd::Zero(n, n);
   if (!residuals.evaluate(p.data(), r.data(), jacobian.data())) return equations;
-  using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-  const auto add = [&](std::size_t cycle, std::size_t begin, std::size_t count) {
-    const Rows j(jacobian.data() + begin * p.size(), static_cast<Eigen::Index>(count), n);
-    const Eigen::Map<const Eigen::VectorXd> residual(r.data() + begin, static_cast<Eigen::Index>(count));
-    equations.curvature[cycle].noalias() += j.transpose() * j;
-    equations.gradient[cycle].noalias() += j.transpose() * residual;
-  };
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   for (std::size_t k = 0; k < residuals.slips().size(); ++k) {
     const std::size_t cycle = observations.slips[residuals.slips()[k]].cycle;
-    add(cycle, residuals.rows(k).begin, residuals.rows(k).size());
-    if (residuals.break_away_row(k) < residuals.count()) add(cycle, residuals.break_away_row(k), 1);
+    const std::size_t first = residuals.first_row(k);
+    const Eigen::Map<const RowMajor> j(jacobian.data() + first * p.size(), n + 1, n);
+    const Eigen::Map<const Eigen::VectorXd> residual(r.data() + first, n + 1);
+    equations.curvature[cycle].noalias() += j.transpose() * j;
+    equations.gradient[cycle].noalias() += j.transpose() * residual;
   }
   for (const Eigen::MatrixXd& c : equations.curvature) equations.total += c;
   return equations;

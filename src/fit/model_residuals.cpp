@@ -12,11 +12,11 @@ namespace tribofit {
 
 namespace {
 
-/// Derivatives taken in one pass over the slips.
+/// Derivatives taken in one pass over a slip.
 constexpr int kStride = 4;
 using Dual = ceres::Jet<double, kStride>;
 
-/// sign(r) sqrt(rho(r^2)) for a residual of weight w (a mean of w samples) and the width s of a single sample.
+/// sign(r) sqrt(rho(r^2)) for a residual whose weight has the square root given.
 template <class T>
 T bend(const T& r, const ModelResiduals::Options& options, double root_weight) {
   using std::abs;
@@ -37,132 +37,118 @@ T bend(const T& r, const ModelResiduals::Options& options, double root_weight) {
 
 ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
                                std::vector<std::size_t> slips, const Options& options)
-    : model_(model), observations_(observations), slips_(std::move(slips)), options_(options) {
-  for (const std::size_t s : slips_) {
-    const auto& range = observations_.slips[s];
-    rows_.push_back({count_, count_ + range.end - range.begin});
-    count_ = rows_.back().end;
+    : model_(model), observations_(observations), slips_(std::move(slips)), options_(options) {}
+
+/// Calls write(row, residual) for every row of a slip; false where the model is not finite.
+template <class T, class Write>
+bool ModelResiduals::run(const Observations::Range& range, const T* p, Write&& write) const {
+  const Slip slip = observations_.slip(range);
+  std::vector<T> velocity(slip.size()), mu(slip.size());
+  std::transform(slip.velocity.begin(), slip.velocity.end(), velocity.begin(), [](double v) { return T(v); });
+  tribofit::evaluate<T>(model_, p, slip, velocity, mu);
+  for (std::size_t i = 0; i < slip.size(); ++i) {
+    const double root_weight = observations_.root_weight[range.begin + i];
+    const T r = root_weight * (observations_.friction[range.begin + i] - mu[i]);
+    if (!std::isfinite(scalar_part(r))) return false;
+    write(i, bend(r, options_, root_weight));
   }
-  const std::size_t breaks = static_cast<std::size_t>(std::count_if(
-      slips_.begin(), slips_.end(), [&](std::size_t s) { return observations_.slips[s].from_stick; }));
-  std::size_t next = count_;
-  count_ += breaks;
-  for (const std::size_t s : slips_) break_away_rows_.push_back(observations_.slips[s].from_stick ? next++ : count_);
+  if (range.from_stick) {
+    const T r = range.break_away_friction - break_away_level(model_, p, slip);
+    if (!std::isfinite(scalar_part(r))) return false;
+    write(slip.size(), bend(r, options_, 1.0));
+  }
+  return true;
 }
 
-ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
-                               std::vector<std::size_t> slips)
-    : ModelResiduals(model, observations, std::move(slips), Options()) {}
-
-/// Calls write(row, residual) for every row; false where the model is not finite.
-template <class T, class Write>
-bool ModelResiduals::run(const T* p, Write&& write) const {
-  std::vector<T> velocity, mu;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    const auto& range = observations_.slips[slips_[k]];
-    const Slip slip = observations_.slip(range);
-    velocity.resize(slip.size());
-    std::transform(slip.velocity.begin(), slip.velocity.end(), velocity.begin(), [](double v) { return T(v); });
-    mu.resize(slip.size());
-    tribofit::evaluate<T>(model_, p, slip, velocity, mu);
-    for (std::size_t i = 0; i < slip.size(); ++i) {
-      const double root_weight = std::sqrt(observations_.weight[range.begin + i]);
-      const T r = root_weight * (observations_.friction[range.begin + i] - mu[i]);
-      if (!std::isfinite(scalar_part(r))) return false;
-      write(rows_[k].begin + i, bend(r, options_, root_weight));
+bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Rows& rows) const {
+  const auto& range = observations_.slips[slips_[k]];
+  const std::size_t n = parameter_count();
+  const auto count = static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0));
+  rows.jacobian_and_residual.resize(count, with_jacobian ? static_cast<Eigen::Index>(n) + 1 : 1);
+  auto& matrix = rows.jacobian_and_residual;
+  if (!with_jacobian) {
+    if (!run<double>(range, p, [&](std::size_t row, double r) { matrix(Eigen::Index(row), 0) = r; })) return false;
+  }
+  std::vector<Dual> dual(n);
+  for (std::size_t first = 0; with_jacobian && first < n; first += kStride) {
+    const std::size_t last = std::min(n, first + kStride);
+    for (std::size_t j = 0; j < n; ++j) {
+      dual[j] = j >= first && j < last ? Dual(p[j], static_cast<int>(j - first)) : Dual(p[j]);
     }
-    if (range.from_stick) {
-      const T r = range.break_away_friction - break_away_level(model_, p, slip);
-      if (!std::isfinite(scalar_part(r))) return false;
-      write(break_away_rows_[k], bend(r, options_, 1.0));
-    }
+    const bool finite = run<Dual>(range, dual.data(), [&](std::size_t row, const Dual& r) {
+      const auto i = static_cast<Eigen::Index>(row);
+      matrix(i, Eigen::Index(n)) = r.a;
+      for (std::size_t j = first; j < last; ++j) matrix(i, Eigen::Index(j)) = r.v[Eigen::Index(j - first)];
+    });
+    if (!finite) return false;
+  }
+  if (whitening_ != nullptr) {
+    const Whitening& w = (*whitening_)[slips_[k]];
+    if (w.part > 0) matrix -= (w.part / w.g.squaredNorm() * w.g) * (w.g.transpose() * matrix).eval();
   }
   return true;
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
-  if (jacobian == nullptr) {
-    if (!run<double>(p, [&](std::size_t row, double r) { residual[row] = r; })) return false;
-    apply_whitening(residual, nullptr);
-    return true;
-  }
-  const std::size_t n = parameter_count();
-  std::vector<Dual> dual(n);
-  for (std::size_t first = 0; first < n; first += kStride) {
-    const std::size_t last = std::min(n, first + kStride);
-    for (std::size_t k = 0; k < n; ++k) {
-      dual[k] = k >= first && k < last ? Dual(p[k], static_cast<int>(k - first)) : Dual(p[k]);
+  const auto n = static_cast<Eigen::Index>(parameter_count());
+  Rows rows;
+  std::fill_n(residual, count(), 0.0);
+  if (jacobian != nullptr) std::fill_n(jacobian, count() * parameter_count(), 0.0);
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (!fill(k, p, jacobian != nullptr, rows)) return false;
+    double* r = residual + first_row(k);
+    if (jacobian == nullptr) {
+      r[0] = rows.residual().norm();
+      continue;
     }
-    const bool finite = run<Dual>(dual.data(), [&](std::size_t row, const Dual& r) {
-      residual[row] = r.a;
-      for (std::size_t k = first; k < last; ++k) jacobian[row * n + k] = r.v[static_cast<Eigen::Index>(k - first)];
-    });
-    if (!finite) return false;
+    Eigen::MatrixXd& matrix = rows.jacobian_and_residual;
+    const Eigen::Index kept = std::min(matrix.rows(), n + 1);
+    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(matrix);  // in place
+    for (Eigen::Index i = 0; i < kept; ++i) {
+      r[i] = i <= n ? matrix(i, n) : 0;
+      for (Eigen::Index j = i; j < n; ++j) jacobian[(first_row(k) + std::size_t(i)) * std::size_t(n) + std::size_t(j)] = matrix(i, j);
+    }
   }
-  apply_whitening(residual, jacobian);
   return true;
 }
 
-void ModelResiduals::apply_whitening(double* residual, double* jacobian) const {
-  if (whitening_ == nullptr) return;
-  const std::size_t n = parameter_count();
-  std::vector<double> projected(n + 1);
+std::vector<double> ModelResiduals::squares(const double* p) const {
+  std::vector<double> out;
+  Rows rows;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    const Whitening& w = (*whitening_)[slips_[k]];
-    if (w.part <= 0) continue;
-    const auto each_row = [&](auto&& visit) {
-      for (std::size_t i = 0; i < rows_[k].size(); ++i) visit(rows_[k].begin + i, w.g[i]);
-      if (break_away_rows_[k] < count_) visit(break_away_rows_[k], w.g.back());
-    };
-    double norm = 0;
-    std::fill(projected.begin(), projected.end(), 0.0);
-    each_row([&](std::size_t row, double g) {
-      norm += g * g;
-      projected[n] += g * residual[row];
-      for (std::size_t j = 0; jacobian != nullptr && j < n; ++j) projected[j] += g * jacobian[row * n + j];
-    });
-    for (double& x : projected) x *= w.part / norm;
-    each_row([&](std::size_t row, double g) {
-      residual[row] -= g * projected[n];
-      for (std::size_t j = 0; jacobian != nullptr && j < n; ++j) jacobian[row * n + j] -= g * projected[j];
-    });
+    if (!fill(k, p, false, rows)) return {};
+    out.push_back(rows.residual().squaredNorm());
   }
+  return out;
 }
 
 std::vector<ModelResiduals::Whitening> ModelResiduals::whitening_at(const double* p) const {
-  const std::size_t n = parameter_count();
-  std::vector<double> residual(count_), jacobian(count_ * n);
   std::vector<Whitening> out(observations_.slips.size());
-  const bool breaks_away = std::any_of(break_away_rows_.begin(), break_away_rows_.end(),
-                                       [this](std::size_t row) { return row < count_; });
+  const bool breaks_away = std::any_of(slips_.begin(), slips_.end(),
+                                       [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
-  if (!evaluate(p, residual.data(), jacobian.data())) return out;
   // delta_i of each slip by least squares, and what noise is left once it is taken out.
-  std::vector<double> deltas, norms(slips_.size(), 0.0);
-  double left = 0, rows = 0;
+  std::vector<double> deltas;
+  double left = 0, freedom = 0;
+  Rows rows;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    Whitening& w = out[slips_[k]];
-    double projection = 0, squares = 0;
-    const auto add = [&](std::size_t row) {
-      const double g = jacobian[row * n];
-      w.g.push_back(g);
-      norms[k] += g * g;
-      projection += g * residual[row];
-      squares += residual[row] * residual[row];
-    };
-    for (std::size_t row = rows_[k].begin; row < rows_[k].end; ++row) add(row);
-    if (break_away_rows_[k] < count_) add(break_away_rows_[k]);
-    if (!(norms[k] > 0)) continue;
-    deltas.push_back(projection / norms[k]);
-    left += squares - projection * projection / norms[k];
-    rows += static_cast<double>(w.g.size()) - 1;
+    if (!fill(k, p, true, rows)) return std::vector<Whitening>(observations_.slips.size());
+    Eigen::VectorXd& g = out[slips_[k]].g;
+    g = rows.jacobian_and_residual.col(0);
+    const double norm = g.squaredNorm();
+    if (!(norm > 0)) continue;
+    const double projection = g.dot(rows.residual());
+    deltas.push_back(projection / norm);
+    left += rows.residual().squaredNorm() - projection * projection / norm;
+    freedom += static_cast<double>(g.size()) - 1;
   }
   double mean = 0, scatter = 0;
   for (const double delta : deltas) mean += delta / static_cast<double>(deltas.size());
   for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / static_cast<double>(deltas.size());
-  const double noise = rows > 0 ? left / rows : 0;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (norms[k] > 0 && noise > 0) out[slips_[k]].part = 1 - 1 / std::sqrt(1 + scatter * norms[k] / noise);
+  const double noise = freedom > 0 ? left / freedom : 0;
+  for (const std::size_t s : slips_) {
+    const double norm = out[s].g.squaredNorm();
+    if (norm > 0 && noise > 0) out[s].part = 1 - 1 / std::sqrt(1 + scatter * norm / noise);
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -9,8 +10,11 @@
 
 namespace tribofit {
 
-/// Residuals of a friction model over slips: sqrt(weight) (measured - model) for every value of each slip, in the
-/// order of the slips, then one residual for each break-away: |measured| - level.
+/// Residuals of a friction model over slips: sqrt(weight) (measured - model) for every value of each slip, and
+/// |measured| - level for the break-away that begins it.
+///
+/// A solver sees the rows of each slip compressed by a QR decomposition of [J r] to as many rows as it has parameters, plus one:
+/// J'J, J'r and r'r, all that least squares uses, are unchanged, and a long record stays in the cache.
 ///
 /// With a robust loss each residual r becomes sign(r) sqrt(rho(r^2)), whose squares add up to the robust cost.
 ///
@@ -25,44 +29,46 @@ class ModelResiduals final : public Residuals {
     Loss loss = Loss::squares;
     double loss_width = 0;  ///< where the loss bends, for a single sample [1 or N]
   };
-  /// slips: indices into observations.slips.
-  ModelResiduals(const FrictionModel& model, const Observations& observations, std::vector<std::size_t> slips,
-                 const Options& options);
-  ModelResiduals(const FrictionModel& model, const Observations& observations, std::vector<std::size_t> slips);
-
-  std::size_t count() const override { return count_; }
-  std::size_t parameter_count() const override { return model_.parameters().size(); }
-  bool evaluate(const double* p, double* residual, double* jacobian) const override;
-
-  /// Rows [begin, end) of slip k (of those given), its break-away excluded.
-  Span rows(std::size_t k) const { return rows_[k]; }
-  /// Row of the break-away of slip k, or count() when it has none.
-  std::size_t break_away_row(std::size_t k) const { return break_away_rows_[k]; }
-  std::span<const std::size_t> slips() const { return slips_; }
 
   /// How the break-away scatter of one slip is taken out of its rows: r - part g (g'r)/(g'g).
   struct Whitening {
-    std::vector<double> g;  ///< the slip's rows, then its break-away if it has one
-    double part = 0;        ///< 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
+    Eigen::VectorXd g;  ///< the slip's rows, then its break-away if it has one
+    double part = 0;    ///< 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
   };
-  /// One for each slip of the observations.
+
+  /// slips: indices into observations.slips.
+  ModelResiduals(const FrictionModel& model, const Observations& observations, std::vector<std::size_t> slips,
+                 const Options& options = {Loss::squares, 0});
+
+  std::size_t count() const override { return slips_.size() * (parameter_count() + 1); }
+  std::size_t parameter_count() const override { return model_.parameters().size(); }
+  bool evaluate(const double* p, double* residual, double* jacobian) const override;
+
+  std::span<const std::size_t> slips() const { return slips_; }
+  /// First of the parameter_count() + 1 compressed rows of slip k (of those given).
+  std::size_t first_row(std::size_t k) const { return k * (parameter_count() + 1); }
+  /// Sum of squares of every slip at p, break-away included. Empty where the model is not finite.
+  std::vector<double> squares(const double* p) const;
+
+  /// Whitens with one entry for each slip of the observations, which must outlive this object.
   void whiten(const std::vector<Whitening>& by_slip) { whitening_ = &by_slip; }
   /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
   std::vector<Whitening> whitening_at(const double* p) const;
 
  private:
+  /// Uncompressed rows of one slip.
+  struct Rows {
+    Eigen::MatrixXd jacobian_and_residual;  ///< the last column holds the residuals
+    auto residual() { return jacobian_and_residual.col(jacobian_and_residual.cols() - 1); }
+  };
+  bool fill(std::size_t k, const double* p, bool with_jacobian, Rows& rows) const;
   template <class T, class Write>
-  bool run(const T* p, Write&& write) const;
+  bool run(const Observations::Range& range, const T* p, Write&& write) const;
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
   const Observations& observations_;
   std::vector<std::size_t> slips_;
   Options options_;
-  std::vector<Span> rows_;
-  std::vector<std::size_t> break_away_rows_;
-  void apply_whitening(double* residual, double* jacobian) const;
-
-  std::size_t count_ = 0;
   const std::vector<Whitening>* whitening_ = nullptr;
 };
 

@@ -108,6 +108,7 @@ Slip Observations::slip(const Range& range) const {
   slip.distance = part(distance);
   slip.load = part(load);
   slip.temperature = part(temperature);
+  slip.velocity_variance = part(velocity_variance);
   slip.from_stick = range.from_stick;
   slip.break_away_time = range.break_away_time;
   slip.stick_time = range.stick_time;
@@ -124,7 +125,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   out.slips = ranges_of(motion, segmentation);
   out.cycles = out.slips.size();
   if (values_per_slip > 0) {
-    out.samples_per_value = std::max<std::size_t>(1, median_size(out.slips) / values_per_slip);
+    out.samples_per_value = std::max<std::size_t>(1, (median_size(out.slips) + values_per_slip / 2) / values_per_slip);
   }
   const Reducer reduce(out.slips, out.samples_per_value);
   for (auto& slip : out.slips) {
@@ -135,7 +136,20 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
   out.friction = reduce.means(motion.friction);
-  reduce.each([&](std::size_t begin, std::size_t end) { out.weight.push_back(static_cast<double>(end - begin)); });
+  reduce.each([&](std::size_t begin, std::size_t end) {
+    out.weight.push_back(static_cast<double>(end - begin));
+    out.root_weight.push_back(std::sqrt(out.weight.back()));
+  });
+  if (out.samples_per_value > 1) {
+    std::size_t value = 0;
+    reduce.each([&](std::size_t begin, std::size_t end) {
+      const double mean = out.velocity[value++];
+      double squares = 0;
+      for (std::size_t i = begin; i < end; ++i) squares += std::pow(motion.relative_velocity[i] - mean, 2);
+      // Sensor noise is part of this spread; it is far below what the motion does within a value.
+      out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
+    });
+  }
   if (needs.acceleration) out.acceleration = reduce.means(block_acceleration(motion));
   if (needs.angle) out.angle = reduce.means(disc_angle(motion));
   if (needs.distance) out.distance = reduce.means(sliding_distance(motion));

@@ -25,15 +25,35 @@ class Cost : public ceres::CostFunction {
   bool Evaluate(const double* const* blocks, double* residuals, double** jacobians) const override {
     for (std::size_t k = 0; k < free_.size(); ++k) p_[free_[k]] = blocks[0][k];
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
-    if (jacobian == nullptr || free_.size() == p_.size()) return problem_.evaluate(p_.data(), residuals, jacobian);
-    if (!problem_.evaluate(p_.data(), residuals, all_.data())) return false;
-    for (std::size_t i = 0; i < problem_.count(); ++i) {
+    const bool all_free = free_.size() == p_.size();
+    if (!problem_.evaluate(p_.data(), residuals, jacobian == nullptr || all_free ? jacobian : all_.data())) return false;
+    if (jacobian == nullptr) return true;
+    for (std::size_t i = 0; !all_free && i < problem_.count(); ++i) {
       for (std::size_t k = 0; k < free_.size(); ++k) jacobian[i * free_.size() + k] = all_[i * p_.size() + free_[k]];
     }
+    note_norms(jacobian);
     return true;
   }
 
+  /// A first step that was too long can throw a parameter so far out that no residual feels it any more; the cost is
+  /// flat there and the solver calls it converged.
+  bool ran_away() const {
+    for (std::size_t k = 0; k < first_norms_.size(); ++k) {
+      if (last_norms_[k] < 1e-12 * first_norms_[k]) return true;
+    }
+    return false;
+  }
+
  private:
+  void note_norms(const double* jacobian) const {
+    last_norms_.assign(free_.size(), 0.0);
+    for (std::size_t i = 0; i < problem_.count() * free_.size(); ++i) {
+      last_norms_[i % free_.size()] += jacobian[i] * jacobian[i];
+    }
+    if (first_norms_.empty()) first_norms_ = last_norms_;
+  }
+
+  mutable std::vector<double> first_norms_, last_norms_;  ///< squared column norms of the first and last Jacobian
   const Residuals& problem_;
   mutable std::vector<double> p_;
   std::vector<std::size_t> free_;
@@ -95,15 +115,17 @@ std::string explain(const ceres::Solver::Summary& summary) {
   }
 }
 
-/// One descent from `start`.
+/// One descent from `start`. ran_away: a parameter ended where no residual feels it (see Cost).
 SolverResult descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
-                     std::span<const double> lower, std::span<const double> upper, const SolverOptions& options) {
+                     std::span<const double> lower, std::span<const double> upper, const SolverOptions& options,
+                     bool& ran_away) {
   SolverResult result;
   result.p.assign(start.begin(), start.end());
   std::vector<double> x;
   for (const std::size_t k : free) x.push_back(start[k]);
   ceres::Problem ceres_problem;
-  ceres_problem.AddResidualBlock(new Cost(problem, result.p, free), nullptr, x.data());
+  auto* cost = new Cost(problem, result.p, free);  // owned by the problem
+  ceres_problem.AddResidualBlock(cost, nullptr, x.data());
   for (std::size_t j = 0; j < free.size() && !lower.empty(); ++j) {
     const int index = static_cast<int>(j);
     if (std::isfinite(lower[free[j]])) ceres_problem.SetParameterLowerBound(x.data(), index, lower[free[j]]);
@@ -127,23 +149,9 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.iterations = static_cast<int>(summary.iterations.size());
   result.message = explain(summary);
+  ran_away = cost->ran_away();
   if (options.careful && summary.IsSolutionUsable()) polish(problem, free, lower, upper, result);
   return result;
-}
-
-/// A first step that was too long can throw a parameter so far out that no residual feels it any more; the cost is flat
-/// there and the solver calls it converged.
-bool runs_away(const Residuals& problem, std::span<const double> start, std::span<const double> end,
-               const std::vector<std::size_t>& free) {
-  const auto felt = [&](std::span<const double> p) {
-    std::vector<double> residual(problem.count()), jacobian(problem.count() * p.size());
-    std::vector<double> norms(p.size(), 0.0);
-    if (!problem.evaluate(p.data(), residual.data(), jacobian.data())) return norms;
-    for (std::size_t i = 0; i < jacobian.size(); ++i) norms[i % p.size()] += jacobian[i] * jacobian[i];
-    return norms;
-  };
-  const std::vector<double> before = felt(start), after = felt(end);
-  return std::any_of(free.begin(), free.end(), [&](std::size_t k) { return after[k] < 1e-12 * before[k]; });
 }
 
 /// What is returned where there is nothing to solve, or too little to solve it with.
@@ -169,11 +177,12 @@ SolverResult minimize(const Residuals& problem, std::span<const double> start, s
   }
   if (free.empty() || problem.count() < free.size()) return unsolved(problem, start, free.empty());
 
-  SolverResult result = descend(problem, start, free, lower, upper, options);
-  if (options.careful && (!result.converged || runs_away(problem, start, result.p, free))) {
+  bool ran_away = false;
+  SolverResult result = descend(problem, start, free, lower, upper, options, ran_away);
+  if (options.careful && (!result.converged || ran_away)) {
     SolverOptions cautious = options;
     cautious.trust_radius = 1e-4;
-    SolverResult retry = descend(problem, start, free, lower, upper, cautious);
+    SolverResult retry = descend(problem, start, free, lower, upper, cautious, ran_away);
     if (retry.cost < result.cost) result = std::move(retry);
   }
   return result;

@@ -14,7 +14,7 @@ namespace {
 using namespace tribofit;
 
 Fit fit_record(const FrictionModel& model, const synthetic::Record& record, const FitOptions& options = {},
-               std::size_t values_per_slip = 200) {
+               std::size_t values_per_slip = 80) {
   const Observations observations = observe(record.motion, record.segmentation, model.needs(), values_per_slip);
   return fit_model(model, record.motion, record.segmentation, observations, {}, options);
 }
@@ -59,6 +59,17 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"formula", BaseLaw::exponential,
                          {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")}, {0.02, 25, 6}}),
     [](const auto& c) { return std::string(c.param.name); });
+
+TEST(Fit, MeansOverAFewSamplesDoNotMoveTheBareLaws) {
+  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    const std::vector<double> truth = synthetic::table4_15mm(law);
+    synthetic::Options options;
+    options.rate = 100e3;
+    options.cycles = 10;
+    const Fit fit = fit_record(FrictionModel(law), synthetic::make(FrictionModel(law), truth, options));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(fit.parameters[k].value / truth[k], 1, 1e-5) << k;
+  }
+}
 
 TEST(Fit, ReportsTheNoiseAsItsErrorAndItsFloor) {
   const FrictionModel model(BaseLaw::exponential);

@@ -102,7 +102,9 @@ TEST(Coverage, NominalIntervalsCoverTheTruth) {
     // The three intervals of a fit are correlated: allow the binomial spread of as many independent fits.
     const double spread = 3 * std::sqrt(0.95 * 0.05 / n);
     EXPECT_GT(pooled, 0.95 - std::max(0.02, spread)) << condition.name;
-    if (runs >= 50) EXPECT_LT(pooled, 0.97) << condition.name;
+    if (runs >= 50) {
+      EXPECT_LT(pooled, 0.97) << condition.name;
+    }
   }
 }
 

@@ -18,8 +18,8 @@ namespace tribofit {
 /// residual per cycle (in rigid stick mu is set by the spring, not by the law). The unit of evidence is the cycle, or a
 /// stretch of equal length where nothing sticks.
 ///
-/// Samples may be means over `samples_per_value` neighbours, which keeps what a fit needs: at 200 values a slip the curvature of
-/// mu(v) within one mean is below 1e-4 of mu.
+/// Samples may be means over `samples_per_value` neighbours. Each carries the variance of v_r within it, so that the bare
+/// laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move by less than 1e-5.
 struct Observations {
   struct Range {
     std::size_t begin = 0, end = 0;  ///< values of this slip
@@ -35,7 +35,8 @@ struct Observations {
   };
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]
-  std::vector<double> weight;                    ///< samples behind each value
+  std::vector<double> velocity_variance;         ///< of v_r within each value [m^2/s^2]; empty when values are samples
+  std::vector<double> weight, root_weight;       ///< samples behind each value, and its square root
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<Range> slips;
   std::size_t cycles = 0;             ///< units of evidence
@@ -53,6 +54,6 @@ struct Observations {
 /// Builds the observations of a trace with the channels `needs` names.
 /// values_per_slip: means are taken so that the median slip has about this many; 0 keeps every sample.
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs = {},
-                     std::size_t values_per_slip = 200);
+                     std::size_t values_per_slip = 80);
 
 }  // namespace tribofit

@@ -128,7 +128,14 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
     }
   });
   const T drop = law.mu_s - law.mu_k;
-  for (std::size_t i = 0; i < n; ++i) mu[i] = law.mu_k + drop * stribeck_shape(model.law(), mu[i]);
+  if (slip.velocity_variance.empty()) {
+    for (std::size_t i = 0; i < n; ++i) mu[i] = law.mu_k + drop * stribeck_shape(model.law(), mu[i]);
+  } else {
+    const T decay_squared = law.decay * law.decay;
+    for (std::size_t i = 0; i < n; ++i) {
+      mu[i] = law.mu_k + drop * stribeck_shape_mean(model.law(), mu[i], T(decay_squared * slip.velocity_variance[i]));
+    }
+  }
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Steadies<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.steady(q, slip.at(i, velocity[i]), mu[i]);

@@ -36,6 +36,7 @@ struct Instant {
 /// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
 struct Slip {
   std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
+  std::span<const double> velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
   bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
   double break_away_time = 0;  ///< [s], where from_stick
   double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded
