@@ -23,14 +23,42 @@ std::vector<std::pair<FrictionModel, FitOptions>> plan(const IdentifyOptions& op
   return fits;
 }
 
-/// Index of the joint fit with the least error on held-out cycles.
+/// Index of the fit with the least error on held-out cycles, among those of the first fit's protocol.
 std::size_t best_of(const std::vector<Fit>& fits) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < fits.size(); ++k) {
-    if (fits[k].protocol != Protocol::joint || fits[k].parameters.empty()) continue;
+    if (fits[k].protocol != fits[0].protocol || fits[k].parameters.empty()) continue;
     if (fits[best].parameters.empty() || fits[k].error.held_out_rmse < fits[best].error.held_out_rmse) best = k;
   }
   return best;
+}
+
+/// What the instruments file says of the conditions, where neither the user nor the manifest said it.
+ReadOptions with_declared(ReadOptions read, const Instruments& instruments) {
+  const auto declare = [](Condition& condition, const std::optional<Declared>& declared) {
+    if (!condition.known() && declared) condition = {declared->value, "instruments file"};
+  };
+  if (read.step_radii.empty()) declare(read.conditions.radius, instruments.rig.radius);
+  declare(read.conditions.speed, instruments.rig.speed);
+  declare(read.conditions.load, instruments.rig.load);
+  return read;
+}
+
+bool is_constant(const std::vector<double>& channel) {
+  return std::all_of(channel.begin(), channel.end(), [&](double x) { return x == channel.front(); });
+}
+
+/// What keeps the data from carrying an analysis, as sentences; none when nothing does.
+std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<std::string> found;
+  if (is_constant(motion.friction)) found.push_back("friction is the same in every sample: the channel was not recorded");
+  if (is_constant(motion.relative_velocity) && motion.velocity_kind != VelocityKind::fixed_block) {
+    found.push_back("the velocity is the same in every sample: the channel was not recorded");
+  }
+  if (found.empty() && segmentation.kind == MotionKind::always_sticking) {
+    found.push_back("nothing slips in this trace: there is no friction law to fit");
+  }
+  return found;
 }
 
 void require_channels(const IdentifyOptions& options, const Motion& motion, std::vector<std::string>& warnings,
@@ -52,7 +80,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   Identification out;
   out.path = path;
 
-  Trace trace = read_trace(path, options.read);
+  Trace trace = read_trace(path, with_declared(options.read, options.instruments));
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
@@ -63,11 +91,12 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   out.motion = compute_motion(std::move(trace), options.instruments, options.motion);
   out.segmentation = find_cycles(out.motion);
   out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
+  out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 
   require_channels(options, out.motion, out.warnings, out.analysed);
-  if (out.segmentation.kind == MotionKind::always_sticking) {
-    out.warnings.push_back("nothing slips in this trace: there is no friction law to fit");
+  for (const std::string& obstacle : obstacles(out.motion, out.segmentation)) {
+    out.warnings.push_back(obstacle);
     out.analysed = false;
   }
   if (!out.analysed) return out;

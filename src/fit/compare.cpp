@@ -4,7 +4,7 @@
 
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit {

@@ -13,7 +13,7 @@
 #include "starts.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit {
 
@@ -52,11 +52,11 @@ struct Job {
   const FitOptions& options;
   Bounds bounds{};
   ModelResiduals::Options loss{};
-  std::vector<ModelResiduals::Whitening> whitening{};  ///< of every slip; empty: plain least squares
+  ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
   ModelResiduals residuals(const std::vector<std::size_t>& slips) const {
     ModelResiduals out(model, observations, slips, loss);
-    if (!whitening.empty()) out.whiten(whitening);
+    if (whitening.part > 0) out.whiten(whitening);
     return out;
   }
   SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
@@ -109,9 +109,14 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   start = starts[0];
   if (best != 0) fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
   const std::vector<std::size_t> all = all_slips(job.observations);
-  const std::vector<double> plain = job.solve(all, tries[best].p, quick).p;
-  job.whitening = job.residuals(all).whitening_at(plain.data());
-  return job.solve(all, plain, SolverOptions());
+  std::vector<double> p = job.solve(all, tries[best].p, quick).p;
+  // The direction in which a slip scatters is that of the law: known better once it has been taken out.
+  const ModelResiduals plain(job.model, job.observations, all, job.loss);
+  for (int pass = 0; pass < 2; ++pass) {
+    job.whitening = plain.whitening_at(p.data());
+    if (pass == 0) p = job.solve(all, p, quick).p;
+  }
+  return job.solve(all, p, SolverOptions());
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
@@ -219,12 +224,10 @@ void fill_parameters(const Job& job, const SolverResult& solution, const std::ve
 void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   fit.floor = estimate_floor(job.motion, job.segmentation);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
-  const std::vector<ModelResiduals::Whitening> whitening =
-      job.whitening.empty() ? job.residuals(all_slips(job.observations)).whitening_at(p.data()) : job.whitening;
+  const ModelResiduals::Whitening whitening =
+      job.whitening.part > 0 ? job.whitening : job.residuals(all_slips(job.observations)).whitening_at(p.data());
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
-  for (const auto& slip : whitening) {
-    sensitivity += slip.g.squaredNorm();
-  }
+  for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   const double scatter = std::pow(fit.floor.scatter, 2) * sensitivity / std::max(1.0, count);
   fit.floor.rmse = std::sqrt(std::pow(fit.floor.noise, 2) + scatter);
   const double above = std::pow(errors.constant_rmse, 2) - std::pow(fit.floor.rmse, 2);

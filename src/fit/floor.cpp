@@ -8,63 +8,82 @@ namespace tribofit {
 
 namespace {
 
-/// Sum of squares about a parabola through samples [begin, end), with its degrees of freedom.
+/// What is left of a stretch of samples about a parabola.
 struct Residual {
-  double squares = 0, freedom = 0;
-  double variance() const { return squares / freedom; }
+  double squares = 0, products = 0;  ///< sums of r_i^2 and r_i r_(i-1)
+  double count = 0;
 };
 
 Residual about_parabola(const std::vector<double>& x, std::size_t begin, std::size_t end) {
   const std::size_t n = end - begin;
   const auto count = static_cast<double>(n);
-  // Moments of the data about the first sample, over u in [-1, 1].
-  double y0 = 0, y1 = 0, y2 = 0, yy = 0;
   const double scale = 2 / (count - 1);
+  const auto grid = [&](std::size_t i) { return scale * static_cast<double>(i) - 1; };
+  double y0 = 0, y1 = 0, y2 = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double u = scale * static_cast<double>(i) - 1, y = x[begin + i] - x[begin];
+    const double u = grid(i), y = x[begin + i] - x[begin];
     y0 += y;
     y1 += u * y;
     y2 += u * u * y;
-    yy += y * y;
   }
   // Sums of u^2 and u^4 over the grid; odd ones vanish.
   const double u2 = count * (count + 1) / (3 * (count - 1));
   const double u4 = u2 * (3 * count * count - 7) / (5 * (count - 1) * (count - 1));
-  const double line = y1 * y1 / u2;
-  const double curve = y2 - y0 * u2 / count;
-  const double squares = yy - y0 * y0 / count - line - curve * curve / (u4 - u2 * u2 / count);
-  return {std::max(0.0, squares), count - 3};
+  const double slope = y1 / u2, bend = (y2 - y0 * u2 / count) / (u4 - u2 * u2 / count);
+  const double level = x[begin] + (y0 - bend * u2) / count;
+  Residual out;
+  out.count = count;
+  double before = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double u = grid(i), r = x[begin + i] - level - slope * u - bend * u * u;
+    out.squares += r * r;
+    out.products += r * before;
+    before = r;
+  }
+  return out;
 }
 
-/// Noise as the pooled spread, leaving out stretches that hold something else (an event, a drop-out).
-double pooled_noise(std::vector<Residual> parts) {
+/// Noise as the pooled spread, leaving out stretches that hold something else (an event, a transient, a drop-out).
+/// A parabola takes three degrees of freedom from white noise, and (1+rho)/(1-rho) times as many from noise whose
+/// neighbours are correlated by rho.
+double pooled_noise(const std::vector<Residual>& parts) {
   if (parts.empty()) return 0;
   std::vector<double> variances;
-  for (const Residual& part : parts) variances.push_back(part.variance());
+  for (const Residual& part : parts) variances.push_back(part.squares / part.count);
   const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
   std::nth_element(variances.begin(), middle, variances.end());
   const double limit = 3 * *middle;
-  double squares = 0, freedom = 0;
+  Residual all;
+  double used = 0;
   for (const Residual& part : parts) {
-    if (part.variance() > limit) continue;
-    squares += part.squares;
-    freedom += part.freedom;
+    if (part.squares / part.count > limit) continue;
+    all.squares += part.squares;
+    all.products += part.products;
+    all.count += part.count;
+    used += 1;
   }
-  return freedom > 0 ? std::sqrt(squares / freedom) : 0;
+  if (!(all.squares > 0)) return 0;
+  const double rho = std::clamp(all.products / all.squares, 0.0, 0.97);
+  const double freedom = all.count - 3 * used * (1 + rho) / (1 - rho);
+  return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
 constexpr std::size_t kShortestStick = 40;    ///< samples that can show a spread
-constexpr std::size_t kLongestStretch = 2000;  ///< samples over which a ramp is a parabola
+constexpr std::size_t kStretch = 400;        ///< samples over which a ramp, even a creeping one, is a parabola
+constexpr std::size_t kStretches = 1000;     ///< enough to know a spread to 0.2 %
 
-/// Middle of every stick: away from the transients of re-stick and break-away.
+/// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
 std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Residual> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
     if (cycle.stick.size() < kShortestStick) continue;
-    const std::size_t begin = cycle.stick.begin + margin;
-    const std::size_t end = std::min(cycle.stick.end - margin, begin + kLongestStretch);
-    parts.push_back(about_parabola(motion.friction, begin, end));
+    const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
+    const std::size_t pieces = std::max<std::size_t>(1, length / kStretch);
+    for (std::size_t k = 0; k < pieces; ++k) {
+      parts.push_back(about_parabola(motion.friction, begin + k * length / pieces, begin + (k + 1) * length / pieces));
+    }
+    if (parts.size() > kStretches) break;
   }
   return parts;
 }
@@ -73,7 +92,7 @@ std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& 
 std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Residual> parts;
   for (const Cycle& cycle : segmentation.cycles) {
-    const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, 400);
+    const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, kStretch);
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
       parts.push_back(about_parabola(motion.friction, i, i + stretch));
     }
@@ -106,7 +125,7 @@ Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
     parts = slip_residuals(motion, segmentation);
     floor.source = "slip";
   }
-  floor.noise = pooled_noise(std::move(parts));
+  floor.noise = pooled_noise(parts);
   floor.scatter = break_away_scatter(segmentation);
   floor.rmse = floor.noise;
   return floor;

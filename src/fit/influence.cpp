@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit {
 
@@ -16,20 +16,15 @@ std::vector<bool> NormalEquations::silent() const {
 NormalEquations normal_equations(const ModelResiduals& residuals, const Observations& observations,
                                  const std::vector<double>& p) {
   const auto n = static_cast<Eigen::Index>(p.size());
-  std::vector<double> r(residuals.count()), jacobian(residuals.count() * p.size());
   NormalEquations equations;
   equations.curvature.assign(observations.cycles, Eigen::MatrixXd::Zero(n, n));
   equations.gradient.assign(observations.cycles, Eigen::VectorXd::Zero(n));
   equations.total = Eigen::MatrixXd::Zero(n, n);
-  if (!residuals.evaluate(p.data(), r.data(), jacobian.data())) return equations;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  for (std::size_t k = 0; k < residuals.slips().size(); ++k) {
+  const std::vector<ModelResiduals::Normal> slips = residuals.normal_equations(p.data());
+  for (std::size_t k = 0; k < slips.size(); ++k) {
     const std::size_t cycle = observations.slips[residuals.slips()[k]].cycle;
-    const std::size_t first = residuals.first_row(k);
-    const Eigen::Map<const RowMajor> j(jacobian.data() + first * p.size(), n + 1, n);
-    const Eigen::Map<const Eigen::VectorXd> residual(r.data() + first, n + 1);
-    equations.curvature[cycle].noalias() += j.transpose() * j;
-    equations.gradient[cycle].noalias() += j.transpose() * residual;
+    equations.curvature[cycle] += slips[k].curvature;
+    equations.gradient[cycle] += slips[k].gradient;
   }
   for (const Eigen::MatrixXd& c : equations.curvature) equations.total += c;
   return equations;

@@ -11,6 +11,11 @@ namespace {
 
 constexpr double kStrongCorrelation = 0.9;
 
+/// "alpha", "rate-state D_c".
+std::string shown_name(const FitParameter& p) {
+  return p.effect.empty() ? p.parameter.name : p.effect + " " + p.parameter.name;
+}
+
 void add_correlations(Fit& fit) {
   const std::size_t n = fit.parameters.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -31,18 +36,18 @@ void add_messages(const std::vector<bool>& silent, Fit& fit) {
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
     if (silent[k] && fit.protocol == Protocol::joint) {
-      fit.messages.push_back(fmt::format("{} was not moved: no sample depends on it", p.parameter.name));
+      fit.messages.push_back(fmt::format("{} was not moved: no sample depends on it", shown_name(p)));
     } else if (p.at_bound) {
       const bool low = std::abs(p.value / p.parameter.si - p.parameter.lower) <
                        std::abs(p.value / p.parameter.si - p.parameter.upper);
-      fit.messages.push_back(fmt::format("{} sits at its {} bound of {:g} {}", p.parameter.name, low ? "lower" : "upper",
-                                         low ? p.parameter.lower : p.parameter.upper, p.parameter.unit));
+      fit.messages.push_back(fmt::format("{} sits at its {} bound of {:g}{}", shown_name(p), low ? "lower" : "upper",
+                                         low ? p.parameter.lower : p.parameter.upper,
+                                         p.parameter.unit == "1" ? "" : " " + p.parameter.unit));
     }
   }
   for (const Correlation& c : fit.correlations) {
     fit.messages.push_back(fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
-                                       fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name,
-                                       c.value));
+                                       shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
   }
   const FrictionModel& model = fit.model;
   if (model.law() == BaseLaw::coulomb || fit.parameters.size() < 3) return;

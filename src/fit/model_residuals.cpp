@@ -60,96 +60,144 @@ bool ModelResiduals::run(const Observations::Range& range, const T* p, Write&& w
   return true;
 }
 
-bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Rows& rows) const {
+bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Block& block) const {
   const auto& range = observations_.slips[slips_[k]];
-  const std::size_t n = parameter_count();
-  const auto count = static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0));
-  rows.jacobian_and_residual.resize(count, with_jacobian ? static_cast<Eigen::Index>(n) + 1 : 1);
-  auto& matrix = rows.jacobian_and_residual;
+  const std::size_t n = with_jacobian ? parameter_count() : 0;
+  const auto residual = static_cast<Eigen::Index>(n);
+  block.resize(static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0)), residual + 2);
   if (!with_jacobian) {
-    if (!run<double>(range, p, [&](std::size_t row, double r) { matrix(Eigen::Index(row), 0) = r; })) return false;
+    if (!run<double>(range, p, [&](std::size_t row, double r) { block(Eigen::Index(row), 0) = r; })) return false;
   }
   std::vector<Dual> dual(n);
-  for (std::size_t first = 0; with_jacobian && first < n; first += kStride) {
+  for (std::size_t first = 0; first < n; first += kStride) {
     const std::size_t last = std::min(n, first + kStride);
     for (std::size_t j = 0; j < n; ++j) {
       dual[j] = j >= first && j < last ? Dual(p[j], static_cast<int>(j - first)) : Dual(p[j]);
     }
     const bool finite = run<Dual>(range, dual.data(), [&](std::size_t row, const Dual& r) {
       const auto i = static_cast<Eigen::Index>(row);
-      matrix(i, Eigen::Index(n)) = r.a;
-      for (std::size_t j = first; j < last; ++j) matrix(i, Eigen::Index(j)) = r.v[Eigen::Index(j - first)];
+      block(i, residual) = r.a;
+      for (std::size_t j = first; j < last; ++j) block(i, Eigen::Index(j)) = r.v[Eigen::Index(j - first)];
     });
     if (!finite) return false;
   }
-  if (whitening_ != nullptr) {
-    const Whitening& w = (*whitening_)[slips_[k]];
-    if (w.part > 0) matrix -= (w.part / w.g.squaredNorm() * w.g) * (w.g.transpose() * matrix).eval();
+  if (whitening_ != nullptr && whitening_->part > 0) {
+    block.col(residual + 1) = whitening_->g[slips_[k]];
+  } else {
+    block.col(residual + 1).setZero();
   }
   return true;
+}
+
+bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks) const {
+  blocks.resize(slips_.size());
+  Block block;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (!fill(k, p, with_jacobian, block)) return false;
+    const Eigen::Index kept = std::min(block.rows(), block.cols());
+    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(block);  // in place
+    blocks[k] = Block::Zero(block.cols(), block.cols());
+    blocks[k].topRows(kept) = block.topRows(kept).triangularView<Eigen::Upper>();
+  }
+  return true;
+}
+
+std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Block>& blocks, double part) const {
+  std::vector<Eigen::RowVectorXd> out;
+  if (part <= 0 || blocks.empty()) return out;
+  const Eigen::Index columns = blocks[0].cols() - 1;
+  Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(columns);
+  double norms = 0;
+  for (const Block& block : blocks) {
+    const auto g = block.col(columns);
+    const double norm = g.squaredNorm();
+    const Eigen::RowVectorXd projection = g.transpose() * block.leftCols(columns);
+    mean += projection;
+    norms += norm;
+    out.push_back(norm > 0 ? Eigen::RowVectorXd(projection / norm) : Eigen::RowVectorXd::Zero(columns));
+  }
+  if (norms > 0) mean /= norms;
+  for (Eigen::RowVectorXd& own : out) own = part * (mean - own);
+  return out;
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
-  const auto n = static_cast<Eigen::Index>(parameter_count());
-  Rows rows;
+  const auto n = static_cast<Eigen::Index>(jacobian != nullptr ? parameter_count() : 0);
+  std::vector<Block> blocks;
+  if (!compressed(p, jacobian != nullptr, blocks)) return false;
+  const auto added = corrections(blocks, whitening_ != nullptr ? whitening_->part : 0);
   std::fill_n(residual, count(), 0.0);
-  if (jacobian != nullptr) std::fill_n(jacobian, count() * parameter_count(), 0.0);
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, jacobian != nullptr, rows)) return false;
-    double* r = residual + first_row(k);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    Block& block = blocks[k];
+    if (!added.empty()) block.leftCols(n + 1) += block.col(n + 1) * added[k];
     if (jacobian == nullptr) {
-      r[0] = rows.residual().norm();
+      residual[k * rows_per_slip()] = block.col(0).norm();
       continue;
     }
-    Eigen::MatrixXd& matrix = rows.jacobian_and_residual;
-    const Eigen::Index kept = std::min(matrix.rows(), n + 1);
-    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(matrix);  // in place
-    for (Eigen::Index i = 0; i < kept; ++i) {
-      r[i] = i <= n ? matrix(i, n) : 0;
-      for (Eigen::Index j = i; j < n; ++j) jacobian[(first_row(k) + std::size_t(i)) * std::size_t(n) + std::size_t(j)] = matrix(i, j);
-    }
+    Eigen::Map<Eigen::VectorXd>(residual + k * rows_per_slip(), n + 2) = block.col(n);
+    Eigen::Map<RowMajor>(jacobian + k * rows_per_slip() * std::size_t(n), n + 2, n) = block.leftCols(n);
   }
   return true;
 }
 
-std::vector<double> ModelResiduals::squares(const double* p) const {
-  std::vector<double> out;
-  Rows rows;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, false, rows)) return {};
-    out.push_back(rows.residual().squaredNorm());
+std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const double* p) const {
+  const auto n = static_cast<Eigen::Index>(parameter_count());
+  std::vector<Block> blocks;
+  if (!compressed(p, true, blocks)) return {};
+  const double part = whitening_ != nullptr ? whitening_->part : 0;
+  const auto once = corrections(blocks, part), twice = corrections(blocks, 2 * part - part * part);  // M and M M
+  std::vector<Normal> out;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Block& block = blocks[k];
+    Eigen::MatrixXd white = block.leftCols(n), whiter = white;
+    if (!once.empty()) {
+      white += block.col(n + 1) * once[k].head(n);
+      whiter += block.col(n + 1) * twice[k].head(n);
+    }
+    out.push_back({white.transpose() * white, whiter.transpose() * block.col(n)});
   }
   return out;
 }
 
-std::vector<ModelResiduals::Whitening> ModelResiduals::whitening_at(const double* p) const {
-  std::vector<Whitening> out(observations_.slips.size());
+std::vector<double> ModelResiduals::squares(const double* p) const {
+  std::vector<double> out;
+  Block block;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (!fill(k, p, false, block)) return {};
+    out.push_back(block.col(0).squaredNorm());
+  }
+  return out;
+}
+
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
+  const auto residual = static_cast<Eigen::Index>(parameter_count());
+  Whitening out;
+  out.g.resize(observations_.slips.size());
   const bool breaks_away = std::any_of(slips_.begin(), slips_.end(),
                                        [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
   // delta_i of each slip by least squares, and what noise is left once it is taken out.
   std::vector<double> deltas;
-  double left = 0, freedom = 0;
-  Rows rows;
+  double left = 0, freedom = 0, norms = 0;
+  Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, true, rows)) return std::vector<Whitening>(observations_.slips.size());
-    Eigen::VectorXd& g = out[slips_[k]].g;
-    g = rows.jacobian_and_residual.col(0);
+    if (!fill(k, p, true, block)) return out;
+    Eigen::VectorXd& g = out.g[slips_[k]];
+    g = block.col(0);
     const double norm = g.squaredNorm();
     if (!(norm > 0)) continue;
-    const double projection = g.dot(rows.residual());
+    const double projection = g.dot(block.col(residual));
     deltas.push_back(projection / norm);
-    left += rows.residual().squaredNorm() - projection * projection / norm;
+    left += block.col(residual).squaredNorm() - projection * projection / norm;
     freedom += static_cast<double>(g.size()) - 1;
+    norms += norm;
   }
+  const auto n = static_cast<double>(deltas.size());
   double mean = 0, scatter = 0;
-  for (const double delta : deltas) mean += delta / static_cast<double>(deltas.size());
-  for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / static_cast<double>(deltas.size());
-  const double noise = freedom > 0 ? left / freedom : 0;
-  for (const std::size_t s : slips_) {
-    const double norm = out[s].g.squaredNorm();
-    if (norm > 0 && noise > 0) out[s].part = 1 - 1 / std::sqrt(1 + scatter * norm / noise);
-  }
+  for (const double delta : deltas) mean += delta / n;
+  for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / n;
+  if (left > 0 && freedom > 0) out.part = 1 - 1 / std::sqrt(1 + scatter * norms / n * freedom / left);
   return out;
 }
 

@@ -86,6 +86,31 @@ class Reducer {
   std::size_t per_value_;
 };
 
+/// Keeps the last samples of each stick. Over 10 ms the velocity's offset has not moved a bristle by much, and friction is
+/// known at the beginning as the mean over a millisecond.
+void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
+  constexpr double kLead = 10e-3, kMean = 1e-3;  // [s]
+  for (const Cycle& cycle : segmentation.cycles) {
+    for (auto& slip : out.slips) {
+      if (!slip.from_stick || slip.samples.begin != cycle.slip.begin) continue;
+      const auto samples = [&](double seconds) { return static_cast<std::size_t>(seconds / motion.step); };
+      const std::size_t length = std::min(samples(kLead), cycle.stick.size() / 2);
+      const std::size_t averaged = std::max<std::size_t>(3, samples(kMean));
+      if (length < 2 * averaged) continue;
+      const std::size_t first = slip.samples.begin - length;
+      double sum = 0;
+      for (std::size_t i = first; i < first + averaged; ++i) sum += motion.friction[i];
+      slip.lead_friction = sum / static_cast<double>(averaged);
+      slip.lead_begin = out.lead_time.size();
+      for (std::size_t i = first + averaged / 2; i < slip.samples.begin; ++i) {
+        out.lead_time.push_back(motion.time[i]);
+        out.lead_velocity.push_back(motion.relative_velocity[i]);
+      }
+      slip.lead_end = out.lead_time.size();
+    }
+  }
+}
+
 double mean_of(const std::vector<double>& x, double otherwise) {
   if (x.empty()) return otherwise;
   double sum = 0;
@@ -109,6 +134,12 @@ Slip Observations::slip(const Range& range) const {
   slip.load = part(load);
   slip.temperature = part(temperature);
   slip.velocity_variance = part(velocity_variance);
+  if (range.lead_end > range.lead_begin) {
+    const std::size_t count = range.lead_end - range.lead_begin;
+    slip.lead_time = std::span<const double>(lead_time).subspan(range.lead_begin, count);
+    slip.lead_velocity = std::span<const double>(lead_velocity).subspan(range.lead_begin, count);
+    slip.lead_friction = range.lead_friction;
+  }
   slip.from_stick = range.from_stick;
   slip.break_away_time = range.break_away_time;
   slip.stick_time = range.stick_time;
@@ -140,6 +171,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.weight.push_back(static_cast<double>(end - begin));
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
+  if (needs.lead) add_leads(motion, segmentation, out);
   if (out.samples_per_value > 1) {
     std::size_t value = 0;
     reduce.each([&](std::size_t begin, std::size_t end) {

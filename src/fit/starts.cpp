@@ -37,7 +37,7 @@ std::vector<SpeedBin> bin_by_speed(const Observations& observations) {
   return bins;
 }
 
-/// Least squares of friction = mu_k + drop * shape(decay v) with the decay factor given.
+/// Least squares of friction = mu_k + drop * shape(decay v) with the decay factor given, mu_k not below zero.
 struct Levels {
   double mu_k = 0, drop = 0, cost = 0;
 };
@@ -61,7 +61,9 @@ Levels fit_levels(BaseLaw law, double decay, const std::vector<SpeedBin>& bins) 
   } else if (w > 0) {
     levels.mu_k = y / w;
   }
-  levels.cost = yy - levels.mu_k * y - levels.drop * ys;
+  if (levels.mu_k < 0 && ss > 0) levels = {0, ys / ss, 0};
+  const auto [k, d, unused] = levels;
+  levels.cost = yy - 2 * (k * y + d * ys) + k * k * w + 2 * k * d * s + d * d * ss;
   return levels;
 }
 

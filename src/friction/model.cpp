@@ -60,6 +60,7 @@ Channels FrictionModel::needs() const {
     all.load |= c.load;
     all.temperature |= c.temperature;
     all.stick_time |= c.stick_time;
+    all.lead |= c.lead;
   }
   return all;
 }

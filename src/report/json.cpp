@@ -85,8 +85,8 @@ Json health_json(const Motion& motion) {
   return items;
 }
 
-Json measure_json(const Measure& measure, std::size_t cycles, double unit) {
-  const Interval ci = interval_of(measure, cycles);
+Json measure_json(const Measure& measure, double unit) {
+  const Interval ci = interval_of(measure);
   return {{"value", number(measure.value / unit)},
           {"std_error", number(measure.std_error / unit)},
           {"ci95", interval(ci.lower / unit, ci.upper / unit)}};
@@ -106,9 +106,8 @@ std::string_view name_of(MotionKind kind) {
 
 Json stick_slip_json(const Identification& result) {
   const Segmentation& s = result.segmentation;
-  const std::size_t n = s.cycles.size();
   Json json = {{"cycles", count_of_cycles(s)},
-               {"frequency_hz", measure_json(s.frequency, n, 1)},
+               {"frequency_hz", measure_json(s.frequency, 1)},
                {"amplitude_mm_s", number(s.amplitude.value / kMillimetre)},
                {"rms_velocity_mm_s", number(s.rms_velocity / kMillimetre)},
                {"stick_time_s", number(s.stick_time.value)},
@@ -116,6 +115,11 @@ Json stick_slip_json(const Identification& result) {
                {"stick_time_std_error_s", number(s.stick_time.std_error)},
                {"slip_time_s", number(s.slip_time.value)},
                {"slip_time_std_error_s", number(s.slip_time.std_error)},
+               {"slips", s.cycles.size()},
+               {"sticks_over_1_s", long_sticks(s).count},
+               {"longest_stick_s", number(long_sticks(s).longest)},
+               {"branch_difference", number(s.branch_difference.value)},
+               {"branch_difference_std_error", number(s.branch_difference.std_error)},
                {"motion", name_of(s.kind)},
                {"notes", s.notes}};
   const SpectralPeak& peak = result.spectral_peak;

@@ -5,16 +5,24 @@
 #include <utility>
 
 #include "tribofit/fit/observations.hpp"
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
 
-Interval interval_of(const Measure& measure, std::size_t cycles) {
-  // Measures have no degrees of freedom of their own: as many as there are independent differences of cycles.
-  const double freedom = std::max(1.0, static_cast<double>(cycles) - 2);
-  const double half = t_quantile_95(freedom) * measure.std_error;
+Interval interval_of(const Measure& measure) {
+  const double half = t_quantile_95(measure.degrees_of_freedom) * measure.std_error;
   return {measure.value - half, measure.value + half};
+}
+
+LongSticks long_sticks(const Segmentation& segmentation) {
+  LongSticks out{0, std::nan("")};
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (!(cycle.stick_time > 0)) continue;
+    if (cycle.stick_time > 1) ++out.count;
+    if (!(out.longest >= cycle.stick_time)) out.longest = cycle.stick_time;
+  }
+  return out;
 }
 
 std::size_t count_of_cycles(const Segmentation& segmentation) {

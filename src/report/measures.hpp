@@ -18,7 +18,14 @@ struct Interval {
 };
 
 /// 95 % interval of a mean over cycles.
-Interval interval_of(const Measure& measure, std::size_t cycles);
+Interval interval_of(const Measure& measure);
+
+/// Sticks of more than a second, and the longest [s] (NaN where none is complete).
+struct LongSticks {
+  std::size_t count = 0;
+  double longest = 0;
+};
+LongSticks long_sticks(const Segmentation& segmentation);
 
 /// Cycles with a stick and a slip.
 std::size_t count_of_cycles(const Segmentation& segmentation);

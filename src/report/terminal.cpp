@@ -103,7 +103,9 @@ std::string motion_sentence(const Segmentation& s) {
     case MotionKind::stick_slip:
       break;
   }
-  return fmt::format("{} with a stick and a slip", count_of_cycles(s));
+  const std::size_t both = count_of_cycles(s);
+  if (both == s.cycles.size()) return fmt::format("{} with a stick and a slip", both);
+  return fmt::format("{} with a stick and a slip ({} slips in all)", both, s.cycles.size());
 }
 
 std::string stick_slip_lines(const Identification& r, const Style& style) {
@@ -125,8 +127,17 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
                       significant(peak.bin_frequency, 4), significant(peak.bin_width, 3)));
     }
     measure("amplitude of v_r", s.amplitude, kMillimetre, "mm/s");
-    measure("stick time", s.stick_time, kMillisecond, "ms");
+    const LongSticks sticks = long_sticks(s);
+    const bool uneven = sticks.longest > 3 * s.stick_time.value;
+    measure("stick time", s.stick_time, kMillisecond, "ms",
+            uneven ? fmt::format("; the longest {} s, {} over 1 s", significant(sticks.longest, 3), sticks.count) : "");
     measure("slip time", s.slip_time, kMillisecond, "ms");
+  }
+  const Measure& branches = s.branch_difference;
+  const Interval interval = interval_of(branches);
+  if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
+    measure("branches", branches, 1, r.motion.friction_kind == FrictionKind::force ? "N" : "",
+            fmt::format("friction is {} while speeding up than while slowing down", branches.value > 0 ? "higher" : "lower"));
   }
   if (s.rms_velocity > 0) text += item(style, "RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   for (const std::string& note : s.notes) text += item(style, "note", note);

@@ -124,6 +124,8 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
     const auto [slowest, fastest] = kinematics::extremes(velocity.subspan(c.slip.begin, c.slip.size()));
     c.slip_minimum = c.direction > 0 ? weakest : -strongest;
     c.peak_velocity = c.direction > 0 ? fastest : -slowest;
+    c.branch_difference = segmentation::branch_difference(velocity.subspan(c.slip.begin, c.slip.size()),
+                                                          friction.subspan(c.slip.begin, c.slip.size()), c.direction);
     if (c.slip_complete) c.slip_time = c.restick_time - c.break_away_time;
     if (k + 1 < cycles.size() && cycles[k + 1].direction == c.direction) {
       c.period = cycles[k + 1].break_away_time - c.break_away_time;
@@ -168,12 +170,13 @@ double rms_block_velocity(const Motion& motion) {
 }
 
 void summarise(Segmentation& result) {
-  std::vector<double> peaks, sticks, slips, periods;
+  std::vector<double> peaks, sticks, slips, periods, branches;
   for (const Cycle& c : result.cycles) {
     if (c.slip_complete) peaks.push_back(c.peak_velocity);
     sticks.push_back(c.stick_time);
     slips.push_back(c.slip_time);
     periods.push_back(c.period);
+    branches.push_back(c.branch_difference);
   }
   if (peaks.empty()) {
     for (const Cycle& c : result.cycles) peaks.push_back(c.peak_velocity);
@@ -181,6 +184,7 @@ void summarise(Segmentation& result) {
   result.frequency = segmentation::frequency_of(periods);
   result.amplitude = segmentation::mean_over_cycles(std::move(peaks));
   result.stick_time = segmentation::mean_over_cycles(std::move(sticks));
+  result.branch_difference = segmentation::mean_over_cycles(std::move(branches));
   result.slip_time = segmentation::mean_over_cycles(std::move(slips));
 }
 

@@ -1,29 +1,48 @@
 #include "measures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit::segmentation {
 
 Measure mean_over_cycles(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !(v == v); });
-  const std::size_t n = values.size();
-  if (n < 2) return {n == 1 ? values[0] : std::nan(""), std::nan("")};
+  if (values.empty()) return {std::nan(""), std::nan("")};
   double sum = 0;
   for (double v : values) sum += v;
-  const double count = static_cast<double>(n), mean = sum / count;
-  const auto covariance = [&](std::size_t lag) {
-    double c = 0;
-    for (std::size_t i = lag; i < n; ++i) c += (values[i] - mean) * (values[i - lag] - mean);
-    return c / count;
-  };
-  const double independent = covariance(0) * count / (count - 1);
-  const auto lags = static_cast<std::size_t>(std::cbrt(count));
-  double correlated = covariance(0);
-  for (std::size_t lag = 1; lag <= lags && lag < n; ++lag) {
-    correlated += 2 * (1 - static_cast<double>(lag) / static_cast<double>(lags + 1)) * covariance(lag);
+  const MeanError error = mean_error(values);
+  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
+}
+
+double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction) {
+  constexpr std::size_t bins = 10;
+  const auto speed = [&](std::size_t i) { return direction * velocity[i]; };
+  std::size_t top = 0;
+  for (std::size_t i = 1; i < velocity.size(); ++i) {
+    if (speed(i) > speed(top)) top = i;
   }
-  return {mean, std::sqrt(std::max(independent, correlated) / count)};
+  if (velocity.empty() || !(speed(top) > 0)) return std::nan("");
+  struct Bin {
+    double sum = 0, count = 0;
+  };
+  std::array<Bin, bins> up{}, down{};
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double place = (speed(i) / speed(top) - 0.25) / 0.5;  // 0 at a quarter of the peak, 1 at three quarters
+    if (!(place >= 0 && place < 1)) continue;
+    Bin& bin = (i < top ? up : down)[static_cast<std::size_t>(place * bins)];
+    bin.sum += direction * friction[i];
+    bin.count += 1;
+  }
+  double difference = 0, compared = 0;
+  for (std::size_t k = 0; k < bins; ++k) {
+    if (up[k].count == 0 || down[k].count == 0) continue;
+    difference += up[k].sum / up[k].count - down[k].sum / down[k].count;
+    compared += 1;
+  }
+  return compared > 0 ? difference / compared : std::nan("");
 }
 
 Measure frequency_of(const std::vector<double>& periods) {
@@ -43,7 +62,7 @@ Measure frequency_of(const std::vector<double>& periods) {
   const double limit = std::max(3 * 1.4826 * median(std::move(deviation)), 0.02 * centre);
   std::erase_if(known, [&](double p) { return std::abs(p - centre) > limit; });
   const Measure period = mean_over_cycles(std::move(known));
-  return {1 / period.value, period.std_error / (period.value * period.value)};
+  return {1 / period.value, period.std_error / (period.value * period.value), period.degrees_of_freedom};
 }
 
 }  // namespace tribofit::segmentation

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "tribofit/segmentation/cycles.hpp"
 
 namespace tribofit::segmentation {
 
-/// Mean of the values that are not NaN, with a standard error that stands correlated cycles: the larger of the one for
-/// independent values and that of Newey and West (1987) with n^(1/3) lags. NaN where there are fewer than two values.
+/// Mean of the values that are not NaN, with a standard error that stands correlated cycles (mean_error.hpp). NaN where
+/// there are no values; its error is NaN where there are fewer than three.
 Measure mean_over_cycles(std::vector<double> values);
+
+/// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed between
+/// a quarter and three quarters of the peak. NaN where the slip does not show both branches.
+double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction);
 
 /// Frequency from the periods: one over their mean without those further than three robust standard deviations from the
 /// median (a long stick, a missed slip), which belong to another motion.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "synthetic.hpp"
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace {
 
@@ -55,7 +55,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"coulomb", BaseLaw::coulomb, {}, {}},
                     Case{"viscous", BaseLaw::exponential, {make_effect("viscous")}, {1.2}},
                     Case{"rate_state", BaseLaw::exponential, {make_effect("rate-state")}, {60e-6, 0.004}},
-                    Case{"bristle", BaseLaw::exponential, {make_effect("bristle")}, {60e3, 2.0}},
                     Case{"formula", BaseLaw::exponential,
                          {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")}, {0.02, 25, 6}}),
     [](const auto& c) { return std::string(c.param.name); });

@@ -85,12 +85,14 @@ TEST(Bristle, IsElasticBelowBreakAwayAndSteadyFarFromIt) {
   // dF/dx = sigma0 (1 - F/f) at constant f: F = f (1 - exp(-sigma0 x/f)) from F = 0.
   const double stiffness = 60e3, level = 0.3, speed = 1e-3, step = 1e-4;
   Steady at(speed, step, 100);
+  const double lead_time[] = {0}, lead_velocity[] = {speed};  // F = 0 one step before the first sample
   at.slip.from_stick = true;
-  at.slip.stick_slope = stiffness * speed;  // all of the motion is elastic: F = 0 at the first sample
+  at.slip.lead_time = lead_time;
+  at.slip.lead_velocity = lead_velocity;
   const FrictionModel model(BaseLaw::coulomb, {make_effect("bristle")});
-  const std::vector<double> mu = run(model, {0.5, level, stiffness, 0.0}, at.slip);
+  const std::vector<double> mu = run(model, {level, level, stiffness, 0.0}, at.slip);
   for (std::size_t i = 0; i < mu.size(); i += 10) {
-    EXPECT_NEAR(mu[i], level * (1 - std::exp(-stiffness * speed * step * static_cast<double>(i) / level)), 1e-9);
+    EXPECT_NEAR(mu[i], level * (1 - std::exp(-stiffness * speed * at.time[i] / level)), 1e-9);
   }
   const Steady far(0.05, 1e-3, 100);
   EXPECT_NEAR(run(model, {0.5, level, stiffness, 0.0}, far.slip)[99], level, 1e-9);

@@ -32,12 +32,15 @@ struct Observations {
     double direction = 1;
     double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
     double break_away_std_error = 0;
+    std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
+    double lead_friction = 0;                  ///< signed, at the first of them
   };
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]
   std::vector<double> velocity_variance;         ///< of v_r within each value [m^2/s^2]; empty when values are samples
   std::vector<double> weight, root_weight;       ///< samples behind each value, and its square root
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
+  std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<Range> slips;
   std::size_t cycles = 0;             ///< units of evidence
   std::size_t samples_per_value = 1;

@@ -90,13 +90,9 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, s
     phi = at_rest;
     previous = slip.break_away_time;
     before = effect.relaxation(q, slip.at(0, T(0.0 * velocity[0])), at_rest);
-  } else if constexpr (in_stick) {
-    if (slip.from_stick) phi = effect.start(q, slip, velocity[0], steady[0]);
   }
-  for (std::size_t i = 0; i < slip.size(); ++i) {
-    const Instant<T> at = slip.at(i, velocity[i]);
-    const Relaxation<T> now = effect.relaxation(q, at, steady[i]);
-    const double interval = slip.time[i] - previous;
+  const auto advance = [&](double time, const Relaxation<T>& now) {
+    const double interval = time - previous;
     if (interval > 0) {
       const T a = 0.5 * interval * (before.rate + now.rate);
       const T e = exp(-a);
@@ -104,8 +100,27 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, s
       const T mean = scalar_part(a) > 1e-5 ? T((1.0 - e) / a) : T(1.0 - 0.5 * a);
       phi = e * phi + (1.0 - e) * before.target + (1.0 - mean) * (now.target - before.target);
     }
-    previous = slip.time[i];
+    previous = time;
     before = now;
+  };
+  if (in_stick && !slip.lead_time.empty()) {
+    // In stick the steady friction is that at rest; noise may turn v_r round, and the memory follows it.
+    Instant<T> at = slip.at(0, T(0.0 * velocity[0]));
+    for (std::size_t i = 0; i < slip.lead_time.size(); ++i) {
+      at.velocity = T(slip.lead_velocity[i] + 0.0 * velocity[0]);
+      at.direction = slip.lead_velocity[i] < 0 ? -1 : 1;
+      const Relaxation<T> now = effect.relaxation(q, at, at_rest);
+      if (i == 0) {
+        phi = T(slip.lead_friction + 0.0 * velocity[0]);
+        previous = slip.lead_time[0];
+        before = now;
+      }
+      advance(slip.lead_time[i], now);
+    }
+  }
+  for (std::size_t i = 0; i < slip.size(); ++i) {
+    const Instant<T> at = slip.at(i, velocity[i]);
+    advance(slip.time[i], effect.relaxation(q, at, steady[i]));
     if constexpr (hooks::Outputs<E, T>) {
       steady[i] = effect.output(q, at, steady[i], phi);
     } else {

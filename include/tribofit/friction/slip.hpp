@@ -37,6 +37,9 @@ struct Instant {
 struct Slip {
   std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
   std::span<const double> velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
+  /// Samples of the stick just before break-away, for effects that act there, and friction (signed) at the first of them.
+  std::span<const double> lead_time, lead_velocity;
+  double lead_friction = 0;
   bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
   double break_away_time = 0;  ///< [s], where from_stick
   double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded

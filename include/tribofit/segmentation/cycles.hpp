@@ -38,6 +38,7 @@ struct Cycle {
   double slip_minimum = 0;      ///< smallest sample in slip: kinetic friction of [D] 3.2
   double peak_velocity = 0;     ///< largest |v_r| in the slip [m/s]
   double plateau_velocity = 0;  ///< mean of v_r in the stick [m/s]
+  double branch_difference = 0;  ///< see Segmentation::branch_difference [1 or N]
 };
 
 /// What kind of motion the record holds.
@@ -49,7 +50,8 @@ enum class MotionKind {
 
 /// Mean of a per-cycle measure with its standard error over cycles.
 struct Measure {
-  double value = 0, std_error = 0;
+  double value = 0, std_error = 0;  ///< see mean_error.hpp
+  double degrees_of_freedom = 1;    ///< of the t distribution of its error
 };
 
 /// Stick and slip of a whole record.
@@ -62,6 +64,9 @@ struct Segmentation {
   Measure frequency;               ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
   Measure amplitude;               ///< of v_r: peak |v_r| over cycles [m/s]
   Measure stick_time, slip_time;   ///< [s]
+  /// Friction while speeding up less friction while slowing down, at the same speeds between a quarter and three
+  /// quarters of the peak [1 or N]: zero for a law of speed alone.
+  Measure branch_difference;
   double rms_velocity = 0;         ///< of the block velocity [m/s]
   std::vector<std::string> notes;  ///< what a person should know ("never sticks", "the first slip is cut off")
 };

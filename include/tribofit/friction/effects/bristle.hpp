@@ -19,7 +19,8 @@ struct Bristle {
             .source = "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
                       "(1995) 419, doi:10.1109/9.376053",
             .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
-            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0.0}}};
+            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0.0}},
+            .needs = {.lead = true}};
   }
 
   template <class T>
@@ -32,15 +33,6 @@ struct Bristle {
   template <class T>
   T output(const T* p, const Instant<T>& x, const T& steady, const T& force) const {
     return force + p[1] * x.velocity * (1.0 - x.direction * force / steady);
-  }
-
-  /// F at the first slipping sample. Until inertia matters the spring imposes dF/dt, and dF/dt = sigma0 v (1 - F/f).
-  template <class T>
-  T start(const T* p, const Slip& slip, const T& velocity, const T& steady) const {
-    using std::abs;
-    const T level = steady * (1.0 - std::abs(slip.stick_slope) / (p[0] * abs(velocity)));
-    const T clipped = scalar_part(level) > 0 ? level : T(0.0 * level);
-    return slip.direction < 0 ? T(-clipped) : clipped;
   }
 
   /// v_r [m/s] in stick while the spring raises friction from `mu` at `slope` [1/s]: dF/dt = sigma0 v (1 - F/mu_s).

@@ -1,4 +1,4 @@
-#include "tribofit/fit/uncertainty.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
