@@ -86,28 +86,46 @@ class Reducer {
   std::size_t per_value_;
 };
 
-/// Keeps the last samples of each stick. Over 10 ms the velocity's offset has not moved a bristle by much, and friction is
-/// known at the beginning as the mean over a millisecond.
+/// Mean of x over the samples of a window about i.
+double mean_about(const std::vector<double>& x, std::size_t i, std::size_t half) {
+  const std::size_t begin = i - std::min(i, half), end = std::min(x.size(), i + half + 1);
+  double sum = 0;
+  for (std::size_t k = begin; k < end; ++k) sum += x[k];
+  return sum / static_cast<double>(end - begin);
+}
+
+/// Keeps the velocity of each stick from where creep stands out of the noise, 10 ms before break-away at most, and friction
+/// there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a memory that turns with the sign
+/// of v_r it would pass for motion, so the velocity is averaged over a millisecond.
 void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
   constexpr double kLead = 10e-3, kMean = 1e-3;  // [s]
+  const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kMean / motion.step));
+  // Three standard deviations of the mean, twice over for noise that is coloured.
+  const double noise = 6 * motion.velocity_noise / std::sqrt(2.0 * static_cast<double>(half) + 1);
+  auto slip = out.slips.begin();
   for (const Cycle& cycle : segmentation.cycles) {
-    for (auto& slip : out.slips) {
-      if (!slip.from_stick || slip.samples.begin != cycle.slip.begin) continue;
-      const auto samples = [&](double seconds) { return static_cast<std::size_t>(seconds / motion.step); };
-      const std::size_t length = std::min(samples(kLead), cycle.stick.size() / 2);
-      const std::size_t averaged = std::max<std::size_t>(3, samples(kMean));
-      if (length < 2 * averaged) continue;
-      const std::size_t first = slip.samples.begin - length;
-      double sum = 0;
-      for (std::size_t i = first; i < first + averaged; ++i) sum += motion.friction[i];
-      slip.lead_friction = sum / static_cast<double>(averaged);
-      slip.lead_begin = out.lead_time.size();
-      for (std::size_t i = first + averaged / 2; i < slip.samples.begin; ++i) {
-        out.lead_time.push_back(motion.time[i]);
-        out.lead_velocity.push_back(motion.relative_velocity[i]);
-      }
-      slip.lead_end = out.lead_time.size();
+    while (slip != out.slips.end() && slip->samples.begin < cycle.slip.begin) ++slip;
+    if (slip == out.slips.end()) break;
+    if (slip->samples.begin != cycle.slip.begin) continue;
+    if (!slip->from_stick) {  // a record or a reversal begins it: all that is known is friction there
+      slip->lead_begin = out.lead_time.size();
+      slip->lead_end = slip->lead_begin + 1;
+      slip->lead_friction = mean_about(motion.friction, slip->samples.begin, half / 2);
+      out.lead_time.push_back(motion.time[slip->samples.begin]);
+      out.lead_velocity.push_back(motion.relative_velocity[slip->samples.begin]);
+      continue;
     }
+    const auto longest = static_cast<std::size_t>(kLead / motion.step);
+    std::size_t first = slip->samples.begin;
+    const std::size_t earliest = first - std::min(longest, cycle.stick.size() / 2);
+    while (first > earliest && std::abs(mean_about(motion.relative_velocity, first - 1, half)) > noise) --first;
+    slip->lead_friction = mean_about(motion.friction, first - std::min(first, half), half);
+    slip->lead_begin = out.lead_time.size();
+    for (std::size_t i = first - std::min(first, half); i < slip->samples.begin; ++i) {
+      out.lead_time.push_back(motion.time[i]);
+      out.lead_velocity.push_back(mean_about(motion.relative_velocity, i, half));
+    }
+    slip->lead_end = out.lead_time.size();
   }
 }
 

@@ -54,6 +54,40 @@ TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
   }
 }
 
+struct Hidden {
+  const char* key;
+  std::vector<double> parameters;  ///< SI
+  std::size_t main;                ///< the parameter that tells
+};
+
+/// An effect at work in the simulated contact comes back when it is added to the model, and the error falls to the floor.
+TEST(Effects, ComeBackFromTheRigTheyWereSimulatedOn) {
+  const Hidden hidden[] = {{"viscous", {1.0}, 0}, {"rate-state", {60e-6, 0.0}, 0}, {"bristle", {80e3, 2.0}, 0}};
+  for (const Hidden& h : hidden) {
+    TwinOptions options;
+    options.effects = {make_effect(h.key)};
+    options.effect_parameters = h.parameters;
+    options.scatter = 0.002;
+    const Twin twin = make_twin(options);
+    const auto fitted = [&](const FrictionModel& model) {
+      FitOptions fit;
+      fit.threads = 1;
+      return fit_model(model, twin.motion, twin.segmentation,
+                       observe(twin.motion, twin.segmentation, model.needs(), 1000), {}, fit);
+    };
+    const Fit bare = fitted(FrictionModel(BaseLaw::exponential));
+    const Fit fit = fitted(FrictionModel(BaseLaw::exponential, options.effects));
+    const FitParameter& p = fit.parameters[3 + h.main];
+    std::printf("%-10s %s = %.4g (%.4g..%.4g), truth %.4g; held-out RMSE %.5f -> %.5f, floor %.5f\n", h.key,
+                p.parameter.name.c_str(), p.value / p.parameter.si, p.lower95 / p.parameter.si,
+                p.upper95 / p.parameter.si, h.parameters[h.main] / p.parameter.si, bare.error.held_out_rmse,
+                fit.error.held_out_rmse, twin.floor_rmse);
+    EXPECT_NEAR(p.value / h.parameters[h.main], 1, 0.1) << h.key;
+    EXPECT_LT(fit.error.held_out_rmse, 1.1 * twin.floor_rmse) << h.key;
+    EXPECT_GT(bare.error.held_out_rmse, 1.2 * fit.error.held_out_rmse) << h.key;
+  }
+}
+
 struct Condition {
   const char* name;
   double colour, scatter, wander;

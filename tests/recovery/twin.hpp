@@ -22,11 +22,14 @@ struct TwinOptions {
   double scatter = 0.004;
   double wander = 0;      ///< of the scatter, per cycle
   std::uint64_t seed = 1;
+  std::vector<tribofit::Effect> effects = {};
+  std::vector<double> effect_parameters = {};  ///< SI, in the order of the effects
 };
 
 struct Twin {
   tribofit::PublishedTest test;
-  std::vector<double> truth;  ///< mu_s, mu_k, decay factor (SI)
+  std::vector<double> truth;  ///< mu_s, mu_k, decay factor, parameters of effects (SI)
+  double floor_rmse = 0;      ///< what the true law leaves over slip
   tribofit::Motion motion;
   tribofit::Segmentation segmentation;
 };
@@ -37,7 +40,8 @@ inline Twin make_twin(const TwinOptions& o) {
   Twin twin;
   twin.test = published_test(o.radius, o.law);
   twin.truth = {twin.test.friction.mu_s, twin.test.friction.mu_k, twin.test.friction.decay};
-  const FrictionModel model(o.law);
+  const FrictionModel model(o.law, o.effects);
+  twin.truth.insert(twin.truth.end(), o.effect_parameters.begin(), o.effect_parameters.end());
   Drive drive;
   drive.speed = constant_speed(twin.test.speed);
   drive.radius = twin.test.radius;
@@ -55,7 +59,9 @@ inline Twin make_twin(const TwinOptions& o) {
   sensors.friction_resolution = 1e-5;
   sensors.velocity_resolution = 1e-7;
   sensors.seed = o.seed + 1000000;
-  Trace trace = record(motion, model, twin.truth, sensors).trace;
+  Recording recording = record(motion, model, twin.truth, sensors);
+  twin.floor_rmse = floor_rmse(motion, recording, model, twin.truth);
+  Trace trace = std::move(recording.trace);
   trace.conditions.radius = {twin.test.radius, "command line"};
   trace.conditions.speed = {twin.test.speed, "command line"};
   trace.conditions.load = {twin.test.load, "command line"};

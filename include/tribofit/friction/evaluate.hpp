@@ -76,9 +76,10 @@ namespace detail {
 ///
 /// Over each interval the exponent A (the mean rate times the interval) and a target linear in A give the exact solution
 /// phi+ = e phi + (1-e) g0 + (1 - (1-e)/A) (g1 - g0), e = exp(-A).
-template <class E, class T>
-void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, std::span<const T> velocity,
-              std::span<T> steady) {
+/// steady_at(instant): friction before any memory, for samples of the lead.
+template <class E, class T, class Steady>
+void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, const Steady& steady_at,
+              std::span<const T> velocity, std::span<T> steady) {
   using std::exp;
   if (slip.size() == 0) return;
   constexpr bool in_stick = hooks::ActsInStick<E>;
@@ -104,12 +105,11 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, s
     before = now;
   };
   if (in_stick && !slip.lead_time.empty()) {
-    // In stick the steady friction is that at rest; noise may turn v_r round, and the memory follows it.
     Instant<T> at = slip.at(0, T(0.0 * velocity[0]));
     for (std::size_t i = 0; i < slip.lead_time.size(); ++i) {
       at.velocity = T(slip.lead_velocity[i] + 0.0 * velocity[0]);
       at.direction = slip.lead_velocity[i] < 0 ? -1 : 1;
-      const Relaxation<T> now = effect.relaxation(q, at, at_rest);
+      const Relaxation<T> now = effect.relaxation(q, at, steady_at(at));
       if (i == 0) {
         phi = T(slip.lead_friction + 0.0 * velocity[0]);
         previous = slip.lead_time[0];
@@ -193,7 +193,8 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
     const T at_rest = law.mu_s;
     for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
       if constexpr (hooks::Remembers<E, T>) {
-        detail::remember(effect, q, slip, at_rest, velocity, mu);
+        const auto steady_at = [&](const Instant<T>& at) { return steady_friction(model, p, law, at); };
+        detail::remember(effect, q, slip, at_rest, steady_at, velocity, mu);
         is_signed = hooks::ActsInStick<E>;
       }
     });
