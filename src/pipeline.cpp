@@ -51,7 +51,8 @@ bool is_constant(const std::vector<double>& channel) {
 /// What keeps the data from carrying an analysis, as sentences; none when nothing does.
 std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation) {
   std::vector<std::string> found;
-  if (is_constant(motion.friction)) found.push_back("friction is the same in every sample: the channel was not recorded");
+  if (is_constant(motion.friction))
+    found.push_back("friction is the same in every sample: the channel was not recorded");
   if (is_constant(motion.relative_velocity) && motion.velocity_kind != VelocityKind::fixed_block) {
     found.push_back("the velocity is the same in every sample: the channel was not recorded");
   }
@@ -113,7 +114,8 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   const auto fits = plan(options);
   out.fits.resize(fits.size());
   run_tasks(fits.size(), options.fit.threads, [&](std::size_t k) {
-    out.fits[k] = fit_model(fits[k].first, out.motion, out.segmentation, observations, options.instruments, fits[k].second);
+    out.fits[k] =
+        fit_model(fits[k].first, out.motion, out.segmentation, observations, options.instruments, fits[k].second);
   });
   out.best = best_of(out.fits);
   return out;

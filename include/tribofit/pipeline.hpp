@@ -1,12 +1,14 @@
 #pragma once
 
 /// Conventions of the whole house, stated here once:
-/// - SI inside. Units are converted at two doors only: ingest/ on the way in, report/ and the command line on the way out.
+/// - SI inside. Units are converted at two doors only: ingest/ on the way in, report/ and the command line on the way
+/// out.
 /// - v_r = omega r - v_b ([D] Eq 4); mu is positive when v_r is; time is in seconds from the trace's first sample.
 /// - Options in, results out, valid on construction. A fit that fails is a result with a reason. The only
 ///   exception is InputError (ingest/input_error.hpp): bad input, with file, line, column and what to do.
 /// - Library code never prints and never exits. Results are the same to the last bit for any number of threads.
-/// - [D]: Stick-Slip Characteristic Analysis of High-Speed Train Brake Systems: A Disc-Block Friction System with Different
+/// - [D]: Stick-Slip Characteristic Analysis of High-Speed Train Brake Systems: A Disc-Block Friction System with
+/// Different
 ///   Friction Radii (2023).
 
 #include <cstddef>
@@ -28,8 +30,8 @@ struct IdentifyOptions {
   MotionOptions motion;
   FitOptions fit;
   std::vector<BaseLaw> laws = {BaseLaw::exponential, BaseLaw::fractional};
-  std::vector<Effect> effects;        ///< added to every law
-  bool published_protocol = true;     ///< fit by the published protocol too, beside the joint one
+  std::vector<Effect> effects;     ///< added to every law
+  bool published_protocol = true;  ///< fit by the published protocol too, beside the joint one
 };
 
 /// Everything known about one trace.
@@ -40,12 +42,12 @@ struct Identification {
   double duration = 0, rate = 0;  ///< [s], [Hz]
   Motion motion;
   Segmentation segmentation;
-  SpectralPeak spectral_peak;     ///< of v_r
-  std::vector<Fit> fits;          ///< joint fits first, in the order of options.laws, then the published ones
-  std::size_t best = 0;           ///< the fit that predicts held-out cycles best
-  std::vector<std::string> notes;     ///< how the input was read
+  SpectralPeak spectral_peak;      ///< of v_r
+  std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the published ones
+  std::size_t best = 0;            ///< the fit that predicts held-out cycles best
+  std::vector<std::string> notes;  ///< how the input was read
   std::vector<std::string> warnings;
-  bool analysed = true;           ///< false: the data were read but cannot carry the analysis, warnings say why
+  bool analysed = true;  ///< false: the data were read but cannot carry the analysis, warnings say why
 };
 
 /// The stages in order: read, move, segment, fit.

@@ -4,8 +4,8 @@
 
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit {
 

@@ -22,10 +22,10 @@ class FullRecord {
 
 /// What a model leaves on every sample.
 struct SampleErrors {
-  ErrorFigures figures;             ///< held_out_rmse not set
-  std::vector<double> squares;      ///< sum of squares of each cycle, break-away included
-  std::vector<double> counts;       ///< residuals of each cycle
-  double constant_rmse = 0;         ///< what a constant |friction| would leave
+  ErrorFigures figures;         ///< held_out_rmse not set
+  std::vector<double> squares;  ///< sum of squares of each cycle, break-away included
+  std::vector<double> counts;   ///< residuals of each cycle
+  double constant_rmse = 0;     ///< what a constant |friction| would leave
 };
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations);

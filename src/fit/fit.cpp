@@ -36,7 +36,9 @@ std::vector<std::size_t> sample_of_slips(const Observations& observations, std::
   return slips;
 }
 
-std::size_t fold_of_cycle(std::size_t cycle, std::size_t cycles, std::size_t folds) { return cycle * folds / cycles; }
+std::size_t fold_of_cycle(std::size_t cycle, std::size_t cycles, std::size_t folds) {
+  return cycle * folds / cycles;
+}
 
 std::size_t fold_count(const Observations& observations, const FitOptions& options) {
   return std::min(observations.cycles, static_cast<std::size_t>(std::max(2, options.folds)));
@@ -90,8 +92,8 @@ ExtremeMean mean_extreme(const Observations& observations, const Segmentation& s
   return out;
 }
 
-/// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the scatter of
-/// break-away, then with that scatter taken out.
+/// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the
+/// scatter of break-away, then with that scatter taken out.
 SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   const auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
@@ -107,7 +109,8 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
     if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;
   }
   start = starts[0];
-  if (best != 0) fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
+  if (best != 0)
+    fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
   const std::vector<std::size_t> all = all_slips(job.observations);
   std::vector<double> p = job.solve(all, tries[best].p, quick).p;
   // The direction in which a slip scatters is that of the law: known better once it has been taken out.
@@ -149,7 +152,8 @@ Eigen::MatrixXd published_influence(const NormalEquations& equations, const std:
 }
 
 /// Error on cycles that took no part: contiguous blocks of cycles are left out in turn and the rest fitted, by one
-/// Gauss-Newton step from the fit of all. The step is short (a fraction of a standard error), so it ends where a refit would.
+/// Gauss-Newton step from the fit of all. The step is short (a fraction of a standard error), so it ends where a refit
+/// would.
 void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
               const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
   const std::size_t folds = fold_count(job.observations, job.options);
@@ -215,7 +219,8 @@ void fill_parameters(const Job& job, const SolverResult& solution, const std::ve
     out.lower95 = out.value - half;
     out.upper95 = out.value + half;
     out.profile_lower95 = out.profile_upper95 = kNaN;
-    out.at_bound = job.options.protocol == Protocol::joint && on_bound(out.value, job.bounds.lower[k], job.bounds.upper[k]);
+    out.at_bound =
+        job.options.protocol == Protocol::joint && on_bound(out.value, job.bounds.lower[k], job.bounds.upper[k]);
     fit.parameters.push_back(out);
   }
   fit.covariance.assign(spread.covariance.data(), spread.covariance.data() + spread.covariance.size());
@@ -243,7 +248,9 @@ Fit failed_fit(Fit fit, const std::string& why) {
 
 }  // namespace
 
-std::string_view to_string(Protocol protocol) { return protocol == Protocol::published ? "published" : "joint"; }
+std::string_view to_string(Protocol protocol) {
+  return protocol == Protocol::published ? "published" : "joint";
+}
 
 std::vector<double> Fit::values() const {
   std::vector<double> p;
@@ -276,8 +283,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   std::vector<double> start;
   std::vector<ExtremeMean> extremes;
   const bool published = options.protocol == Protocol::published;
-  const SolverResult solution =
-      published ? published_estimate(job, start, extremes) : joint_estimate(job, fit, start);
+  const SolverResult solution = published ? published_estimate(job, start, extremes) : joint_estimate(job, fit, start);
   fit.converged = solution.converged;
   fit.iterations = solution.iterations;
   if (!solution.converged) fit.messages.push_back(solution.message);
@@ -298,7 +304,8 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
     // A parameter on its bound is fixed for the others; its own error is what it would have if it were not.
     const Eigen::MatrixXd with_bound = influence(equations, free);
     for (std::size_t k = 0; k < p.size(); ++k) {
-      if (free[k] && !inside[k]) influences.col(static_cast<Eigen::Index>(k)) = with_bound.col(static_cast<Eigen::Index>(k));
+      if (free[k] && !inside[k])
+        influences.col(static_cast<Eigen::Index>(k)) = with_bound.col(static_cast<Eigen::Index>(k));
     }
   }
   fill_parameters(job, solution, start, influences, fit);

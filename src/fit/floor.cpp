@@ -68,9 +68,9 @@ double pooled_noise(const std::vector<Residual>& parts) {
   return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
-constexpr std::size_t kShortestStick = 40;    ///< samples that can show a spread
-constexpr std::size_t kStretch = 400;        ///< samples over which a ramp, even a creeping one, is a parabola
-constexpr std::size_t kStretches = 1000;     ///< enough to know a spread to 0.2 %
+constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
+constexpr std::size_t kStretch = 400;       ///< samples over which a ramp, even a creeping one, is a parabola
+constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
 std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& segmentation) {

@@ -46,7 +46,8 @@ Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bo
       scaled(i, j) = scale(i) * matrix(index[std::size_t(i)], index[std::size_t(j)]) * scale(j);
     }
   }
-  // Eigenvalues at rounding level belong to combinations the data do not determine: no finite error is claimed less than that.
+  // Eigenvalues at rounding level belong to combinations the data do not determine: no finite error is claimed less
+  // than that.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1e-14);
   const Eigen::MatrixXd inverse =

@@ -46,8 +46,9 @@ void add_messages(const std::vector<bool>& silent, Fit& fit) {
     }
   }
   for (const Correlation& c : fit.correlations) {
-    fit.messages.push_back(fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
-                                       shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
+    fit.messages.push_back(
+        fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
+                    shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
   }
   const FrictionModel& model = fit.model;
   if (model.law() == BaseLaw::coulomb || fit.parameters.size() < 3) return;

@@ -6,8 +6,8 @@
 
 namespace tribofit {
 
-/// Adds what a careful person would say of the parameters: at a bound, not moved by the data, strongly correlated, beyond what the
-/// data reach. `silent`: parameters with no influence on any residual.
+/// Adds what a careful person would say of the parameters: at a bound, not moved by the data, strongly correlated,
+/// beyond what the data reach. `silent`: parameters with no influence on any residual.
 void add_messages(const std::vector<bool>& silent, Fit& fit);
 
 }  // namespace tribofit

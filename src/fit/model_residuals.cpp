@@ -174,8 +174,8 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   const auto residual = static_cast<Eigen::Index>(parameter_count());
   Whitening out;
   out.g.resize(observations_.slips.size());
-  const bool breaks_away = std::any_of(slips_.begin(), slips_.end(),
-                                       [this](std::size_t s) { return observations_.slips[s].from_stick; });
+  const bool breaks_away =
+      std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
   // delta_i of each slip by least squares, and what noise is left once it is taken out.
   std::vector<double> deltas;

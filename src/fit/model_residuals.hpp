@@ -13,17 +13,18 @@ namespace tribofit {
 /// Residuals of a friction model over slips: sqrt(weight) (measured - model) for every value of each slip, and
 /// |measured| - level for the break-away that begins it.
 ///
-/// A solver sees the rows of each slip compressed by a QR decomposition of [J r g] to a few rows: J'J, J'r and r'r, all that
-/// least squares uses, are unchanged, and a long record stays in the cache.
+/// A solver sees the rows of each slip compressed by a QR decomposition of [J r g] to a few rows: J'J, J'r and r'r, all
+/// that least squares uses, are unchanged, and a long record stays in the cache.
 ///
 /// With a robust loss each residual r becomes sign(r) sqrt(rho(r^2)), whose squares add up to the robust cost.
 ///
 /// The level of break-away differs from cycle to cycle, by delta_i say, and the whole slip with it, by delta_i g_i with
-/// g_i = d model/d mu_s. A cycle that breaks away higher also slips faster, so delta_i is not independent of v_r and plain
-/// least squares would blame the law for it: mu_k and the decay factor come out biased. Once the scatter is known the rows are
-/// therefore whitened against delta_i ~ N(0, s^2) (a random effect, N. M. Laird, J. H. Ware, Biometrics 38 (1982) 963,
-/// doi:10.2307/2529876): r_i becomes r_i - c g_i (d_i - d), with d_i the least-squares delta_i of the slip and d their mean, so
-/// that only differences between cycles lose weight. In matrix form M = I - c (P_g - P_G), symmetric.
+/// g_i = d model/d mu_s. A cycle that breaks away higher also slips faster, so delta_i is not independent of v_r and
+/// plain least squares would blame the law for it: mu_k and the decay factor come out biased. Once the scatter is known
+/// the rows are therefore whitened against delta_i ~ N(0, s^2) (a random effect, N. M. Laird, J. H. Ware, Biometrics 38
+/// (1982) 963, doi:10.2307/2529876): r_i becomes r_i - c g_i (d_i - d), with d_i the least-squares delta_i of the slip
+/// and d their mean, so that only differences between cycles lose weight. In matrix form M = I - c (P_g - P_G),
+/// symmetric.
 class ModelResiduals final : public Residuals {
  public:
   struct Options {
@@ -47,8 +48,8 @@ class ModelResiduals final : public Residuals {
 
   std::span<const std::size_t> slips() const { return slips_; }
 
-  /// J'J and J'r of one slip, whitened; the gradient as the part of the whole gradient that is linear in the slip's own residuals,
-  /// (M M J)_i' r_i, which is what one cycle contributes to the estimate's error.
+  /// J'J and J'r of one slip, whitened; the gradient as the part of the whole gradient that is linear in the slip's own
+  /// residuals, (M M J)_i' r_i, which is what one cycle contributes to the estimate's error.
   struct Normal {
     Eigen::MatrixXd curvature;
     Eigen::VectorXd gradient;

@@ -8,7 +8,7 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::size_t kShortestSlip = 4;        ///< samples; less cannot show a curve
+constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show a curve
 constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
 
 /// Median number of samples of the slips.
@@ -59,7 +59,8 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
 /// Means of `channel` over each value of the observations.
 class Reducer {
  public:
-  Reducer(const std::vector<Observations::Range>& slips, std::size_t per_value) : slips_(slips), per_value_(per_value) {}
+  Reducer(const std::vector<Observations::Range>& slips, std::size_t per_value)
+      : slips_(slips), per_value_(per_value) {}
 
   template <class Write>
   void each(Write&& write) const {
@@ -94,9 +95,9 @@ double mean_about(const std::vector<double>& x, std::size_t i, std::size_t half)
   return sum / static_cast<double>(end - begin);
 }
 
-/// Keeps the velocity of each stick from where creep stands out of the noise, 10 ms before break-away at most, and friction
-/// there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a memory that turns with the sign
-/// of v_r it would pass for motion, so the velocity is averaged over a millisecond.
+/// Keeps the velocity of each stick from where creep stands out of the noise, 10 ms before break-away at most, and
+/// friction there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a memory that
+/// turns with the sign of v_r it would pass for motion, so the velocity is averaged over a millisecond.
 void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
   constexpr double kLead = 10e-3, kMean = 1e-3;  // [s]
   const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kMean / motion.step));

@@ -10,8 +10,10 @@ namespace tribofit {
 /// Adds profile-likelihood 95 % intervals to a fit.
 ///
 /// Each parameter is moved away from its best value while the others are refitted, until the sum of squares has
-/// risen by as much as it would at the end of the symmetric interval if the model were linear. The scale of the rise is that
-/// of the cycle-to-cycle standard error, so correlated samples do not shorten the interval; only its asymmetry is new.
-void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature, Fit& fit);
+/// risen by as much as it would at the end of the symmetric interval if the model were linear. The scale of the rise is
+/// that of the cycle-to-cycle standard error, so correlated samples do not shorten the interval; only its asymmetry is
+/// new.
+void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
+                  Fit& fit);
 
 }  // namespace tribofit

@@ -26,7 +26,8 @@ class Cost : public ceres::CostFunction {
     for (std::size_t k = 0; k < free_.size(); ++k) p_[free_[k]] = blocks[0][k];
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
     const bool all_free = free_.size() == p_.size();
-    if (!problem_.evaluate(p_.data(), residuals, jacobian == nullptr || all_free ? jacobian : all_.data())) return false;
+    if (!problem_.evaluate(p_.data(), residuals, jacobian == nullptr || all_free ? jacobian : all_.data()))
+      return false;
     if (jacobian == nullptr) return true;
     for (std::size_t i = 0; !all_free && i < problem_.count(); ++i) {
       for (std::size_t k = 0; k < free_.size(); ++k) jacobian[i * free_.size() + k] = all_[i * p_.size() + free_[k]];
@@ -69,8 +70,8 @@ void keep_logging_quiet() {
   });
 }
 
-/// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must be
-/// shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
+/// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must
+/// be shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
 void polish(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
             std::span<const double> upper, SolverResult& result) {
   constexpr int kSteps = 30;
@@ -108,10 +109,12 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
 
 std::string explain(const ceres::Solver::Summary& summary) {
   switch (summary.termination_type) {
-    case ceres::CONVERGENCE: return "converged";
+    case ceres::CONVERGENCE:
+      return "converged";
     case ceres::NO_CONVERGENCE:
       return "did not settle within " + std::to_string(summary.iterations.size()) + " iterations";
-    default: return "the solver failed: " + summary.message;
+    default:
+      return "the solver failed: " + summary.message;
   }
 }
 
@@ -199,8 +202,7 @@ std::vector<double> covariance_of_independent(const Residuals& problem, std::spa
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
   const Eigen::MatrixXd r = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
   const Eigen::MatrixXd inverse =
-      scale.asDiagonal() *
-      r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(columns, columns)).eval();
+      scale.asDiagonal() * r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(columns, columns)).eval();
   const double variance = residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows - columns));
   const Eigen::MatrixXd covariance = variance * inverse * inverse.transpose();
   return {covariance.data(), covariance.data() + covariance.size()};

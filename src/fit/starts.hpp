@@ -14,8 +14,8 @@ struct Bounds {
 };
 Bounds bounds_of(const FrictionModel& model, const Observations& observations);
 
-/// Start from the data: mu_s, mu_k and the decay factor from the best of a grid of decay factors, for each of which the two
-/// levels follow linearly from mean friction over speed; effects from their catalogue start.
+/// Start from the data: mu_s, mu_k and the decay factor from the best of a grid of decay factors, for each of which the
+/// two levels follow linearly from mean friction over speed; effects from their catalogue start.
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations, const Bounds& bounds);
 
 /// `count` starts: the one from the data, then seeded ones: decay factors log-uniform over what the data can

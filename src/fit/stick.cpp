@@ -35,7 +35,8 @@ double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p
       const double measured = cycle.direction * mean(motion.relative_velocity, begin, begin + part);
       double predicted = 0;
       for_each_effect(model, p.data(), [&]<class E>(const E& effect, const double* q) {
-        if constexpr (requires { effect.creep(q, p[0], level, slope); }) predicted += effect.creep(q, p[0], level, slope);
+        if constexpr (requires { effect.creep(q, p[0], level, slope); })
+          predicted += effect.creep(q, p[0], level, slope);
       });
       if (level >= p[0] || !std::isfinite(predicted)) continue;
       squares += std::pow(measured - predicted, 2);

@@ -17,7 +17,9 @@ struct Shift {
   std::vector<double> break_away;          ///< one per slip; empty: no change
 };
 
-double uncertainty(const std::optional<Declared>& declared) { return declared ? declared->uncertainty : 0; }
+double uncertainty(const std::optional<Declared>& declared) {
+  return declared ? declared->uncertainty : 0;
+}
 
 /// Displacement of the block from its mean [m] at every value: what an uncertain high-pass corner multiplies.
 std::vector<double> displacement(const Motion& motion, const Observations& observations) {

@@ -7,11 +7,11 @@
 
 namespace tribofit {
 
-/// Standard uncertainty of each parameter from what the instruments file declares (and from a high-pass that was found and
-/// undone): every declared uncertainty moves velocity or friction by one standard deviation, one Newton step says how far the
-/// parameters follow, and independent sources add in squares. Zero where nothing is declared.
-std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
-                                      const Motion& motion, const Observations& observations,
-                                      const Instruments& instruments, const std::vector<bool>& free);
+/// Standard uncertainty of each parameter from what the instruments file declares (and from a high-pass that was found
+/// and undone): every declared uncertainty moves velocity or friction by one standard deviation, one Newton step says
+/// how far the parameters follow, and independent sources add in squares. Zero where nothing is declared.
+std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
+                                      const Observations& observations, const Instruments& instruments,
+                                      const std::vector<bool>& free);
 
 }  // namespace tribofit

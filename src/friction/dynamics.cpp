@@ -15,8 +15,13 @@ struct OneSample {
   Slip slip;
 
   explicit OneSample(const Instant<double>& at)
-      : time(at.time), velocity(at.velocity), acceleration(at.acceleration), angle(at.angle), distance(at.distance),
-        load(at.load), temperature(at.temperature) {
+      : time(at.time),
+        velocity(at.velocity),
+        acceleration(at.acceleration),
+        angle(at.angle),
+        distance(at.distance),
+        load(at.load),
+        temperature(at.temperature) {
     const auto one = [](const double& x) { return std::span<const double>(&x, 1); };
     slip.time = one(time);
     slip.velocity = one(velocity);

@@ -63,20 +63,34 @@ std::vector<std::string> split(std::string_view text, char separator) {
 /// Units of the variables a formula is written in, so that a parameter's number means the same as the variable's.
 std::string_view formula_unit(Quantity quantity) {
   switch (quantity) {
-    case Quantity::velocity: return "mm/s";
-    case Quantity::acceleration: return "mm/s^2";
-    case Quantity::length: return "mm";
-    case Quantity::inverse_velocity: return "s/mm";
-    case Quantity::inverse_length: return "1/mm";
-    case Quantity::time: return "s";
-    case Quantity::force: return "N";
-    case Quantity::angle: return "rad";
-    case Quantity::frequency: return "Hz";
-    case Quantity::inverse_time: return "1/s";
-    case Quantity::angular_velocity: return "rad/s";
-    case Quantity::temperature: return "degC";
-    case Quantity::inverse_temperature: return "1/K";
-    default: return "1";
+    case Quantity::velocity:
+      return "mm/s";
+    case Quantity::acceleration:
+      return "mm/s^2";
+    case Quantity::length:
+      return "mm";
+    case Quantity::inverse_velocity:
+      return "s/mm";
+    case Quantity::inverse_length:
+      return "1/mm";
+    case Quantity::time:
+      return "s";
+    case Quantity::force:
+      return "N";
+    case Quantity::angle:
+      return "rad";
+    case Quantity::frequency:
+      return "Hz";
+    case Quantity::inverse_time:
+      return "1/s";
+    case Quantity::angular_velocity:
+      return "rad/s";
+    case Quantity::temperature:
+      return "degC";
+    case Quantity::inverse_temperature:
+      return "1/K";
+    default:
+      return "1";
   }
 }
 
@@ -212,7 +226,9 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
   }
 }
 
-Formula::Formula(const Formula& other) : parsed_(std::make_unique<Parsed>(*other.parsed_)) { parsed_->bind(); }
+Formula::Formula(const Formula& other) : parsed_(std::make_unique<Parsed>(*other.parsed_)) {
+  parsed_->bind();
+}
 Formula& Formula::operator=(const Formula& other) {
   if (this != &other) *this = Formula(other);
   return *this;
@@ -231,7 +247,9 @@ EffectInfo Formula::info() const {
           .needs = parsed_->needs};
 }
 
-std::size_t Formula::parameter_count() const { return parsed_->parameters.size(); }
+std::size_t Formula::parameter_count() const {
+  return parsed_->parameters.size();
+}
 
 void Formula::evaluate(std::span<const double> values, const Slip& slip, std::span<const double> speed,
                        std::span<double> terms) const {

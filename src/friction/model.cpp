@@ -10,9 +10,12 @@ namespace tribofit {
 
 std::string_view to_string(BaseLaw law) {
   switch (law) {
-    case BaseLaw::exponential: return "exponential";
-    case BaseLaw::fractional: return "fractional";
-    case BaseLaw::coulomb: break;
+    case BaseLaw::exponential:
+      return "exponential";
+    case BaseLaw::fractional:
+      return "fractional";
+    case BaseLaw::coulomb:
+      break;
   }
   return "coulomb";
 }

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "tribofit/fit/observations.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit {
 

@@ -137,7 +137,8 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
   const Interval interval = interval_of(branches);
   if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
     measure("branches", branches, 1, r.motion.friction_kind == FrictionKind::force ? "N" : "",
-            fmt::format("friction is {} while speeding up than while slowing down", branches.value > 0 ? "higher" : "lower"));
+            fmt::format("friction is {} while speeding up than while slowing down",
+                        branches.value > 0 ? "higher" : "lower"));
   }
   if (s.rms_velocity > 0) text += item(style, "RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   for (const std::string& note : s.notes) text += item(style, "note", note);

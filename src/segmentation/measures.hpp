@@ -11,8 +11,8 @@ namespace tribofit::segmentation {
 /// there are no values; its error is NaN where there are fewer than three.
 Measure mean_over_cycles(std::vector<double> values);
 
-/// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed between
-/// a quarter and three quarters of the peak. NaN where the slip does not show both branches.
+/// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed
+/// between a quarter and three quarters of the peak. NaN where the slip does not show both branches.
 double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction);
 
 /// Frequency from the periods: one over their mean without those further than three robust standard deviations from the

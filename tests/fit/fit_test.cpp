@@ -43,7 +43,8 @@ TEST_P(Recovers, ParametersOfNoiseFreeData) {
     ASSERT_EQ(fit.parameters.size(), truth.size());
     EXPECT_TRUE(fit.converged);
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      EXPECT_NEAR(fit.parameters[k].value, truth[k], 1e-5 * std::abs(truth[k]) + 1e-9) << fit.parameters[k].parameter.name;
+      EXPECT_NEAR(fit.parameters[k].value, truth[k], 1e-5 * std::abs(truth[k]) + 1e-9)
+          << fit.parameters[k].parameter.name;
     }
     EXPECT_LT(fit.error.rmse, 1e-7);
   }
@@ -55,8 +56,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"coulomb", BaseLaw::coulomb, {}, {}},
                     Case{"viscous", BaseLaw::exponential, {make_effect("viscous")}, {1.2}},
                     Case{"rate_state", BaseLaw::exponential, {make_effect("rate-state")}, {60e-6, 0.004}},
-                    Case{"formula", BaseLaw::exponential,
-                         {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")}, {0.02, 25, 6}}),
+                    Case{"formula",
+                         BaseLaw::exponential,
+                         {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")},
+                         {0.02, 25, 6}}),
     [](const auto& c) { return std::string(c.param.name); });
 
 TEST(Fit, MeansOverAFewSamplesDoNotMoveTheBareLaws) {
@@ -188,7 +191,8 @@ TEST(Fit, RobustLossStandsBadSamples) {
   const auto error_with = [&](Loss loss) {
     FitOptions with;
     with.loss = loss;
-    return std::abs(fit_model(model, record.motion, record.segmentation, every, {}, with).parameters[1].value - truth[1]);
+    return std::abs(fit_model(model, record.motion, record.segmentation, every, {}, with).parameters[1].value -
+                    truth[1]);
   };
   EXPECT_GT(error_with(Loss::squares), 0.004);
   EXPECT_LT(error_with(Loss::huber), 0.002);
@@ -202,7 +206,8 @@ TEST(Fit, ProfileAgreesWithTheSymmetricIntervalWhereTheModelIsNearlyLinear) {
   options.cycles = 60;
   FitOptions with;
   with.profile = true;
-  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options), with);
+  const Fit fit =
+      fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options), with);
   for (const FitParameter& p : fit.parameters) {
     const double width = p.upper95 - p.lower95;
     EXPECT_NEAR(p.profile_lower95, p.lower95, 0.05 * width) << p.parameter.name;
@@ -249,7 +254,8 @@ TEST(Fit, HeldOutErrorIsThatOfRefitsOnEverySample) {
   options.rate = 40e3;
   options.scatter = 0.01;
   const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
-  const Observations reduced = observe(record.motion, record.segmentation), every = observe(record.motion, record.segmentation, {}, 0);
+  const Observations reduced = observe(record.motion, record.segmentation),
+                     every = observe(record.motion, record.segmentation, {}, 0);
   ASSERT_GT(reduced.samples_per_value, 5u);
   ASSERT_EQ(every.samples_per_value, 1u);
   const Fit a = fit_model(model, record.motion, record.segmentation, reduced);

@@ -102,8 +102,7 @@ struct RationalCubic {
   static constexpr int parameters = 7;
   template <class T>
   T operator()(const T* b, const double* x) const {
-    return (b[0] + x[0] * (b[1] + x[0] * (b[2] + x[0] * b[3]))) /
-           (1.0 + x[0] * (b[4] + x[0] * (b[5] + x[0] * b[6])));
+    return (b[0] + x[0] * (b[1] + x[0] * (b[2] + x[0] * b[3]))) / (1.0 + x[0] * (b[4] + x[0] * (b[5] + x[0] * b[6])));
   }
 };
 

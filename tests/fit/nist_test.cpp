@@ -55,7 +55,8 @@ TEST_P(Nist, CertifiedParametersFromBothStarts) {
       if (problem.name == "Lanczos1") continue;  // its residuals are near rounding, and so are its deviations
       const std::vector<double> covariance = tribofit::covariance_of_independent(residuals, result.p);
       std::vector<double> deviations;
-      for (std::size_t k = 0; k < result.p.size(); ++k) deviations.push_back(std::sqrt(covariance[k * result.p.size() + k]));
+      for (std::size_t k = 0; k < result.p.size(); ++k)
+        deviations.push_back(std::sqrt(covariance[k * result.p.size() + k]));
       EXPECT_GE(nist::least_log_relative_error(deviations, problem.standard_deviations), 6.0);
     }
   });

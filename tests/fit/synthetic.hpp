@@ -14,18 +14,19 @@
 
 namespace synthetic {
 
-/// A record with prescribed motion: every cycle is a stick and a slip of known shape, and friction follows the model exactly
-/// but for the noise asked for. No oscillator, no segmentation: what a fit returns is compared with the truth itself.
+/// A record with prescribed motion: every cycle is a stick and a slip of known shape, and friction follows the model
+/// exactly but for the noise asked for. No oscillator, no segmentation: what a fit returns is compared with the truth
+/// itself.
 struct Options {
   std::size_t cycles = 40;
-  double rate = 10e3;        ///< [Hz]
-  double stick_time = 0.1;   ///< [s]
-  double slip_time = 0.1;    ///< [s]
-  double peak = 0.08;        ///< of v_r [m/s]
-  double noise = 0;          ///< on friction
-  double colour = 0;         ///< AR(1) coefficient of the noise, per sample
-  double scatter = 0;        ///< of the break-away level from cycle to cycle
-  double wander = 0;         ///< AR(1) coefficient of the scatter, per cycle
+  double rate = 10e3;       ///< [Hz]
+  double stick_time = 0.1;  ///< [s]
+  double slip_time = 0.1;   ///< [s]
+  double peak = 0.08;       ///< of v_r [m/s]
+  double noise = 0;         ///< on friction
+  double colour = 0;        ///< AR(1) coefficient of the noise, per sample
+  double scatter = 0;       ///< of the break-away level from cycle to cycle
+  double wander = 0;        ///< AR(1) coefficient of the scatter, per cycle
   double direction = 1;
   std::uint64_t seed = 1;
 };
@@ -38,7 +39,9 @@ struct Record {
 /// Noise with variance 1 and autocorrelation `colour`.
 class ColouredNoise {
  public:
-  ColouredNoise(double colour, boost::random::mt19937_64& engine) : colour_(colour), engine_(engine) { state_ = draw(); }
+  ColouredNoise(double colour, boost::random::mt19937_64& engine) : colour_(colour), engine_(engine) {
+    state_ = draw();
+  }
   double operator()() {
     const double now = state_;
     state_ = colour_ * state_ + std::sqrt(1 - colour_ * colour_) * draw();
@@ -64,7 +67,8 @@ inline Record make(const tribofit::FrictionModel& model, const std::vector<doubl
   m.conditions.speed = {0.419, "command line"};
   boost::random::mt19937_64 engine(o.seed);
   ColouredNoise noise(o.colour, engine), scatter(o.wander, engine);
-  const auto stick = static_cast<std::size_t>(o.stick_time * o.rate), slip = static_cast<std::size_t>(o.slip_time * o.rate);
+  const auto stick = static_cast<std::size_t>(o.stick_time * o.rate),
+             slip = static_cast<std::size_t>(o.slip_time * o.rate);
   for (std::size_t c = 0; c < o.cycles; ++c) {
     Cycle cycle;
     cycle.stick = {m.size(), m.size() + stick};

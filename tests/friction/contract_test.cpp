@@ -31,7 +31,8 @@ class EveryEffect : public testing::TestWithParam<std::string> {
     std::vector<double> p = {0.509, 0.318, 52.14};
     for (std::size_t k = 3; k < model_.parameters().size(); ++k) {
       const Parameter& q = model_.parameters()[k].parameter;
-      const double value = q.lower > 0 ? q.lower * std::pow(q.upper / q.lower, 0.3) : q.lower + 0.3 * (q.upper - q.lower);
+      const double value =
+          q.lower > 0 ? q.lower * std::pow(q.upper / q.lower, 0.3) : q.lower + 0.3 * (q.upper - q.lower);
       p.push_back(value * q.si);
     }
     return p;
@@ -80,9 +81,11 @@ TEST_P(EveryEffect, DerivativesAreThoseOfTheValues) {
       for (std::size_t i = 0; i < slip.size(); ++i) scale = std::max(scale, std::abs(mu_high[i] - mu_low[i]) / (2 * h));
       for (std::size_t i = 0; i < slip.size(); i += 7) {
         const double slope = (mu_high[i] - mu_low[i]) / (2 * h);
-        EXPECT_NEAR(mu[i].v[static_cast<Eigen::Index>(k)], slope, 1e-4 * scale + 1e-9 / h) << "parameter " << k << " sample " << i;
+        EXPECT_NEAR(mu[i].v[static_cast<Eigen::Index>(k)], slope, 1e-4 * scale + 1e-9 / h)
+            << "parameter " << k << " sample " << i;
       }
-      const double slope = (break_away_level(model_, high.data(), slip) - break_away_level(model_, low.data(), slip)) / (2 * h);
+      const double slope =
+          (break_away_level(model_, high.data(), slip) - break_away_level(model_, low.data(), slip)) / (2 * h);
       EXPECT_NEAR(level.v[static_cast<Eigen::Index>(k)], slope, 1e-6 * std::abs(slope) + 1e-9 / h);
       EXPECT_EQ(mu[5].a, mu[5].a);  // finite: NaN is not equal to itself
     }
@@ -124,7 +127,8 @@ TEST_P(EveryEffect, IsTheSameInASimulationAndInAFit) {
   std::vector<double> state(dynamics.state_count()), rate(state.size());
   dynamics.states_at_break_away(state);
   double worst = 0;
-  const std::size_t settle = model_.acts_in_stick() ? slip.size() / 4 : 0;  // its start is the spring's, not tested here
+  const std::size_t settle =
+      model_.acts_in_stick() ? slip.size() / 4 : 0;  // its start is the spring's, not tested here
   for (std::size_t i = 0; i + 1 < slip.size(); ++i) {
     const Instant<double> now = slip.at(i, slip.velocity[i]);
     if (i >= settle) worst = std::max(worst, std::abs(dynamics.friction(now, state) - whole[i]));

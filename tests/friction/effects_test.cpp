@@ -77,7 +77,8 @@ TEST(RateState, DirectTermFollowsTheLogarithmOfSpeed) {
   const FrictionModel model(BaseLaw::coulomb, {make_effect("rate-state")});
   const double a = 0.01;
   const Steady slow(0.01, 1e-3, 50), fast(0.1, 1e-3, 50);
-  const double difference = run(model, {0.5, 0.3, 1e-6, a}, fast.slip)[49] - run(model, {0.5, 0.3, 1e-6, a}, slow.slip)[49];
+  const double difference =
+      run(model, {0.5, 0.3, 1e-6, a}, fast.slip)[49] - run(model, {0.5, 0.3, 1e-6, a}, slow.slip)[49];
   EXPECT_NEAR(difference, a * (std::asinh(50.0) - std::asinh(5.0)), 1e-9);
 }
 
@@ -119,8 +120,9 @@ TEST(Formula, FollowsItsExpressionInTheUnitsOfThePage) {
 
 TEST(Formula, SeesEveryVariable) {
   const samples::ExampleSlip example(10);
-  const FrictionModel model(BaseLaw::coulomb,
-                            {Formula("all = k*(acceleration + t + angle + distance + stick_time + load + temperature); k=1")});
+  const FrictionModel model(
+      BaseLaw::coulomb,
+      {Formula("all = k*(acceleration + t + angle + distance + stick_time + load + temperature); k=1")});
   const double mu = run(model, {0.5, 0.0, 1.0}, example.slip)[3];
   EXPECT_NEAR(mu,
               1e3 * example.acceleration[3] + example.time[3] + example.angle[3] + 1e3 * example.distance[3] + 0.1 +

@@ -23,7 +23,9 @@ using recovery::TwinOptions;
 constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
 constexpr BaseLaw kLaws[] = {BaseLaw::exponential, BaseLaw::fractional};
 
-BaseLaw other(BaseLaw law) { return law == BaseLaw::exponential ? BaseLaw::fractional : BaseLaw::exponential; }
+BaseLaw other(BaseLaw law) {
+  return law == BaseLaw::exponential ? BaseLaw::fractional : BaseLaw::exponential;
+}
 
 /// The eight twins: each law at each radius. Prints value, error and the published protocol's bias beside it.
 TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
@@ -38,11 +40,14 @@ TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
       const Fit joint = fit_twin(twin, law), published = fit_twin(twin, law, Protocol::published);
       const Fit rival = fit_twin(twin, other(law));
       ASSERT_TRUE(joint.converged);
-      const auto percent = [&](const Fit& fit, std::size_t k) { return 100 * (fit.parameters[k].value / twin.truth[k] - 1); };
+      const auto percent = [&](const Fit& fit, std::size_t k) {
+        return 100 * (fit.parameters[k].value / twin.truth[k] - 1);
+      };
       const Comparison comparison = compare_held_out(joint, rival);
-      std::printf("%-12s %2.0f mm   %+6.2f %% %+6.2f %%      %+6.2f %% %+6.2f %%      %+6.2f %% %+7.2f %%         %.1e\n",
-                  std::string(to_string(law)).c_str(), radius * 1e3, percent(joint, 0), percent(published, 0),
-                  percent(joint, 1), percent(published, 1), percent(joint, 2), percent(published, 2), comparison.p_value);
+      std::printf(
+          "%-12s %2.0f mm   %+6.2f %% %+6.2f %%      %+6.2f %% %+6.2f %%      %+6.2f %% %+7.2f %%         %.1e\n",
+          std::string(to_string(law)).c_str(), radius * 1e3, percent(joint, 0), percent(published, 0),
+          percent(joint, 1), percent(published, 1), percent(joint, 2), percent(published, 2), comparison.p_value);
       // At 9 mm slips end where a sixth (exponential) or a quarter (fractional) of the drop is still to come.
       const bool short_slips = radius < 0.010;
       EXPECT_LT(std::abs(percent(joint, 0)), 0.5) << radius;
@@ -60,7 +65,8 @@ struct Hidden {
   std::size_t main;                ///< the parameter that tells
 };
 
-/// An effect at work in the simulated contact comes back when it is added to the model, and the error falls to the floor.
+/// An effect at work in the simulated contact comes back when it is added to the model, and the error falls to the
+/// floor.
 TEST(Effects, ComeBackFromTheRigTheyWereSimulatedOn) {
   const Hidden hidden[] = {{"viscous", {1.0}, 0}, {"rate-state", {60e-6, 0.0}, 0}, {"bristle", {80e3, 2.0}, 0}};
   for (const Hidden& h : hidden) {

@@ -17,10 +17,10 @@ namespace recovery {
 struct TwinOptions {
   double radius = 0.015;  ///< [m]
   tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
-  double duration = 20;   ///< [s]
-  double colour = 0;      ///< AR(1) coefficient of both noises, per sample
+  double duration = 20;  ///< [s]
+  double colour = 0;     ///< AR(1) coefficient of both noises, per sample
   double scatter = 0.004;
-  double wander = 0;      ///< of the scatter, per cycle
+  double wander = 0;  ///< of the scatter, per cycle
   std::uint64_t seed = 1;
   std::vector<tribofit::Effect> effects = {};
   std::vector<double> effect_parameters = {};  ///< SI, in the order of the effects
@@ -34,7 +34,8 @@ struct Twin {
   tribofit::Segmentation segmentation;
 };
 
-/// Simulates a test of [D], records it at 20 kHz with noise 0.003 and 0.02 mm/s, and takes it through the stages before the fit.
+/// Simulates a test of [D], records it at 20 kHz with noise 0.003 and 0.02 mm/s, and takes it through the stages before
+/// the fit.
 inline Twin make_twin(const TwinOptions& o) {
   using namespace tribofit;
   Twin twin;

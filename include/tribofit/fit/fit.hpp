@@ -14,7 +14,8 @@ namespace tribofit {
 
 /// How parameters are found.
 enum class Protocol {
-  published,  ///< [D] 3.2: mu_s and mu_k as means of the per-cycle maximum in stick and minimum in slip, then the decay factor alone
+  published,  ///< [D] 3.2: mu_s and mu_k as means of the per-cycle maximum in stick and minimum in slip, then the decay
+              ///< factor alone
   joint       ///< all parameters together
 };
 std::string_view to_string(Protocol protocol);
@@ -27,19 +28,19 @@ struct FitOptions {
   double loss_scale = 3;  ///< where the robust losses bend, in units of the floor
   int starts = 5;         ///< starting points; the first comes from the data, the others are seeded
   std::uint64_t seed = 1;
-  int folds = 5;          ///< contiguous blocks of cycles held out in turn
-  bool profile = false;   ///< profile likelihood intervals beside the others
-  int threads = 0;        ///< 0: as many as there are; the result does not depend on it
+  int folds = 5;         ///< contiguous blocks of cycles held out in turn
+  bool profile = false;  ///< profile likelihood intervals beside the others
+  int threads = 0;       ///< 0: as many as there are; the result does not depend on it
 };
 
 /// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
 struct FitParameter {
-  Parameter parameter;      ///< name, unit and bounds
-  std::string effect;       ///< key; empty for the base law
+  Parameter parameter;  ///< name, unit and bounds
+  std::string effect;   ///< key; empty for the base law
   double value = 0;
-  double std_error = 0;     ///< statistical, from cycle to cycle
-  double lower95 = 0, upper95 = 0;  ///< statistical 95 % interval
-  double systematic = 0;    ///< standard uncertainty from the declared instruments
+  double std_error = 0;                             ///< statistical, from cycle to cycle
+  double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval
+  double systematic = 0;                            ///< standard uncertainty from the declared instruments
   double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for
   double start = 0;
   bool at_bound = false;
@@ -47,10 +48,10 @@ struct FitParameter {
 
 /// What the model leaves, over slip samples and break-aways (see Observations).
 struct ErrorFigures {
-  double rmse = 0;             ///< [1 or N]
-  double mean_relative = 0;    ///< mean of [D] Eq 5 over slip samples, |(mu - model)/mu|
-  double max_relative = 0;     ///< largest of [D] Eq 5
-  double held_out_rmse = 0;    ///< on cycles that took no part in the fit
+  double rmse = 0;           ///< [1 or N]
+  double mean_relative = 0;  ///< mean of [D] Eq 5 over slip samples, |(mu - model)/mu|
+  double max_relative = 0;   ///< largest of [D] Eq 5
+  double held_out_rmse = 0;  ///< on cycles that took no part in the fit
 };
 
 /// What even the true law would leave.
@@ -78,12 +79,13 @@ struct Fit {
   int iterations = 0;
   std::size_t observations = 0;  ///< samples
   std::size_t cycles = 0;
-  double stick_rmse = 0;         ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
-  double fastest = 0;            ///< the data reach up to this |v_r| [m/s]
-  std::vector<Correlation> correlations;    ///< those above 0.9 in size, largest first
-  std::vector<double> covariance;           ///< of the values (SI), row by row, statistical
-  std::vector<double> cycle_squares;        ///< held-out sum of squares of each cycle
-  std::vector<double> cycle_counts;         ///< residuals of each cycle
+  double stick_rmse =
+      0;               ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
+  double fastest = 0;  ///< the data reach up to this |v_r| [m/s]
+  std::vector<Correlation> correlations;             ///< those above 0.9 in size, largest first
+  std::vector<double> covariance;                    ///< of the values (SI), row by row, statistical
+  std::vector<double> cycle_squares;                 ///< held-out sum of squares of each cycle
+  std::vector<double> cycle_counts;                  ///< residuals of each cycle
   std::vector<std::vector<double>> fold_parameters;  ///< values (SI) fitted with each fold held out
   std::vector<std::string> messages;
 
@@ -95,21 +97,21 @@ struct Fit {
 /// Fits a model to the observations of a trace.
 ///
 /// Statistical errors come from the cycles: the influence of each cycle on each parameter (jackknife, one Newton step)
-/// is a series in time whose mean_error() is the standard error. So neither coloured noise nor a break-away level that wanders
-/// breaks them. Errors on held-out cycles come from refits that leave out contiguous blocks of cycles.
-/// `motion` serves the error figures on every sample. Cost: linear in samples.
+/// is a series in time whose mean_error() is the standard error. So neither coloured noise nor a break-away level that
+/// wanders breaks them. Errors on held-out cycles come from refits that leave out contiguous blocks of cycles. `motion`
+/// serves the error figures on every sample. Cost: linear in samples.
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
-/// Sensor noise and break-away scatter. Noise is taken about a smooth ramp in stick (or about local fits in slip where nothing sticks),
-/// from the spread itself and not from differences, so that coloured noise is not underestimated.
+/// Sensor noise and break-away scatter. Noise is taken about a smooth ramp in stick (or about local fits in slip where
+/// nothing sticks), from the spread itself and not from differences, so that coloured noise is not underestimated.
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 
 /// Which of two fits predicts held-out cycles better.
 struct Comparison {
-  double difference = 0;     ///< mean over cycles of the squared error of `first` minus that of `second`
+  double difference = 0;  ///< mean over cycles of the squared error of `first` minus that of `second`
   double std_error = 0;
-  double p_value = 1;        ///< two-sided
+  double p_value = 1;  ///< two-sided
   bool first_better = false;
 };
 Comparison compare_held_out(const Fit& first, const Fit& second);

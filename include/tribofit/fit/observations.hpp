@@ -18,17 +18,18 @@ namespace tribofit {
 /// residual per cycle (in rigid stick mu is set by the spring, not by the law). The unit of evidence is the cycle, or a
 /// stretch of equal length where nothing sticks.
 ///
-/// Samples may be means over `samples_per_value` neighbours. Each carries the variance of v_r within it, so that the bare
-/// laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move by less than 1e-5.
+/// Samples may be means over `samples_per_value` neighbours. Each carries the variance of v_r within it, so that the
+/// bare laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move
+/// by less than 1e-5.
 struct Observations {
   struct Range {
     std::size_t begin = 0, end = 0;  ///< values of this slip
     Span samples;                    ///< the same in samples of the Motion
     std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
     bool from_stick = false;
-    double break_away_time = 0;      ///< [s]
-    double stick_time = 0;           ///< [s], NaN when not recorded
-    double stick_slope = 0;          ///< d mu/dt in the stick before [1/s]
+    double break_away_time = 0;  ///< [s]
+    double stick_time = 0;       ///< [s], NaN when not recorded
+    double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
     double direction = 1;
     double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
     double break_away_std_error = 0;
@@ -42,12 +43,12 @@ struct Observations {
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<Range> slips;
-  std::size_t cycles = 0;             ///< units of evidence
+  std::size_t cycles = 0;  ///< units of evidence
   std::size_t samples_per_value = 1;
-  double mean_load = 1;               ///< N0 [N]
-  double mean_temperature = 0;        ///< T0 [degC]
-  double fastest = 0;                 ///< largest |v_r| [m/s]
-  double largest_friction = 0;        ///< largest |mu|, the scale for bounds where friction is a force
+  double mean_load = 1;         ///< N0 [N]
+  double mean_temperature = 0;  ///< T0 [degC]
+  double fastest = 0;           ///< largest |v_r| [m/s]
+  double largest_friction = 0;  ///< largest |mu|, the scale for bounds where friction is a force
 
   std::size_t size() const { return time.size(); }
   /// A slip as the friction room sees it.

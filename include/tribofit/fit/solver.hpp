@@ -23,8 +23,8 @@ struct SolverOptions {
   double relative_step = 1e-12;  ///< stop when a step changes p by less than this part
   double relative_cost = 1e-15;  ///< stop when a step lowers the cost by less than this part
   double trust_radius = 1e4;     ///< of the first step
-  /// Take the last digits by plain Gauss-Newton steps, which the rounding of the cost does not stop, and start again with short
-  /// steps where a parameter ran away. Costs a few more evaluations.
+  /// Take the last digits by plain Gauss-Newton steps, which the rounding of the cost does not stop, and start again
+  /// with short steps where a parameter ran away. Costs a few more evaluations.
   bool careful = true;
 };
 
@@ -42,8 +42,9 @@ SolverResult minimize(const Residuals& problem, std::span<const double> start, s
                       std::span<const double> upper = {}, const SolverOptions& options = {});
 
 /// Covariance of the parameters if the residuals were independent with one variance: s^2 (J'J)^-1 at p, row by row,
-/// s^2 the residual sum of squares over the degrees of freedom. Samples of a trace are not independent: fits of traces take their
-/// errors from cycles instead (fit.hpp). Directions the data do not determine get what rounding leaves, not an error.
+/// s^2 the residual sum of squares over the degrees of freedom. Samples of a trace are not independent: fits of traces
+/// take their errors from cycles instead (fit.hpp). Directions the data do not determine get what rounding leaves, not
+/// an error.
 std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p);
 
 }  // namespace tribofit

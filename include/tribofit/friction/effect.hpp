@@ -25,7 +25,8 @@ namespace tribofit {
 ///   T    steady(p, const Instant<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
 ///   Relaxation<T> relaxation(p, const Instant<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
 ///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
-///        (phi starts at mu_s at break-away; where the memory acts in stick, at the friction measured a little before it)
+///        (phi starts at mu_s at break-away; where the memory acts in stick, at the friction measured a little before
+///        it)
 ///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick
 ///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
 ///   void sense(p, const Slip&, std::span<T> mu)           what the sensor reads of it, a whole slip at a time

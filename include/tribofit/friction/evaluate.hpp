@@ -14,25 +14,41 @@ namespace tribofit {
 namespace hooks {
 
 template <class E, class T>
-concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T>& l) { e.adjust(p, s, l); };
+concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T>& l) {
+  e.adjust(p, s, l);
+};
 template <class E, class T>
-concept Reduces = requires(const E e, const T* p, const T& x) { e.reduce(p, x); };
+concept Reduces = requires(const E e, const T* p, const T& x) {
+  e.reduce(p, x);
+};
 template <class E, class T>
-concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.steady(p, x, mu); };
+concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+  e.steady(p, x, mu);
+};
 template <class E, class T>
-concept Remembers = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.relaxation(p, x, mu); };
+concept Remembers = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+  e.relaxation(p, x, mu);
+};
 template <class E, class T>
-concept Outputs = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.output(p, x, mu, mu); };
+concept Outputs = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+  e.output(p, x, mu, mu);
+};
 template <class E, class T>
-concept Modulates = requires(const E e, const T* p, const Instant<T>& x, const T& mu) { e.modulate(p, x, mu); };
+concept Modulates = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+  e.modulate(p, x, mu);
+};
 template <class E, class T>
 concept ModulatesAll = requires(const E e, const T* p, const Slip& s, std::span<const T> v, std::span<T> mu) {
   e.modulate_all(p, s, v, mu);
 };
 template <class E, class T>
-concept Senses = requires(const E e, const T* p, const Slip& s, std::span<T> mu) { e.sense(p, s, mu); };
+concept Senses = requires(const E e, const T* p, const Slip& s, std::span<T> mu) {
+  e.sense(p, s, mu);
+};
 template <class E>
-concept ActsInStick = requires { requires E::acts_in_stick; };
+concept ActsInStick = requires {
+  requires E::acts_in_stick;
+};
 
 }  // namespace hooks
 
@@ -44,8 +60,8 @@ void for_each_effect(const FrictionModel& model, const T* p, Visitor&& visit) {
   }
 }
 
-/// Levels of the base law for one slip, after every effect that adjusts them. `mu_s` is what the model says friction reaches at
-/// break-away.
+/// Levels of the base law for one slip, after every effect that adjusts them. `mu_s` is what the model says friction
+/// reaches at break-away.
 template <class T>
 LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& slip) {
   LawParameters<T> law = model.base(p);
@@ -74,9 +90,9 @@ namespace detail {
 
 /// Carries one memory through a slip, in place: steady[i] becomes the friction after the memory.
 ///
-/// Over each interval the exponent A (the mean rate times the interval) and a target linear in A give the exact solution
-/// phi+ = e phi + (1-e) g0 + (1 - (1-e)/A) (g1 - g0), e = exp(-A).
-/// steady_at(instant): friction before any memory, for samples of the lead.
+/// Over each interval the exponent A (the mean rate times the interval) and a target linear in A give the exact
+/// solution phi+ = e phi + (1-e) g0 + (1 - (1-e)/A) (g1 - g0), e = exp(-A). steady_at(instant): friction before any
+/// memory, for samples of the lead.
 template <class E, class T, class Steady>
 void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, const Steady& steady_at,
               std::span<const T> velocity, std::span<T> steady) {
@@ -162,8 +178,8 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
 template <class T>
 T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
   Slip first = slip;
-  for (auto* channel : {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.load,
-                        &first.temperature}) {
+  for (auto* channel :
+       {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.load, &first.temperature}) {
     if (!channel->empty()) *channel = channel->first(1);
   }
   first.time = {&slip.break_away_time, 1};

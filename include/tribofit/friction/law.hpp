@@ -32,22 +32,28 @@ template <class T>
 T stribeck_shape(BaseLaw law, const T& x) {
   using std::exp;
   switch (law) {
-    case BaseLaw::exponential: return exp(-x);
-    case BaseLaw::fractional: return 1.0 / (1.0 + x);
-    case BaseLaw::coulomb: break;
+    case BaseLaw::exponential:
+      return exp(-x);
+    case BaseLaw::fractional:
+      return 1.0 / (1.0 + x);
+    case BaseLaw::coulomb:
+      break;
   }
   return T(0.0);
 }
 
-/// Mean of stribeck_shape over speeds spread about x with a small variance s2 of the reduced speed: shape + s2 shape''/2.
-/// For samples that are means over a few neighbours; the next term is of fourth order in the spread.
+/// Mean of stribeck_shape over speeds spread about x with a small variance s2 of the reduced speed: shape + s2
+/// shape''/2. For samples that are means over a few neighbours; the next term is of fourth order in the spread.
 template <class T>
 T stribeck_shape_mean(BaseLaw law, const T& x, const T& s2) {
   const T shape = stribeck_shape(law, x);
   switch (law) {
-    case BaseLaw::exponential: return shape * (1.0 + 0.5 * s2);
-    case BaseLaw::fractional: return shape * (1.0 + s2 * shape * shape);
-    case BaseLaw::coulomb: break;
+    case BaseLaw::exponential:
+      return shape * (1.0 + 0.5 * s2);
+    case BaseLaw::fractional:
+      return shape * (1.0 + s2 * shape * shape);
+    case BaseLaw::coulomb:
+      break;
   }
   return shape;
 }

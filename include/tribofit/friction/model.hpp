@@ -13,7 +13,8 @@ namespace tribofit {
 
 /// A base law with any set of effects: the thing that is simulated, fitted and judged.
 ///
-/// Its parameters are one flat array in SI: mu_s, mu_k, alpha or beta (none for coulomb), then those of each effect in order.
+/// Its parameters are one flat array in SI: mu_s, mu_k, alpha or beta (none for coulomb), then those of each effect in
+/// order.
 class FrictionModel {
  public:
   /// Throws InputError when two effects are the same.

@@ -20,38 +20,40 @@ double scalar_part(const T& x) {
 /// One instant as a friction law may see it. SI.
 template <class T>
 struct Instant {
-  T velocity;               ///< v_r [m/s], signed
-  double direction = 1;     ///< of sliding: the sign of v_r, also at rest
-  double acceleration = 0;  ///< of the block [m/s^2]
-  double time = 0;          ///< from the trace's first sample [s]
-  double angle = 0;         ///< of the disc [rad]
-  double distance = 0;      ///< slid since the trace's first sample [m]
-  double stick_time = 0;    ///< of the stick before this slip [s]
-  double load = 0;          ///< normal force [N]
-  double mean_load = 1;     ///< N0 [N]
-  double temperature = 0;   ///< [degC]
+  T velocity;                   ///< v_r [m/s], signed
+  double direction = 1;         ///< of sliding: the sign of v_r, also at rest
+  double acceleration = 0;      ///< of the block [m/s^2]
+  double time = 0;              ///< from the trace's first sample [s]
+  double angle = 0;             ///< of the disc [rad]
+  double distance = 0;          ///< slid since the trace's first sample [m]
+  double stick_time = 0;        ///< of the stick before this slip [s]
+  double load = 0;              ///< normal force [N]
+  double mean_load = 1;         ///< N0 [N]
+  double temperature = 0;       ///< [degC]
   double mean_temperature = 0;  ///< T0 [degC]
 };
 
 /// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
 struct Slip {
   std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
-  std::span<const double> velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
-  /// Samples of the stick just before break-away, for effects that act there, and friction (signed) at the first of them.
+  std::span<const double>
+      velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
+  /// Samples of the stick just before break-away, for effects that act there, and friction (signed) at the first of
+  /// them.
   std::span<const double> lead_time, lead_velocity;
   double lead_friction = 0;
-  bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
-  double break_away_time = 0;  ///< [s], where from_stick
-  double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded
-  double stick_slope = 0;      ///< d mu/dt imposed by the spring before break-away [1/s]
-  double direction = 1;        ///< sign of v_r
-  double mean_load = 1;        ///< N0 [N]
-  double mean_temperature = 0; ///< T0 [degC]
+  bool from_stick = false;      ///< it begins with a break-away; otherwise the record (or a reversal) begins it
+  double break_away_time = 0;   ///< [s], where from_stick
+  double stick_time = 0;        ///< of the stick before [s]; NaN when its beginning was not recorded
+  double stick_slope = 0;       ///< d mu/dt imposed by the spring before break-away [1/s]
+  double direction = 1;         ///< sign of v_r
+  double mean_load = 1;         ///< N0 [N]
+  double mean_temperature = 0;  ///< T0 [degC]
 
   std::size_t size() const { return time.size(); }
 
-  /// Speed |v_r| of a sample. Sensor noise near rest can turn the reading round although the slip has one direction; such a
-  /// sample is at rest.
+  /// Speed |v_r| of a sample. Sensor noise near rest can turn the reading round although the slip has one direction;
+  /// such a sample is at rest.
   template <class T>
   T speed(const T& v) const {
     const T forward = direction * v;

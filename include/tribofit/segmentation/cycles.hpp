@@ -33,11 +33,11 @@ struct Cycle {
   double break_away_friction =
       0;  ///< friction at break_away_time, from a line through the stick before it (times direction) [1 or N]
   double break_away_friction_std_error = 0;
-  double stick_slope = 0;       ///< d friction/dt of that line [1/s or N/s]
-  double stick_maximum = 0;     ///< largest sample in stick: static friction of [D] 3.2
-  double slip_minimum = 0;      ///< smallest sample in slip: kinetic friction of [D] 3.2
-  double peak_velocity = 0;     ///< largest |v_r| in the slip [m/s]
-  double plateau_velocity = 0;  ///< mean of v_r in the stick [m/s]
+  double stick_slope = 0;        ///< d friction/dt of that line [1/s or N/s]
+  double stick_maximum = 0;      ///< largest sample in stick: static friction of [D] 3.2
+  double slip_minimum = 0;       ///< smallest sample in slip: kinetic friction of [D] 3.2
+  double peak_velocity = 0;      ///< largest |v_r| in the slip [m/s]
+  double plateau_velocity = 0;   ///< mean of v_r in the stick [m/s]
   double branch_difference = 0;  ///< see Segmentation::branch_difference [1 or N]
 };
 
@@ -61,9 +61,9 @@ struct Segmentation {
   double slip_threshold = 0;   ///< |v_r| above which slip begins [m/s]
   double stick_threshold = 0;  ///< |v_r| below which stick begins [m/s]
 
-  Measure frequency;               ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
-  Measure amplitude;               ///< of v_r: peak |v_r| over cycles [m/s]
-  Measure stick_time, slip_time;   ///< [s]
+  Measure frequency;              ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
+  Measure amplitude;              ///< of v_r: peak |v_r| over cycles [m/s]
+  Measure stick_time, slip_time;  ///< [s]
   /// Friction while speeding up less friction while slowing down, at the same speeds between a quarter and three
   /// quarters of the peak [1 or N]: zero for a law of speed alone.
   Measure branch_difference;

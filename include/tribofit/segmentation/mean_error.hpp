@@ -16,9 +16,10 @@ struct MeanError {
 /// The long-run variance is taken from the lowest cosine frequencies (equal-weighted cosine estimator with
 /// nu = 0.4 n^(2/3), E. Lazarus, D. J. Lewis, J. H. Stock, M. W. Watson, J. Bus. Econ. Stat. 36 (2018) 541,
 /// doi:10.1080/07350015.2018.1506926) after prewhitening by a first-order autoregression (D. W. K. Andrews,
-/// J. C. Monahan, Econometrica 60 (1992) 953, doi:10.2307/2951574), whose coefficient is corrected for its small-sample bias
-/// (M. G. Kendall, Biometrika 41 (1954) 403) and taken as zero when negative. The mean over std_error follows t with nu degrees of freedom.
-/// series: deviations or values, one per cycle, in order of time; at least 3, otherwise the error is NaN.
+/// J. C. Monahan, Econometrica 60 (1992) 953, doi:10.2307/2951574), whose coefficient is corrected for its small-sample
+/// bias (M. G. Kendall, Biometrika 41 (1954) 403) and taken as zero when negative. The mean over std_error follows t
+/// with nu degrees of freedom. series: deviations or values, one per cycle, in order of time; at least 3, otherwise the
+/// error is NaN.
 MeanError mean_error(std::span<const double> series);
 
 /// Half-width factor of a two-sided 95 % interval: the 0.975 quantile of t.

@@ -6,18 +6,20 @@ namespace tribofit {
 
 /// The LuGre model: contacts bend like bristles before and while they slide.
 ///
-/// With F = sigma0 z the model reads dF/dt = (sigma0 |v|/f)(f sign(v) - F): friction relaxes towards its steady value over the
-/// distance f/sigma0, and moves elastically while F is small. It acts in stick too: the block creeps there.
+/// With F = sigma0 z the model reads dF/dt = (sigma0 |v|/f)(f sign(v) - F): friction relaxes towards its steady value
+/// over the distance f/sigma0, and moves elastically while F is small. It acts in stick too: the block creeps there.
 struct Bristle {
   static constexpr bool acts_in_stick = true;
 
   static EffectInfo info() {
     return {.key = "bristle",
-            .statement = "the contacts bend like bristles before they slide, so the block creeps in stick and "
-                         "friction is rounded at break-away",
+            .statement =
+                "the contacts bend like bristles before they slide, so the block creeps in stick and "
+                "friction is rounded at break-away",
             .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
-            .source = "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
-                      "(1995) 419, doi:10.1109/9.376053",
+            .source =
+                "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
+                "(1995) 419, doi:10.1109/9.376053",
             .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
             .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0.0}},
             .needs = {.lead = true}};

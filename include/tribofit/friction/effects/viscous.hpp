@@ -10,8 +10,9 @@ struct Viscous {
     return {.key = "viscous",
             .statement = "a fluid or soft layer in the contact adds friction in proportion to the sliding speed",
             .equation = "mu = f(v) + sigma v",
-            .source = "R. Stribeck, Z. VDI 46 (1902) 1341; B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "
-                      "Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7",
+            .source =
+                "R. Stribeck, Z. VDI 46 (1902) 1341; B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "
+                "Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7",
             .experiment = "run four times the disc speed: the excess keeps growing in a straight line",
             .parameters = {{"sigma", "s/mm", 1e3, -0.0005, 0.002, 0.0}}};
   }
