@@ -11,6 +11,7 @@ using namespace tribofit;
 
 void add_effects(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("effects", "List the effects that can be added to a law, or explain one");
+  verb->footer("Example:\n  identify effects rate-state");
   const auto key = std::make_shared<std::string>();
   verb->add_option("KEY", *key, "Effect to explain");
   verb->callback([key, &status] {

@@ -1,3 +1,4 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,26 +91,38 @@ std::vector<Candidate> coincidences(const std::vector<double>& a, const std::vec
   return best;
 }
 
-/// How far friction is from being a function of the velocity in slip, at a given offset.
-class Scatter {
+/// How far friction is from balancing the motion at a given offset: m a + c v + k x = N mu holds for any law of friction, in
+/// stick and in slip, so friction is a linear function of the block's displacement, velocity and acceleration when the clocks
+/// agree, and is not when they do not.
+class ForceBalance {
  public:
-  Scatter(const std::vector<double>& friction_time, const std::vector<double>& friction,
-          const std::vector<double>& velocity_time, const std::vector<double>& velocity, const Plateau& plateau)
-      : friction_time_(friction_time),
-        friction_(friction),
-        velocity_time_(velocity_time),
-        velocity_(velocity),
-        plateau_(plateau) {}
+  ForceBalance(const std::vector<double>& friction_time, const std::vector<double>& friction,
+               const std::vector<double>& velocity_time, const std::vector<double>& velocity)
+      : friction_time_(friction_time), friction_(friction), velocity_time_(velocity_time) {
+    const std::size_t n = velocity.size();
+    double mean = 0;
+    for (const double v : velocity) mean += v / static_cast<double>(n);
+    motion_.resize(n);
+    double x = 0;
+    // The acceleration over a millisecond on either side: noise averages out, the jump at re-stick stays sharp enough.
+    const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(1e-3 / typical_interval(velocity_time)));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i > 0) x += ((velocity[i] + velocity[i - 1]) / 2 - mean) * (velocity_time[i] - velocity_time[i - 1]);
+      const std::size_t before = i - std::min(i, half), after = std::min(n - 1, i + half);
+      const double a = (velocity[after] - velocity[before]) / (velocity_time[after] - velocity_time[before]);
+      motion_[i] = {x, velocity[i] - mean, a};
+    }
+  }
 
-  /// Variance of friction within bins of velocity over that in all of them, for friction samples [begin, end).
+  /// Part of the variance of friction that the motion does not balance, for friction samples [begin, end).
   double operator()(double offset, std::size_t begin, std::size_t end, std::size_t stride) const {
-    struct Sum {
-      double n = 0, sum = 0, squares = 0;
-      double variance() const { return n > 0 ? squares - sum * sum / n : 0; }
-    };
-    std::array<Sum, 60> bins{};
-    Sum all;
+    // Regressors: a constant, a drift of the integral, x, v, a; scaled so that the normal equations are well conditioned.
+    constexpr int count = 5;
+    Eigen::Matrix<double, count, count> normal = Eigen::Matrix<double, count, count>::Zero();
+    Eigen::Matrix<double, count, 1> right = Eigen::Matrix<double, count, 1>::Zero();
+    double squares = 0, sum = 0, samples = 0;
     std::size_t k = 0;
+    const double first = friction_time_[begin], span = friction_time_[end - 1] - first;
     for (std::size_t i = begin; i < end; i += stride) {
       const double t = friction_time_[i] - offset;
       if (t < velocity_time_.front() || t >= velocity_time_.back()) continue;
@@ -119,22 +132,25 @@ class Scatter {
             1;
       while (velocity_time_[k + 1] <= t) ++k;
       const double part = (t - velocity_time_[k]) / (velocity_time_[k + 1] - velocity_time_[k]);
-      const double away =
-          (velocity_[k] + part * (velocity_[k + 1] - velocity_[k]) - plateau_.velocity) / plateau_.reach;
-      if (std::abs(away) < 0.08) continue;  // stick, where friction is not a function of velocity
-      const double bin = std::clamp((away + 1) * 30, 0.0, 59.0);
-      for (Sum* sum : {&bins[static_cast<std::size_t>(bin)], &all}) {
-        sum->n += 1;
-        sum->sum += friction_[i];
-        sum->squares += friction_[i] * friction_[i];
-      }
+      const Eigen::Vector3d motion = (1 - part) * motion_[k] + part * motion_[k + 1];
+      Eigen::Matrix<double, count, 1> row;
+      row << 1, (friction_time_[i] - first) / span, motion;
+      normal.noalias() += row * row.transpose();
+      right += friction_[i] * row;
+      squares += friction_[i] * friction_[i];
+      sum += friction_[i];
+      samples += 1;
     }
-    double within = 0;
-    for (const Sum& bin : bins) within += bin.variance();
-    return all.n > 10 && all.variance() > 0 ? within / all.variance() : 1;
+    const double variance = squares - sum * sum / samples;
+    if (samples < 20 || !(variance > 0)) return 1;
+    const Eigen::Matrix<double, count, 1> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::Matrix<double, count, count> scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+    const Eigen::Matrix<double, count, 1> solution = scaled.ldlt().solve(scale.asDiagonal() * right);
+    const double balanced = solution.dot(scale.asDiagonal() * right);
+    return std::clamp((squares - balanced) / variance, 0.0, 1.0);
   }
 
-  /// The offset of least scatter within `reach` of `start`.
+  /// The offset that leaves least within `reach` of `start`.
   double minimise(double start, double reach, std::size_t begin, std::size_t end, std::size_t stride,
                   double tolerance) const {
     const auto cost = [&](double offset) { return (*this)(offset, begin, end, stride); };
@@ -171,8 +187,8 @@ class Scatter {
   }
 
  private:
-  const std::vector<double>&friction_time_, &friction_, &velocity_time_, &velocity_;
-  Plateau plateau_;
+  const std::vector<double>&friction_time_, &friction_, &velocity_time_;
+  std::vector<Eigen::Vector3d> motion_;  ///< displacement from its mean, velocity from its mean, acceleration
 };
 
 }  // namespace
@@ -194,15 +210,17 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
 
   const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
   const double period = std::min(median_interval(falls), median_interval(jumps));
-  const auto candidates = coincidences(falls, jumps, std::max(3 * interval, 0.05 * period), 0.3 * period);
-  const Scatter scatter(friction_time, friction, velocity_time, velocity, plateau);
+  auto candidates = coincidences(falls, jumps, std::max(3 * interval, 0.05 * period), 0.3 * period);
+  const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
+  // Instruments started by one trigger share their clock.
+  if (!candidates.empty()) candidates.push_back({0, candidates.front().support});
   const std::size_t n = friction.size(), coarse = std::max<std::size_t>(1, n / 40000);
   const double reach = std::max(4 * interval, 0.12 * period);
   double best = 0, least = std::numeric_limits<double>::infinity(), second = least;
   std::size_t support = 0;
   for (const Candidate& candidate : candidates) {
-    const double offset = scatter.minimise(candidate.offset, reach, 0, n, coarse, interval / 4);
-    const double cost = scatter(offset, 0, n, coarse) / static_cast<double>(candidate.support);
+    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, interval / 4);
+    const double cost = unbalanced(offset, 0, n, coarse) / static_cast<double>(candidate.support);
     second = std::min(second, std::max(least, cost));
     if (cost < least) {
       least = cost;
@@ -214,13 +232,13 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
   result.events = support;
   result.ambiguity = candidates.size() > 1 ? least / second : 0;
   const std::size_t fine = std::max<std::size_t>(1, n / 400000);
-  result.offset = scatter.minimise(best, 4 * interval, 0, n, fine, interval / 50);
+  result.offset = unbalanced.minimise(best, 4 * interval, 0, n, fine, interval / 50);
   // The same from contiguous parts: their spread is what wanders from cycle to cycle.
   constexpr std::size_t parts = 6;
   double squares = 0;
   for (std::size_t i = 0; i < parts; ++i) {
     const double part =
-        scatter.minimise(result.offset, 8 * interval, i * n / parts, (i + 1) * n / parts, fine, interval / 20);
+        unbalanced.minimise(result.offset, 8 * interval, i * n / parts, (i + 1) * n / parts, fine, interval / 20);
     squares += (part - result.offset) * (part - result.offset);
   }
   result.uncertainty = std::sqrt(squares / (parts * (parts - 1.0)));

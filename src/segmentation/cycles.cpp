@@ -172,7 +172,8 @@ double rms_block_velocity(const Motion& motion) {
 void summarise(Segmentation& result) {
   std::vector<double> peaks, sticks, slips, periods, branches;
   for (const Cycle& c : result.cycles) {
-    if (c.slip_complete) peaks.push_back(c.peak_velocity);
+    // A slip that the record or a reversal begins may have had its peak before.
+    if (c.slip_complete && c.stick.size() > 0) peaks.push_back(c.peak_velocity);
     sticks.push_back(c.stick_time);
     slips.push_back(c.slip_time);
     periods.push_back(c.period);

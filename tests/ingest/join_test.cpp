@@ -6,6 +6,8 @@
 #include <random>
 
 #include "temp_files.hpp"
+#include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/simulate.hpp"
 
 namespace tribofit {
 namespace {
@@ -13,29 +15,31 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// Relaxation oscillation with a known law: mu = 0.35 + 0.15 exp(-v_r / 15 mm/s) in slip, a ramp to it in stick.
-/// Cycles differ in length by a few per cent, as real ones do.
+/// Stick-slip of the 15 mm test of [D], simulated; cycles differ in length as their break-away level scatters.
 struct StickSlip {
-  std::vector<double> starts, sticks;  // of the cycles, and how long each sticks [s]
-  static constexpr double slip = 0.06, disc = 6.0;
+  SimulatedMotion motion;
 
   explicit StickSlip(double duration) {
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> scatter(0, 0.012);
-    for (double t = 0; t < duration;) {
-      starts.push_back(t);
-      sticks.push_back(0.22 + scatter(random));
-      t += sticks.back() + slip;
-    }
+    const PublishedTest test = published_test(0.015, BaseLaw::exponential);
+    const std::vector<double> p = {test.friction.mu_s, test.friction.mu_k, test.friction.decay};
+    Drive drive;
+    drive.speed = constant_speed(test.speed);
+    drive.radius = test.radius;
+    drive.mean_load = test.load;
+    SimulationOptions options;
+    options.duration = duration;
+    options.settle = settling_time(test.rig, drive, p);
+    options.scatter = {0.01, 0};
+    options.seed = 5;
+    motion = simulate(test.rig, drive, FrictionModel(BaseLaw::exponential), p, options);
   }
   /// mu and v_b [mm/s] at time t
   std::pair<double, double> at(double t) const {
-    const auto k = static_cast<std::size_t>(std::upper_bound(starts.begin(), starts.end(), t) - starts.begin()) - 1;
-    const double in_cycle = t - starts[k];
-    if (in_cycle < sticks[k]) return {0.37 + 0.13 * in_cycle / sticks[k], disc};
-    const double phase = (in_cycle - sticks[k]) / slip;
-    const double v_r = 60 * std::pow(std::sin(std::min(phase, 1.0) * 3.14159265), 2);
-    return {0.35 + 0.15 * std::exp(-v_r / 15), disc - v_r};
+    const double place = t * motion.rate;
+    const auto i = std::min(static_cast<std::size_t>(place), motion.size() - 2);
+    const double part = place - static_cast<double>(i);
+    const auto between = [&](const std::vector<double>& x) { return x[i] + part * (x[i + 1] - x[i]); };
+    return {between(motion.friction), 1e3 * between(motion.velocity)};
   }
 };
 
