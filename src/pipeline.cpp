@@ -1,7 +1,10 @@
 #include "tribofit/pipeline.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "tribofit/fit/parallel.hpp"
@@ -31,6 +34,28 @@ std::size_t best_of(const std::vector<Fit>& fits) {
     if (fits[best].parameters.empty() || fits[k].error.held_out_rmse < fits[best].error.held_out_rmse) best = k;
   }
   return best;
+}
+
+/// One floor a trace, that of the best fit: the floor is a property of the data.
+void share_floor(std::vector<Fit>& fits, std::size_t best) {
+  const Floor floor = fits[best].floor;
+  for (Fit& fit : fits) {
+    if (!fit.parameters.empty()) set_floor(floor, fit);
+  }
+}
+
+/// Where the instruments file contradicts what was used.
+void compare_declared(const Motion& motion, const Instruments& instruments, std::vector<std::string>& warnings) {
+  const auto compare = [&](const Condition& used, const std::optional<Declared>& declared, const char* name) {
+    if (!declared || !used.known() || used.source == "instruments file") return;
+    const double allowed = std::max(1e-6 * std::abs(declared->value), 2 * declared->uncertainty);
+    if (std::abs(used.value - declared->value) <= allowed) return;
+    warnings.push_back(fmt::format("the {} from the {} ({:.4g} in SI units) is used, not that of the instruments file ({:.4g})",
+                                   name, used.source, used.value, declared->value));
+  };
+  compare(motion.conditions.radius, instruments.rig.radius, "radius");
+  compare(motion.conditions.speed, instruments.rig.speed, "disc speed");
+  compare(motion.conditions.load, instruments.rig.load, "load");
 }
 
 /// What the instruments file says of the conditions, where neither the user nor the manifest said it.
@@ -95,6 +120,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 
+  compare_declared(out.motion, options.instruments, out.warnings);
   require_channels(options, out.motion, out.warnings, out.analysed);
   for (const std::string& obstacle : obstacles(out.motion, out.segmentation)) {
     out.warnings.push_back(obstacle);
@@ -118,6 +144,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
         fit_model(fits[k].first, out.motion, out.segmentation, observations, options.instruments, fits[k].second);
   });
   out.best = best_of(out.fits);
+  share_floor(out.fits, out.best);
   return out;
 }
 

@@ -35,16 +35,17 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   curve.velocity.assign(velocity.begin(), velocity.end());
   const std::vector<double> p = fit.values();
   const std::size_t n = p.size();
+  // Two samples of a slip at constant speed that begins in steady state.
   const auto steady = [&](const std::vector<double>& q, double v) {
+    const double time[] = {0, 1}, speed[] = {v, v};
+    double mu[2];
     Slip slip;
-    const LawParameters<double> law = law_for(fit.model, q.data(), slip);
-    Instant<double> at{};
-    at.velocity = v;
-    return steady_friction(fit.model, q.data(), law, at);
+    slip.time = time;
+    slip.velocity = speed;
+    evaluate<double>(fit.model, q.data(), slip, slip.velocity, mu);
+    return mu[1];
   };
-  const double t = fit.parameters.empty() || !(fit.parameters[0].std_error > 0)
-                       ? 1.96
-                       : (fit.parameters[0].upper95 - fit.parameters[0].value) / fit.parameters[0].std_error;
+  const double t = t_quantile_95(fit.degrees_of_freedom);
   for (const double v : velocity) {
     const double mu = steady(p, v);
     std::vector<double> slope(n);

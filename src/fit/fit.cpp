@@ -1,6 +1,7 @@
 #include "tribofit/fit/fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -10,6 +11,7 @@
 #include "messages.hpp"
 #include "model_residuals.hpp"
 #include "profile.hpp"
+#include "published.hpp"
 #include "starts.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
@@ -67,31 +69,6 @@ struct Job {
   }
 };
 
-/// Mean of the per-cycle extremes and the influence of each cycle on it (scaled as influence() scales).
-struct ExtremeMean {
-  double value = 0;
-  Eigen::VectorXd influence;
-};
-
-ExtremeMean mean_extreme(const Observations& observations, const Segmentation& segmentation, bool static_friction) {
-  ExtremeMean out;
-  const auto cycles = static_cast<Eigen::Index>(observations.cycles);
-  out.influence = Eigen::VectorXd::Zero(cycles);
-  std::vector<std::pair<Eigen::Index, double>> values;
-  for (const auto& slip : observations.slips) {
-    for (const Cycle& cycle : segmentation.cycles) {
-      if (cycle.slip.begin != slip.samples.begin || cycle.stick.size() == 0 || !cycle.slip_complete) continue;
-      const double value = static_friction ? cycle.stick_maximum : cycle.slip_minimum;
-      if (std::isfinite(value)) values.emplace_back(static_cast<Eigen::Index>(slip.cycle), std::abs(value));
-    }
-  }
-  for (const auto& [cycle, value] : values) out.value += value / static_cast<double>(values.size());
-  const double scale = static_cast<double>(cycles) / static_cast<double>(std::max<std::size_t>(1, values.size()));
-  for (const auto& [cycle, value] : values) out.influence(cycle) = scale * (value - out.value);
-  if (values.size() < kFewestCycles) out.value = kNaN;
-  return out;
-}
-
 /// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the
 /// scatter of break-away, then with that scatter taken out.
 SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
@@ -123,39 +100,25 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
-SolverResult published_estimate(Job& job, std::vector<double>& start, std::vector<ExtremeMean>& extremes) {
-  extremes = {mean_extreme(job.observations, job.segmentation, true),
-              mean_extreme(job.observations, job.segmentation, false)};
+SolverResult published_estimate(Job& job, const Extremes& extremes, std::vector<double>& start) {
   start = start_from_data(job.model, job.observations, job.bounds);
+  const std::array<double, 2> levels = extremes.means();
   SolverResult failed;
   failed.p = start;
   failed.message = "the published protocol needs at least three cycles that stick and slip";
   for (std::size_t k = 0; k < 2; ++k) {
-    if (!std::isfinite(extremes[k].value)) return failed;
-    start[k] = job.bounds.lower[k] = job.bounds.upper[k] = extremes[k].value;
+    if (!std::isfinite(levels[k])) return failed;
+    start[k] = job.bounds.lower[k] = job.bounds.upper[k] = levels[k];
   }
   return job.solve(all_slips(job.observations), start, SolverOptions());
-}
-
-/// Influence of each cycle under the published protocol: the decay factor follows the two levels it was given.
-Eigen::MatrixXd published_influence(const NormalEquations& equations, const std::vector<bool>& free,
-                                    const std::vector<ExtremeMean>& extremes) {
-  Eigen::MatrixXd out = influence(equations, free);
-  for (Eigen::Index k = 0; k < 2; ++k) out.col(k) = extremes[static_cast<std::size_t>(k)].influence;
-  for (Eigen::Index d = 2; d < out.cols(); ++d) {
-    if (!(equations.total(d, d) > 0)) continue;
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      out.col(d) -= equations.total(d, k) / equations.total(d, d) * extremes[static_cast<std::size_t>(k)].influence;
-    }
-  }
-  return out;
 }
 
 /// Error on cycles that took no part: contiguous blocks of cycles are left out in turn and the rest fitted, by one
 /// Gauss-Newton step from the fit of all. The step is short (a fraction of a standard error), so it ends where a refit
 /// would.
+/// Levels from extremes are those of the cycles kept.
 void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
-              const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
+              const std::vector<bool>& free, const SampleErrors& errors, const Extremes* extremes, Fit& fit) {
   const std::size_t folds = fold_count(job.observations, job.options);
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
@@ -170,10 +133,22 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
         gradient += equations.gradient[c];
       }
     }
-    const Eigen::VectorXd step = -inverse_over(curvature, free) * gradient;
     std::vector<double>& q = fit.fold_parameters[fold];
+    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());
+    if (extremes != nullptr) {
+      std::vector<bool> left_out(job.observations.cycles);
+      for (std::size_t c = 0; c < left_out.size(); ++c) {
+        left_out[c] = fold_of_cycle(c, job.observations.cycles, folds) == fold;
+      }
+      const std::array<double, 2> kept = extremes->means(left_out);
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (std::isfinite(kept[k])) levels(static_cast<Eigen::Index>(k)) = kept[k] - p[k];
+      }
+    }
+    const Eigen::VectorXd step = levels - inverse_over(curvature, free) * (gradient + curvature * levels);
     for (std::size_t k = 0; k < q.size(); ++k) {
-      q[k] = std::clamp(q[k] + step(static_cast<Eigen::Index>(k)), job.bounds.lower[k], job.bounds.upper[k]);
+      q[k] += step(static_cast<Eigen::Index>(k));
+      if (free[k]) q[k] = std::clamp(q[k], job.bounds.lower[k], job.bounds.upper[k]);
     }
     std::vector<std::size_t> held;
     for (const std::size_t s : all_slips(job.observations)) {
@@ -198,7 +173,13 @@ bool on_bound(double value, double lower, double upper) {
   return lower < upper && (value <= lower + tolerance || value >= upper - tolerance);
 }
 
-void fill_parameters(const Job& job, const SolverResult& solution, const std::vector<double>& start,
+/// The unit of a parameter that scales with friction, where friction is a force.
+std::string in_newtons(const std::string& unit) {
+  if (unit == "1") return "N";
+  return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
+}
+
+void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution, const std::vector<double>& start,
                      const Eigen::MatrixXd& influences, Fit& fit) {
   const Spread spread = spread_of(influences);
   for (std::size_t k = 0; k < solution.p.size(); ++k) {
@@ -206,18 +187,24 @@ void fill_parameters(const Job& job, const SolverResult& solution, const std::ve
     const auto i = static_cast<Eigen::Index>(k);
     FitParameter out;
     out.parameter = slot.parameter;
-    if (k < 2) {
-      out.parameter.lower = 0;
-      out.parameter.upper = job.bounds.upper[k];
-      if (job.motion.friction_kind == FrictionKind::force) out.parameter.unit = "N";
+    const bool held = !(job.bounds.lower[k] < job.bounds.upper[k]);  // by the published protocol
+    out.parameter.lower = given.lower[k] / slot.parameter.si;
+    out.parameter.upper = given.upper[k] / slot.parameter.si;
+    if ((k < 2 || slot.parameter.of_friction) && job.motion.friction_kind == FrictionKind::force) {
+      out.parameter.unit = in_newtons(out.parameter.unit);
     }
     out.effect = slot.effect;
     out.value = solution.p[k];
     out.start = start[k];
     out.std_error = spread.std_error(i);
+    fit.degrees_of_freedom = spread.degrees_of_freedom(i);
     const double half = t_quantile_95(spread.degrees_of_freedom(i)) * out.std_error;
     out.lower95 = out.value - half;
     out.upper95 = out.value + half;
+    if (!held) {  // what is beyond the bounds was excluded before the data were seen
+      out.lower95 = std::max(out.lower95, job.bounds.lower[k]);
+      out.upper95 = std::min(out.upper95, job.bounds.upper[k]);
+    }
     out.profile_lower95 = out.profile_upper95 = kNaN;
     out.at_bound =
         job.options.protocol == Protocol::joint && on_bound(out.value, job.bounds.lower[k], job.bounds.upper[k]);
@@ -235,9 +222,8 @@ void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   const double scatter = std::pow(fit.floor.scatter, 2) * sensitivity / std::max(1.0, count);
   fit.floor.rmse = std::sqrt(std::pow(fit.floor.noise, 2) + scatter);
-  const double above = std::pow(errors.constant_rmse, 2) - std::pow(fit.floor.rmse, 2);
-  const double left = std::pow(fit.error.rmse, 2) - std::pow(fit.floor.rmse, 2);
-  fit.explained = above > 0 ? std::clamp(1 - left / above, 0.0, 1.0) : 0;
+  fit.constant_rmse = errors.constant_rmse;
+  set_floor(Floor(fit.floor), fit);
 }
 
 Fit failed_fit(Fit fit, const std::string& why) {
@@ -262,6 +248,13 @@ std::size_t Fit::fold_of(std::size_t cycle) const {
   return cycles == 0 ? 0 : fold_of_cycle(cycle, cycles, fold_parameters.size());
 }
 
+void set_floor(const Floor& floor, Fit& fit) {
+  fit.floor = floor;
+  const double above = std::pow(fit.constant_rmse, 2) - std::pow(floor.rmse, 2);
+  const double left = std::pow(fit.error.rmse, 2) - std::pow(floor.rmse, 2);
+  fit.explained = above > 0 ? std::clamp(1 - left / above, 0.0, 1.0) : 0;
+}
+
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments, const FitOptions& options) {
   Fit fit;
@@ -269,6 +262,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   fit.protocol = options.protocol;
   fit.cycles = observations.cycles;
   fit.fastest = observations.fastest;
+  fit.slowest = observations.slowest;
   fit.stick_rmse = kNaN;
   if (observations.cycles < kFewestCycles) {
     return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
@@ -281,17 +275,22 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   }
 
   std::vector<double> start;
-  std::vector<ExtremeMean> extremes;
+  Extremes extremes;
   const bool published = options.protocol == Protocol::published;
-  const SolverResult solution = published ? published_estimate(job, start, extremes) : joint_estimate(job, fit, start);
+  if (published) extremes = extremes_of(observations, segmentation);
+  const SolverResult solution = published ? published_estimate(job, extremes, start) : joint_estimate(job, fit, start);
   fit.converged = solution.converged;
   fit.iterations = solution.iterations;
   if (!solution.converged) fit.messages.push_back(solution.message);
-  if (published && !std::isfinite(extremes[0].value + extremes[1].value)) return fit;
+  if (published && !(std::isfinite(extremes.means()[0]) && std::isfinite(extremes.means()[1]))) return fit;
 
   const std::vector<double>& p = solution.p;
   const ModelResiduals residuals = job.residuals(all_slips(observations));
   const NormalEquations equations = normal_equations(residuals, observations, p);
+  if (!equations.finite) {
+    return failed_fit(std::move(fit), "the model is not finite on these data: an effect or formula divides by zero, "
+                                      "overflows or leaves its domain");
+  }
   const std::vector<bool> silent = equations.silent();
   std::vector<bool> free(p.size()), inside(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
@@ -308,15 +307,16 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
         influences.col(static_cast<Eigen::Index>(k)) = with_bound.col(static_cast<Eigen::Index>(k));
     }
   }
-  fill_parameters(job, solution, start, influences, fit);
+  fill_parameters(job, given, solution, start, influences, fit);
 
   const FullRecord record(motion, observations, model.needs());
   const SampleErrors errors = sample_errors(model, p, record, observations);
   fit.error = errors.figures;
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
   fill_floor(job, p, errors, fit);
-  hold_out(job, p, equations, inside, errors, fit);
-  const std::vector<double> systematic = systematic_errors(model, p, motion, observations, instruments, inside);
+  hold_out(job, p, equations, inside, errors, published ? &extremes : nullptr, fit);
+  const std::vector<double> systematic =
+      systematic_errors(model, p, motion, observations, instruments, inside, published);
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
   if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, segmentation);
   if (options.profile && !published) add_profiles(residuals, given, inverse_over(equations.total, inside), fit);

@@ -1,5 +1,7 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tribofit/fit/fit.hpp"
@@ -50,9 +52,10 @@ double pooled_noise(const std::vector<Residual>& parts) {
   if (parts.empty()) return 0;
   std::vector<double> variances;
   for (const Residual& part : parts) variances.push_back(part.squares / part.count);
-  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-  std::nth_element(variances.begin(), middle, variances.end());
-  const double limit = 3 * *middle;
+  // The quiet quarter sets the scale: ringing after re-stick may fill most stretches of a short stick.
+  const auto quiet = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 4);
+  std::nth_element(variances.begin(), quiet, variances.end());
+  const double limit = 3 * *quiet;
   Residual all;
   double used = 0;
   for (const Residual& part : parts) {
@@ -69,7 +72,7 @@ double pooled_noise(const std::vector<Residual>& parts) {
 }
 
 constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
-constexpr std::size_t kStretch = 400;       ///< samples over which a ramp, even a creeping one, is a parabola
+constexpr std::size_t kStretch = 200;       ///< samples over which a ramp, even a creeping one, is a parabola
 constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
@@ -100,18 +103,40 @@ std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& s
   return parts;
 }
 
-/// Standard deviation of the break-away level, the part beyond what sensor noise does to it.
-double break_away_scatter(const Segmentation& segmentation) {
-  double sum = 0, squares = 0, noise = 0, n = 0;
+/// Standard deviation of the break-away level from cycle to cycle: what is left when its dependence on time, direction, load,
+/// temperature and disc angle is taken out (such a dependence is not scatter), less what sensor noise does to each level.
+double break_away_scatter(const Motion& motion, const Segmentation& segmentation) {
+  const std::vector<double> angle = disc_angle(motion);
+  const bool turns = !angle.empty() && std::abs(angle.back() - angle.front()) > 4 * std::numbers::pi;  // two revolutions
+  std::vector<double> levels;
+  std::vector<Eigen::VectorXd> rows;
+  double noise = 0;
   for (const Cycle& cycle : segmentation.cycles) {
     if (cycle.stick.size() == 0 || !std::isfinite(cycle.break_away_friction)) continue;
-    sum += cycle.break_away_friction;
-    squares += cycle.break_away_friction * cycle.break_away_friction;
+    const std::size_t i = cycle.slip.begin;
+    const double u = motion.time[i] / motion.time.back();
+    std::vector<double> row = {1, u, u * u, static_cast<double>(cycle.direction)};
+    if (!motion.load.empty()) row.push_back(motion.load[i]);
+    if (!motion.temperature.empty()) row.push_back(motion.temperature[i]);
+    for (int h = 1; turns && h <= 3; ++h) {
+      row.push_back(std::cos(h * angle[i]));
+      row.push_back(std::sin(h * angle[i]));
+    }
+    rows.push_back(Eigen::Map<Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
+    levels.push_back(cycle.break_away_friction);
     noise += std::pow(cycle.break_away_friction_std_error, 2);
-    n += 1;
   }
+  const auto n = static_cast<Eigen::Index>(levels.size());
   if (n < 3) return 0;
-  const double variance = (squares - sum * sum / n) / (n - 1) - noise / n;
+  // Few cycles cannot carry many regressors.
+  const Eigen::Index columns = std::min(rows[0].size(), std::max<Eigen::Index>(1, n / 8));
+  Eigen::MatrixXd design(n, columns);
+  for (Eigen::Index i = 0; i < n; ++i) design.row(i) = rows[static_cast<std::size_t>(i)].head(columns).transpose();
+  const Eigen::Map<const Eigen::VectorXd> level(levels.data(), n);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(design);
+  const Eigen::VectorXd left = level - design * qr.solve(level);
+  const double variance =
+      left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - qr.rank())) - noise / static_cast<double>(n);
   return std::sqrt(std::max(0.0, variance));
 }
 
@@ -126,7 +151,7 @@ Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
     floor.source = "slip";
   }
   floor.noise = pooled_noise(parts);
-  floor.scatter = break_away_scatter(segmentation);
+  floor.scatter = break_away_scatter(motion, segmentation);
   floor.rmse = floor.noise;
   return floor;
 }

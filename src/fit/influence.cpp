@@ -21,6 +21,7 @@ NormalEquations normal_equations(const ModelResiduals& residuals, const Observat
   equations.gradient.assign(observations.cycles, Eigen::VectorXd::Zero(n));
   equations.total = Eigen::MatrixXd::Zero(n, n);
   const std::vector<ModelResiduals::Normal> slips = residuals.normal_equations(p.data());
+  equations.finite = !slips.empty();
   for (std::size_t k = 0; k < slips.size(); ++k) {
     const std::size_t cycle = observations.slips[residuals.slips()[k]].cycle;
     equations.curvature[cycle] += slips[k].curvature;
@@ -38,6 +39,7 @@ Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bo
     }
   }
   const auto m = static_cast<Eigen::Index>(index.size());
+  if (m == 0) return Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
   Eigen::VectorXd scale(m);
   Eigen::MatrixXd scaled(m, m);
   for (Eigen::Index i = 0; i < m; ++i) scale(i) = 1 / std::sqrt(matrix(index[std::size_t(i)], index[std::size_t(i)]));

@@ -13,6 +13,7 @@ struct NormalEquations {
   std::vector<Eigen::MatrixXd> curvature;  ///< J'J of each cycle
   std::vector<Eigen::VectorXd> gradient;   ///< J'r of each cycle
   Eigen::MatrixXd total;                   ///< sum of the curvatures
+  bool finite = false;                     ///< the model could be evaluated at p
 
   /// Parameters the data say nothing about: their column of J is zero.
   std::vector<bool> silent() const;

@@ -197,7 +197,10 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   double mean = 0, scatter = 0;
   for (const double delta : deltas) mean += delta / n;
   for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / n;
-  if (left > 0 && freedom > 0) out.part = 1 - 1 / std::sqrt(1 + scatter * norms / n * freedom / left);
+  if (deltas.size() < 2 || !(left > 0) || !(freedom > 0)) return out;
+  const double noise = left / freedom, information = norms / n;  // of a sample; of a slip about its delta
+  scatter = std::max(0.0, scatter - noise / information);
+  out.part = 1 - 1 / std::sqrt(1 + scatter * information / noise);
   return out;
 }
 

@@ -38,6 +38,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
                        cycle.slip.begin + (k + 1) * cycle.slip.size() / parts};
       if (range.samples.size() == 0) continue;
       range.cycle = ranges.size();
+      range.segment = static_cast<std::size_t>(&cycle - segmentation.cycles.data());
       range.direction = cycle.direction;
       range.from_stick = from_stick && k == 0;
       range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
@@ -48,7 +49,6 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
         range.stick_time = cycle.stick_time;
         range.stick_slope = cycle.stick_slope;
         range.break_away_friction = cycle.break_away_friction;
-        range.break_away_std_error = cycle.break_away_friction_std_error;
       }
       ranges.push_back(range);
     }
@@ -103,11 +103,8 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
   const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kMean / motion.step));
   // Three standard deviations of the mean, twice over for noise that is coloured.
   const double noise = 6 * motion.velocity_noise / std::sqrt(2.0 * static_cast<double>(half) + 1);
-  auto slip = out.slips.begin();
-  for (const Cycle& cycle : segmentation.cycles) {
-    while (slip != out.slips.end() && slip->samples.begin < cycle.slip.begin) ++slip;
-    if (slip == out.slips.end()) break;
-    if (slip->samples.begin != cycle.slip.begin) continue;
+  for (auto slip = out.slips.begin(); slip != out.slips.end(); ++slip) {
+    const Cycle& cycle = segmentation.cycles[slip->segment];
     if (!slip->from_stick) {  // a record or a reversal begins it: all that is known is friction there
       slip->lead_begin = out.lead_time.size();
       slip->lead_end = slip->lead_begin + 1;
@@ -208,7 +205,10 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   if (needs.temperature) out.temperature = reduce.means(motion.temperature);
   out.mean_load = mean_of(motion.load, motion.conditions.load.known() ? motion.conditions.load.value : 1);
   out.mean_temperature = mean_of(motion.temperature, 0);
+  const bool sticks = std::any_of(out.slips.begin(), out.slips.end(), [](const auto& slip) { return slip.from_stick; });
+  out.slowest = sticks || out.size() == 0 ? 0 : std::abs(out.velocity[0]);
   for (std::size_t i = 0; i < out.size(); ++i) {
+    out.slowest = std::min(out.slowest, std::abs(out.velocity[i]));
     out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
     out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
   }

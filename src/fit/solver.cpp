@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 namespace tribofit {
@@ -148,7 +149,7 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
   ceres::Solve(solver, &ceres_problem, &summary);
 
   for (std::size_t j = 0; j < free.size(); ++j) result.p[free[j]] = x[j];
-  result.cost = summary.final_cost;
+  result.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.iterations = static_cast<int>(summary.iterations.size());
   result.message = explain(summary);

@@ -86,20 +86,31 @@ std::array<double, 2> decay_range(const Observations& observations) {
 }  // namespace
 
 Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
+  // A coefficient is of the order of one, a force is of the order of what was recorded.
+  const double scale = std::max(1.0, observations.largest_friction);
   Bounds bounds;
   for (const auto& slot : model.parameters()) {
-    bounds.lower.push_back(slot.parameter.lower * slot.parameter.si);
-    bounds.upper.push_back(slot.parameter.upper * slot.parameter.si);
+    const double unit = slot.parameter.si * (slot.parameter.of_friction ? scale : 1.0);
+    bounds.lower.push_back(slot.parameter.lower * unit);
+    bounds.upper.push_back(slot.parameter.upper * unit);
   }
-  const double top = 5 * std::max(1.0, observations.largest_friction);
-  bounds.upper[0] = bounds.upper[1] = top;
+  bounds.upper[0] = bounds.upper[1] = 5 * scale;
+  if (model.base_count() == 3) {
+    // Beyond these the law is a constant or a jump over all speeds that were recorded.
+    const double fastest = std::max(observations.fastest, 1e-12);
+    bounds.lower[2] = 0.01 / fastest;
+    bounds.upper[2] = 1000 / fastest;
+  }
   return bounds;
 }
 
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations,
                                     const Bounds& bounds) {
   std::vector<double> p;
-  for (const auto& slot : model.parameters()) p.push_back(slot.parameter.start * slot.parameter.si);
+  const double scale = std::max(1.0, observations.largest_friction);
+  for (const auto& slot : model.parameters()) {
+    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.of_friction ? scale : 1.0));
+  }
   const std::vector<SpeedBin> bins = bin_by_speed(observations);
   const auto [slowest, fastest] = decay_range(observations);
   if (model.law() == BaseLaw::coulomb) {
@@ -127,10 +138,21 @@ std::vector<double> start_from_data(const FrictionModel& model, const Observatio
 std::vector<std::vector<double>> make_starts(const FrictionModel& model, const Observations& observations,
                                              const Bounds& bounds, int count, std::uint64_t seed) {
   std::vector<std::vector<double>> starts = {start_from_data(model, observations, bounds)};
+  if (!model.effects().empty()) {
+    // The bare law, with effects that hardly act: a richer model must not end above the poorer one.
+    std::vector<double> p = starts[0];
+    const double scale = std::max(1.0, observations.largest_friction);
+    for (std::size_t k = model.base_count(); k < p.size(); ++k) {
+      const Parameter& q = model.parameters()[k].parameter;
+      const double neutral = std::isnan(q.neutral) ? q.start : q.neutral;
+      p[k] = std::clamp(neutral * q.si * (q.of_friction ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
+    }
+    starts.push_back(p);
+  }
   boost::random::mt19937_64 engine(seed);
   boost::random::uniform_01<double> uniform;
   const auto [slowest, fastest] = decay_range(observations);
-  for (int s = 1; s < count; ++s) {
+  for (int s = static_cast<int>(starts.size()); s < count; ++s) {
     std::vector<double> p = starts[0];
     for (std::size_t k = 0; k < p.size(); ++k) {
       const double u = uniform(engine);

@@ -14,7 +14,7 @@ namespace {
 /// A source of systematic error: how one standard deviation changes the observations.
 struct Shift {
   std::vector<double> velocity, friction;  ///< one per value; empty: no change
-  std::vector<double> break_away;          ///< one per slip; empty: no change
+  double offset = 0, part = 0;             ///< |friction| by offset + part |friction|, break-aways and extremes too
 };
 
 double uncertainty(const std::optional<Declared>& declared) {
@@ -43,17 +43,24 @@ std::vector<double> displacement(const Motion& motion, const Observations& obser
   return at_values;
 }
 
+/// `delay` times dv_r/dt at every value, slip by slip.
+std::vector<double> slopes(const Observations& observations, double delay) {
+  std::vector<double> out(observations.size(), 0.0);
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      const std::size_t before = std::max(i, slip.begin + 1) - 1, after = std::min(i + 1, slip.end - 1);
+      if (after == before) continue;
+      out[i] = delay * (observations.velocity[after] - observations.velocity[before]) /
+               (observations.time[after] - observations.time[before]);
+    }
+  }
+  return out;
+}
+
 std::vector<Shift> shifts_of(const Motion& motion, const Observations& observations, const Instruments& instruments) {
   const auto values = [&](auto&& change) {
     std::vector<double> out(observations.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(i);
-    return out;
-  };
-  const auto breaks = [&](auto&& change) {
-    std::vector<double> out;
-    for (const auto& slip : observations.slips) {
-      out.push_back(change(slip.break_away_friction * slip.direction) * slip.direction);
-    }
     return out;
   };
   const auto block_velocity = [&](std::size_t i) { return motion.constant_disc_velocity - observations.velocity[i]; };
@@ -63,54 +70,52 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
   std::vector<Shift> shifts;
   const bool plateau = motion.conditions.speed.source == "plateau";
   if (const double u = uncertainty(rig.radius); u > 0 && !plateau && motion.conditions.speed.known()) {
-    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.speed.value; }), {}, {}});
+    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.speed.value; }), {}});
   }
   if (const double u = uncertainty(rig.speed); u > 0 && motion.conditions.radius.known()) {
-    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.radius.value; }), {}, {}});
+    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.radius.value; }), {}});
   }
   if (const double u = uncertainty(vibrometer.gain); u > 0) {
-    shifts.push_back({values([&](std::size_t i) { return u / vibrometer.gain->value * block_velocity(i); }), {}, {}});
+    // v_b = reading/gain; where omega r was read off the plateau it scales with it, and so does v_r as a whole.
+    const double part = u / vibrometer.gain->value;
+    shifts.push_back(
+        {values([&](std::size_t i) { return plateau ? -part * observations.velocity[i] : part * block_velocity(i); }), {}});
   }
   const double corner = vibrometer.high_pass ? uncertainty(vibrometer.high_pass) : motion.high_pass_std_error;
   if (corner > 0) {
     const std::vector<double> x = displacement(motion, observations);
-    shifts.push_back({values([&](std::size_t i) { return -2 * std::numbers::pi * corner * x[i]; }), {}, {}});
+    shifts.push_back({values([&](std::size_t i) { return -2 * std::numbers::pi * corner * x[i]; }), {}});
   }
-  if (const double u = uncertainty(vibrometer.delay); u > 0 && observations.size() > 1) {
-    shifts.push_back({values([&](std::size_t i) {
-                        const std::size_t j = i + 1 < observations.size() ? i : i - 1;
-                        const double dt = observations.time[j + 1] - observations.time[j];
-                        return u * (observations.velocity[j + 1] - observations.velocity[j]) / dt;
-                      }),
-                      {},
-                      {}});
-  }
-  if (const double u = uncertainty(sensor.zero); u > 0) {
-    shifts.push_back({{}, values([&](std::size_t) { return -u; }), breaks([&](double) { return -u; })});
-  }
-  const auto scale_friction = [&](double part) {
-    shifts.push_back({{},
-                      values([&](std::size_t i) { return -part * observations.friction[i]; }),
-                      breaks([&](double level) { return -part * level; })});
+  // Low-passes are corrected as the delay they make at low frequency.
+  const auto low_pass_delay = [](const std::optional<Declared>& corner_frequency, double factor) {
+    const double u_f = uncertainty(corner_frequency);
+    return u_f > 0 ? factor * u_f / (2 * std::numbers::pi * std::pow(corner_frequency->value, 2)) : 0.0;
   };
-  if (const double u = uncertainty(sensor.gain); u > 0) scale_friction(u / sensor.gain->value);
-  if (const double u = uncertainty(rig.load); u > 0 && !sensor.load_measured) scale_friction(u / rig.load->value);
-  if (const double u = uncertainty(sensor.crosstalk); u > 0) {
-    shifts.push_back({{}, values([&](std::size_t) { return -u; }), breaks([&](double) { return -u; })});
+  constexpr double kSensorDamping = 0.7;
+  for (const double u : {uncertainty(vibrometer.delay), low_pass_delay(vibrometer.low_pass, 1),
+                         low_pass_delay(sensor.bandwidth, 2 * kSensorDamping)}) {
+    if (u > 0) shifts.push_back({slopes(observations, u), {}});
+  }
+  if (const double u = uncertainty(sensor.zero); u > 0) shifts.push_back({{}, {}, -u, 0});
+  if (const double u = uncertainty(sensor.crosstalk); u > 0) shifts.push_back({{}, {}, -u, 0});
+  if (const double u = uncertainty(sensor.gain); u > 0) shifts.push_back({{}, {}, 0, -u / sensor.gain->value});
+  if (const double u = uncertainty(rig.load); u > 0 && !sensor.load_measured) {
+    shifts.push_back({{}, {}, 0, -u / rig.load->value});
   }
   if (const double u = uncertainty(sensor.mass_below); u > 0 && motion.conditions.load.known()) {
-    Channels acceleration;
-    acceleration.acceleration = true;
+    // In rigid stick the block moves with the disc, so the levels at break-away do not change.
     const double scale = u / motion.conditions.load.value;
-    std::vector<double> change;
-    std::size_t i = 0;
     const std::vector<double> full = block_acceleration(motion);
+    std::vector<double> change;
     for (const auto& slip : observations.slips) {
-      for (std::size_t s = slip.samples.begin; s < slip.samples.end; s += observations.samples_per_value, ++i) {
-        change.push_back(scale * full[s]);
+      for (std::size_t s = slip.samples.begin; s < slip.samples.end; s += observations.samples_per_value) {
+        const std::size_t end = std::min(s + observations.samples_per_value, slip.samples.end);
+        double sum = 0;
+        for (std::size_t i = s; i < end; ++i) sum += full[i];
+        change.push_back(scale * sum / static_cast<double>(end - s));
       }
     }
-    shifts.push_back({{}, std::move(change), {}});
+    shifts.push_back({{}, std::move(change)});
   }
   return shifts;
 }
@@ -120,7 +125,13 @@ Observations moved(const Observations& observations, const Shift& shift) {
   Observations out = observations;
   for (std::size_t i = 0; i < shift.velocity.size(); ++i) out.velocity[i] += shift.velocity[i];
   for (std::size_t i = 0; i < shift.friction.size(); ++i) out.friction[i] += shift.friction[i];
-  for (std::size_t k = 0; k < shift.break_away.size(); ++k) out.slips[k].break_away_friction += shift.break_away[k];
+  for (auto& slip : out.slips) {
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      // An offset is of the sensor, not of the direction of sliding.
+      out.friction[i] += shift.offset + shift.part * out.friction[i];
+    }
+    slip.break_away_friction += slip.direction * shift.offset + shift.part * slip.break_away_friction;
+  }
   return out;
 }
 
@@ -128,7 +139,7 @@ Observations moved(const Observations& observations, const Shift& shift) {
 
 std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
                                       const Observations& observations, const Instruments& instruments,
-                                      const std::vector<bool>& free) {
+                                      const std::vector<bool>& free, bool published) {
   std::vector<double> squares(p.size(), 0.0);
   const std::vector<Shift> shifts = shifts_of(motion, observations, instruments);
   if (shifts.empty()) return squares;
@@ -145,7 +156,10 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   const Eigen::VectorXd base = gradient(observations, &curvature);
   const Eigen::MatrixXd inverse = inverse_over(curvature, free);
   for (const Shift& shift : shifts) {
-    const Eigen::VectorXd step = inverse * (gradient(moved(observations, shift), nullptr) - base);
+    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());  // of the published protocol, given by the extremes
+    for (Eigen::Index k = 0; published && k < 2; ++k) levels(k) = shift.offset + shift.part * p[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd pull = gradient(moved(observations, shift), nullptr) - base;
+    const Eigen::VectorXd step = levels - inverse * (pull + curvature * levels);
     for (std::size_t k = 0; k < p.size(); ++k) squares[k] += std::pow(step(static_cast<Eigen::Index>(k)), 2);
   }
   for (double& s : squares) s = std::sqrt(s);

@@ -36,8 +36,9 @@ Effect make_effect(std::string_view key) {
     known.push_back(describe(effect).key);
     if (known.back() == key) return effect;
   }
+  const std::string near = likely_name(key, known);
   throw InputError("there is no effect '" + std::string(key) + "'",
-                   "did you mean '" + nearest_name(key, known) + "'? `identify effects` lists them all");
+                   (near.empty() ? "" : "did you mean '" + near + "'? ") + "`identify effects` lists them all");
 }
 
 }  // namespace tribofit

@@ -134,7 +134,8 @@ Parameter read_start(const std::string& name, const std::string& value, const st
       parameter.lower = std::strtod(ends[0].c_str(), &end_low) * factor;
       parameter.upper = std::strtod(ends[1].c_str(), &end_high) * factor;
     }
-    if (ends.size() != 2 || end_low == ends[0].c_str() || end_high == ends[1].c_str() ||
+    if (ends.size() != 2 || end_low == ends[0].c_str() || end_high == ends[1].c_str() || *end_low != 0 ||
+        *end_high != 0 || !std::isfinite(parameter.lower) || !std::isfinite(parameter.upper) ||
         !(parameter.lower < parameter.upper) || parameter.start < parameter.lower ||
         parameter.start > parameter.upper) {
       reject("the bounds of '" + name + "' are not [lower,upper] around its start", text);
@@ -176,6 +177,14 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
   if (equals == std::string::npos) reject("there is no '=' between its name and its expression", p.text);
   p.name = trim(definition.substr(0, equals));
   p.expression = trim(definition.substr(equals + 1));
+  for (std::size_t i = 0; i < p.expression.size(); ++i) {
+    const auto is = [&](std::size_t k, const char* any) {
+      return k < p.expression.size() && std::string_view(any).find(p.expression[k]) != std::string_view::npos;
+    };
+    if (is(i, "=") && !is(i + 1, "=") && (i == 0 || !is(i - 1, "=<>!"))) {
+      reject("there is an assignment in its expression", p.text);
+    }
+  }
   const auto name_char = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   if (p.name.empty() || !std::all_of(p.name.begin(), p.name.end(), name_char)) {
     reject("its name must be letters, digits, '-' or '_'", p.text);
@@ -218,6 +227,7 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
                .temperature = used.contains("temperature"),
                .stick_time = used.contains("stick_time")};
     p.parser.Eval();
+    if (p.parser.GetNumResults() != 1) reject("there is more than one expression", p.text);
   } catch (const mu::Parser::exception_type& error) {
     const auto position = static_cast<std::size_t>(std::max(0, error.GetPos()));
     reject(std::string(error.GetMsg()) + " Here:\n  " + p.expression + "\n  " +

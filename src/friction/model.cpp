@@ -28,6 +28,16 @@ std::optional<BaseLaw> find_law(std::string_view name) {
 }
 
 FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
+  // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into signed mu.
+  const auto in_stick = [](const Effect& effect) {
+    return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
+  };
+  std::stable_sort(effects_.begin(), effects_.end(), [&](const Effect& a, const Effect& b) {
+    return std::pair(in_stick(a), a.index()) < std::pair(in_stick(b), b.index());
+  });
+  if (std::count_if(effects_.begin(), effects_.end(), in_stick) > 1) {
+    throw InputError("two effects that act in stick cannot be combined", "leave one of them out");
+  }
   slots_.push_back({{"mu_s", "1", 1, 0, 5, 0.5}, ""});
   slots_.push_back({{"mu_k", "1", 1, 0, 5, 0.3}, ""});
   if (law == BaseLaw::exponential) slots_.push_back({{"alpha", "s/mm", 1e3, 1e-4, 10, 0.05}, ""});

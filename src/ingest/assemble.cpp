@@ -25,7 +25,9 @@ class Assembler {
     set_steps();
     set_load();
     set_friction();
+    warn_of_large_coefficient();
     set_velocity();
+    settle_speed();
     trace_.load = std::move(run_[Channel::load]);
     trace_.temperature = std::move(run_[Channel::temperature]);
     trace_.disc_speed = std::move(run_[Channel::speed]);
@@ -148,6 +150,32 @@ class Assembler {
       trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
                              (force == "torque/radius" ? "" : " as measured") + " (state --load for a coefficient)");
     }
+  }
+
+  void warn_of_large_coefficient() {
+    constexpr double most = 5;  // beyond any dry contact
+    if (trace_.friction_kind != FrictionKind::coefficient) return;
+    double largest = 0;
+    for (const double mu : trace_.friction) largest = std::max(largest, std::abs(mu));
+    if (largest <= most) return;
+    trace_.warnings.push_back(fmt::format("friction reaches {:.4g}: is the column really a coefficient?", largest));
+  }
+
+  /// What the user states beats the column: a column that contradicts it is not used.
+  void settle_speed() {
+    auto& column = run_[Channel::speed];
+    const Condition& stated = options_.conditions.speed;
+    if (column.empty() || !stated.known()) return;
+    std::vector<double> sorted = column;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    constexpr double agreement = 0.02, rpm = 30 / std::numbers::pi;
+    if (std::abs(*middle - stated.value) <= agreement * std::abs(stated.value)) return;
+    trace_.warnings.push_back(
+        fmt::format("the stated speed of {:.4g} rpm ({}) contradicts the median of the speed column, {:.4g} rpm; the "
+                    "stated speed is used and the column is not",
+                    rpm * stated.value, stated.source.empty() ? "stated" : stated.source, rpm * *middle));
+    column.clear();
   }
 
   void set_velocity() {

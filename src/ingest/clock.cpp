@@ -13,6 +13,7 @@ namespace {
 
 constexpr double gap_limit = 1.5;          // times the median interval
 constexpr std::size_t shortest_step = 10;  // rows before a clock may restart without a step column saying so
+constexpr std::size_t least_after = 5;     // rows for which a restarted clock must go on
 
 class Clock {
  public:
@@ -40,7 +41,9 @@ class Clock {
       } else {
         if (!(interval > 0)) {
           const bool back_to_start = now <= step_start + gap_limit * interval_;
-          if (!step_changes && !(back_to_start && i - recording_.steps.back().begin >= shortest_step)) refuse(i, last);
+          const bool restarts_here =
+              back_to_start && i - recording_.steps.back().begin >= shortest_step && goes_on_from(i, last);
+          if (!step_changes && !restarts_here) refuse(i, last);
           shift = time_[i - 1] + interval_ - now;
           step_start = now;
           restarts.push_back(i);
@@ -63,6 +66,15 @@ class Clock {
   }
 
  private:
+  /// A lone time stamp that is wrong is followed by the old clock; a restarted clock counts on from its start.
+  bool goes_on_from(std::size_t row, double old_clock) const {
+    if (row + least_after > time_.size()) return false;
+    for (std::size_t i = row + 1; i < row + least_after; ++i) {
+      if (!(time_[i] > time_[i - 1]) || time_[i] >= old_clock) return false;
+    }
+    return true;
+  }
+
   /// A column called "step" that changes all the time counts samples, not steps of a recipe.
   void ignore_counter() {
     std::size_t changes = 0;
@@ -178,6 +190,19 @@ double typical_interval(const std::vector<double>& time) {
   const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
   std::nth_element(sample.begin(), middle, sample.end());
   return *middle;
+}
+
+double Trace::interval() const {
+  if (time.size() < 2) return 0;
+  const double longest = gap_limit * typical_interval(time);
+  double gaps = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    const double d = time[i] - time[i - 1];
+    if (d > longest) gaps += d, ++count;
+  }
+  if (count + 1 >= time.size()) return duration() / static_cast<double>(time.size() - 1);
+  return (duration() - gaps) / static_cast<double>(time.size() - 1 - count);
 }
 
 }  // namespace tribofit

@@ -1,11 +1,11 @@
 #include "tribofit/ingest/instruments.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <set>
 #include <vector>
 
 #include "input_file.hpp"
@@ -30,7 +30,10 @@ class InstrumentsReader {
     text.resize(file.read(0, text));
     Json root;
     try {
-      root = Json::parse(text, nullptr, true, true);  // comments are allowed
+      root = Json::parse(text, [this](int, Json::parse_event_t event, Json& parsed) { return follow(event, parsed); },
+                         true, true);  // comments are allowed
+    } catch (const Json::out_of_range&) {
+      fail(current_key(), "a number is outside the range of numbers", "correct the number");
     } catch (const Json::parse_error& error) {
       const std::size_t end = std::min(error.byte, text.size());
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
@@ -56,7 +59,7 @@ class InstrumentsReader {
       auto& f = result.force_sensor;
       section(json, "force_sensor",
               {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
-               {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key); }},
+               {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key, f.zero_is_force); }},
                {"crosstalk", any(f.crosstalk, Quantity::dimensionless)},
                {"mass_below", not_negative(f.mass_below, Quantity::mass)},
                {"gain", positive(f.gain, Quantity::dimensionless)},
@@ -85,6 +88,27 @@ class InstrumentsReader {
  private:
   using Handler = std::function<void(const Json&, const std::string&)>;
   using Handlers = std::vector<std::pair<std::string, Handler>>;
+
+  /// Keeps account of where the parser is; a key that is there twice would silently win over the first.
+  bool follow(Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) {
+      seen_.emplace_back();
+      trail_.emplace_back();
+    } else if (event == Json::parse_event_t::object_end) {
+      seen_.pop_back();
+      trail_.pop_back();
+    } else if (event == Json::parse_event_t::key) {
+      trail_.back() = parsed.get<std::string>();
+      if (!seen_.back().insert(trail_.back()).second) fail(current_key(), "is there twice", "keep one of the two");
+    }
+    return true;
+  }
+
+  std::string current_key() const {
+    std::string key;
+    for (const std::string& part : trail_) key += (key.empty() || part.empty() ? "" : ".") + part;
+    return key;
+  }
 
   [[noreturn]] void fail(const std::string& key, const std::string& problem, const std::string& advice) const {
     throw InputError((key.empty() ? "" : key + ": ") + problem, advice, {path_, 0, ""});
@@ -142,10 +166,11 @@ class InstrumentsReader {
   }
 
   /// The zero of a force sensor is of mu, or of the force where that is what is recorded.
-  Declared zero(const Json& value, const std::string& key) const {
+  Declared zero(const Json& value, const std::string& key, bool& is_force) const {
     try {
       return declared(value, Quantity::dimensionless, key);
     } catch (const InputError&) {
+      is_force = true;
       return declared(value, Quantity::force, key);
     }
   }
@@ -171,12 +196,24 @@ class InstrumentsReader {
   }
 
   std::string path_;
+  std::vector<std::set<std::string>> seen_;  // keys of the objects that are open
+  std::vector<std::string> trail_;           // the last key of each
 };
 
 }  // namespace
 
 Instruments read_instruments(const std::string& path) {
   return InstrumentsReader(path).read();
+}
+
+std::optional<Declared> zero_of_friction(const Instruments::ForceSensor& sensor, FrictionKind kind,
+                                         const Condition& load) {
+  if (!sensor.zero || !sensor.zero_is_force || kind == FrictionKind::force) return sensor.zero;
+  if (!(load.value > 0)) {
+    throw InputError("the zero of the force sensor is declared in N, but friction is a coefficient and no load is known",
+                     "give the load with --load 50N, or the zero as a coefficient");
+  }
+  return Declared{sensor.zero->value / load.value, sensor.zero->uncertainty / load.value};
 }
 
 }  // namespace tribofit

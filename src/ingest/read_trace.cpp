@@ -1,5 +1,7 @@
 #include "tribofit/ingest/read_trace.hpp"
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "assemble.hpp"
@@ -24,11 +26,19 @@ void check_requests(const FileRecord& first, const FileRecord& second, const Rea
   }
 }
 
+void refuse_twice(const std::string& path, const std::string& next) {
+  std::error_code none;
+  if (!std::filesystem::equivalent(path, next, none)) return;
+  throw InputError("the file is given twice as a part of the run", "name every part once", {next, 0, ""});
+}
+
 }  // namespace
 
 Trace read_trace(const std::string& path, const ReadOptions& options) {
   FileRecord run = read_recording(path, options);
   for (std::size_t i = 0; i < options.continued_in.size(); ++i) {
+    refuse_twice(path, options.continued_in[i]);
+    for (std::size_t k = 0; k < i; ++k) refuse_twice(options.continued_in[k], options.continued_in[i]);
     continue_recording(run, read_recording(options.continued_in[i], options), i + 2);
   }
   if (!options.second_file.empty()) {

@@ -34,6 +34,23 @@ void correct_delay(std::span<double> signal, double delay, double step, Ends& en
   ends.tail = std::max(ends.tail, lost.tail);
 }
 
+// A zero in N is one of the force: of a coefficient it takes off zero/Fn, with the measured load where there is one.
+void subtract_zero(Trace& trace, const Instruments::ForceSensor& sensor, std::vector<std::string>& notes) {
+  if (!sensor.zero || sensor.zero->value == 0) return;
+  const bool by_load = sensor.zero_is_force && trace.friction_kind == FrictionKind::coefficient;
+  if (by_load && trace.load.size() == trace.friction.size()) {
+    for (std::size_t i = 0; i < trace.friction.size(); ++i) {
+      if (trace.load[i] > 0) trace.friction[i] -= sensor.zero->value / trace.load[i];
+    }
+    notes.push_back(fmt::format("friction: declared zero {:.4g} N over the measured load subtracted",
+                                sensor.zero->value));
+    return;
+  }
+  const double zero = zero_of_friction(sensor, trace.friction_kind, trace.conditions.load)->value;
+  scale(trace.friction, 1, zero);
+  notes.push_back(fmt::format("friction: declared zero {:.4g} subtracted", zero));
+}
+
 void correct_crosstalk(Trace& trace, double part) {
   if (part == 0) return;
   if (trace.friction_kind == FrictionKind::coefficient) {
@@ -126,9 +143,9 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
     if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {:.4g}", gain));
     if (delay != 0) notes.push_back(fmt::format("velocity: moved {:.4g} ms earlier as declared", 1e3 * delay));
   }
-  const double zero = sensor.zero ? sensor.zero->value : 0, gain = sensor.gain ? sensor.gain->value : 1;
-  scale(trace.friction, 1 / gain, zero);
-  if (zero != 0) notes.push_back(fmt::format("friction: declared zero {:.4g} subtracted", zero));
+  const double gain = sensor.gain ? sensor.gain->value : 1;
+  subtract_zero(trace, sensor, notes);
+  scale(trace.friction, 1 / gain, 0);
   if (gain != 1) notes.push_back(fmt::format("friction: divided by the declared gain {:.4g}", gain));
   if (sensor.crosstalk) {
     correct_crosstalk(trace, sensor.crosstalk->value);

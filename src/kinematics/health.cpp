@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tribofit/kinematics/spectrum.hpp"
@@ -15,28 +16,58 @@ namespace {
 using Status = HealthItem::Status;
 constexpr double two_pi = 2 * std::numbers::pi;
 
-// Samples that lie in runs of at least three identical values at the smallest or largest value of the channel.
-std::size_t clipped_samples(std::span<const double> x, const Chunks& chunks, double& at) {
-  constexpr std::size_t least = 3;
-  if (x.size() < 16 || chunks.whole.low == chunks.whole.high) return 0;  // of a constant other checks speak
-  std::size_t most = 0;
-  for (double limit : {chunks.whole.low, chunks.whole.high}) {
-    std::size_t in_runs = 0, run = 0;
-    for (std::size_t c = 0; c < chunks.part.size(); ++c) {
-      if (chunks.part[c].low != limit && chunks.part[c].high != limit) {
-        run = 0;
-        continue;
-      }
-      const std::size_t end = std::min(x.size(), (c + 1) * Chunks::length);
-      for (std::size_t i = c * Chunks::length; i < end; ++i) {
-        run = x[i] == limit ? run + 1 : 0;
-        if (run == least) in_runs += least;
-        if (run > least) ++in_runs;
-      }
-    }
-    if (in_runs > most) most = in_runs, at = limit;
+// A quantised channel repeats its extremes by chance, as it repeats every other value.
+bool repeats_elsewhere(std::span<const double> x, const Extremes& range) {
+  std::size_t equal = 0, looked_at = 0;
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / 20000);
+  for (std::size_t i = 1; i < x.size(); i += stride) {
+    if (x[i] == range.low || x[i] == range.high) continue;
+    ++looked_at;
+    equal += x[i] == x[i - 1] ? 1u : 0u;
   }
-  return most;
+  return 5 * equal > looked_at;
+}
+
+std::size_t samples_in_runs(std::span<const double> x, const Chunks& chunks, double limit) {
+  constexpr std::size_t least = 3;
+  std::size_t in_runs = 0, run = 0;
+  for (std::size_t c = 0; c < chunks.part.size(); ++c) {
+    if (chunks.part[c].low != limit && chunks.part[c].high != limit) {
+      run = 0;
+      continue;
+    }
+    const std::size_t end = std::min(x.size(), (c + 1) * Chunks::length);
+    for (std::size_t i = c * Chunks::length; i < end; ++i) {
+      run = x[i] == limit ? run + 1 : 0;
+      if (run == least) in_runs += least;
+      if (run > least) ++in_runs;
+    }
+  }
+  return in_runs;
+}
+
+std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks) {
+  const Extremes range = chunks.whole;
+  std::array<EndRuns, 2> ends = {EndRuns{range.low, 0}, EndRuns{range.high, 0}};
+  if (x.size() < 16 || range.low == range.high || repeats_elsewhere(x, range)) return ends;
+  for (EndRuns& end : ends) end.count = samples_in_runs(x, chunks, end.at);
+  return ends;
+}
+
+/// A stretch of samples in which neither channel changes.
+struct Frozen {
+  std::size_t begin = 0, length = 0;
+};
+
+Frozen longest_frozen(std::span<const double> a, std::span<const double> b) {
+  Frozen longest;
+  if (a.size() != b.size()) return longest;
+  std::size_t run = 1;
+  for (std::size_t i = 1; i < a.size(); ++i) {
+    run = a[i] == a[i - 1] && b[i] == b[i - 1] ? run + 1 : 1;
+    if (run > longest.length) longest = {i + 1 - run, run};
+  }
+  return longest;
 }
 
 // Samples that jump away and back at once, far beyond what neighbouring samples do.
@@ -84,14 +115,6 @@ Gaps gaps_of(std::span<const double> time, double step) {
   return gaps;
 }
 
-// A quantised channel repeats its extreme by chance; clipping does so more than a few levels below it.
-bool repeats_everywhere(std::span<const double> x) {
-  std::size_t equal = 0;
-  const std::size_t n = std::min<std::size_t>(x.size(), 20000);
-  for (std::size_t i = 1; i < n; ++i) equal += x[i] == x[i - 1] ? 1u : 0u;
-  return 5 * equal > n;
-}
-
 struct Band {
   double upper = 0;       // content above the floor up to here [Hz]
   double floor = 0;       // amplitude density of the floor, relative to the largest line
@@ -135,29 +158,36 @@ std::string describe(const char* name, const Band& band) {
 
 }  // namespace
 
-HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chunks& velocity,
-                          const Instruments& instruments) {
+RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
+  return {ends_of(trace.friction, friction), ends_of(trace.velocity, velocity),
+          std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high))};
+}
+
+HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
+                          std::optional<double> plateau) {
   HealthItem item{"clipping", Status::ok, "no runs of identical samples at the end of a channel's range"};
-  const auto look = [&](const char* name, std::span<const double> channel, const Chunks& chunks, double factor,
-                        const char* unit) {
-    double at = 0;
-    if (repeats_everywhere(channel)) return;
-    const std::size_t count = clipped_samples(channel, chunks, at);
-    const double share = static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, channel.size()));
-    if (count < 6) return;
+  const auto tell = [&](const char* name, const EndRuns& end, double factor, const char* unit) {
+    if (end.count < 6) return;
+    const double share = static_cast<double>(end.count) / static_cast<double>(trace.size());
     item.status = share > 0.001 ? Status::problem : Status::warning;
     item.message = fmt::format("{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small", name,
-                               factor * at, unit, count, 100 * share);
+                               factor * end.at, unit, end.count, 100 * share);
   };
-  look("friction", trace.friction, friction, 1, trace.friction_kind == FrictionKind::force ? " N" : "");
-  look("velocity", trace.velocity, velocity, 1e3, " mm/s");
-  if (item.status == Status::ok && instruments.vibrometer.range && !trace.velocity.empty()) {
-    const double largest = std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high));
-    const double range = instruments.vibrometer.range->value;
-    if (largest >= 0.995 * range) {
+  const auto& [low, high] = ends.friction;
+  const char* unit = trace.friction_kind == FrictionKind::force ? " N" : "";
+  if (low.at <= 0) tell("friction", low, 1, unit);
+  if (high.at >= 0) tell("friction", high, 1, unit);
+  const double range = std::abs(ends.velocity[1].at - ends.velocity[0].at);
+  for (const EndRuns& end : ends.velocity) {
+    const bool rests = plateau && std::abs(end.at - *plateau) <= 0.02 * std::abs(*plateau) + 1e-6 * range;
+    if (!rests) tell("velocity", end, 1e3, " mm/s");
+  }
+  if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
+    const double declared = instruments.vibrometer.range->value;
+    if (ends.largest_velocity >= 0.995 * declared) {
       item.status = Status::warning;
-      item.message =
-          fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest, 1e3 * range);
+      item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s",
+                                 1e3 * ends.largest_velocity, 1e3 * declared);
     }
   }
   return item;
@@ -166,10 +196,19 @@ HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chun
 HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
   const std::size_t n = trace.size();
   if (n < 16) return {"drop-outs", Status::warning, fmt::format("only {} samples", n)};
-  const double step = trace.duration() / static_cast<double>(n - 1);
+  const double step = trace.interval();
   const Gaps gaps = gaps_of(trace.time, step);
   const std::size_t spikes = lone_samples(trace.friction, friction) + lone_samples(trace.velocity, velocity);
+  const Frozen frozen = longest_frozen(trace.friction, trace.velocity);
   HealthItem item{"drop-outs", Status::ok, fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
+  if (frozen.length >= 16 && 20 * frozen.length > n && frozen.length < n) {
+    item.status = Status::problem;
+    item.message = fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
+                               trace.time[frozen.begin],
+                               trace.time[frozen.begin + frozen.length - 1] - trace.time[frozen.begin],
+                               100 * static_cast<double>(frozen.length) / static_cast<double>(n));
+    return item;
+  }
   if (gaps.count == 0 && spikes == 0) return item;
   const bool many = static_cast<double>(gaps.count + spikes) > 1e-3 * static_cast<double>(n);
   item.status = many ? Status::problem : Status::warning;
@@ -330,8 +369,20 @@ HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
   return item;
 }
 
-HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known) {
+HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known,
+                               const std::optional<RecordedPlateau>& recorded) {
   HealthItem item{"plateau-speed", Status::ok, "the record has no stick plateau"};
+  const auto compare = [&](double block, double disc, const char* origin) {
+    item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
+    const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;
+    if (disc != 0) item.message += fmt::format(": {:+.1f} %", 100 * error);
+    if (std::abs(error) > 0.02) item.status = std::abs(error) > 0.2 ? Status::problem : Status::warning;
+  };
+  if (recorded) {
+    compare(recorded->block, recorded->disc, "the recorded speed times the radius");
+    if (item.status != Status::ok) item.message += "; radius, speed column (sign, unit), laser angle or creep";
+    return item;
+  }
   if (!motion.sticks) return item;
   if (motion.velocity_kind == VelocityKind::relative || !motion.disc_velocity.empty()) {
     item.message = fmt::format("v_r rests at {:.3g} mm/s in stick", 1e3 * motion.plateau_velocity);
@@ -342,10 +393,7 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
     if (radius_known) item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / two_pi);
     return item;
   }
-  const double stated = motion.constant_disc_velocity, ratio = plateau / stated;
-  item.message = fmt::format("plateau of v_b {:.4g} mm/s, omega r {:.4g} mm/s: {:+.1f} %", 1e3 * plateau, 1e3 * stated,
-                             100 * (ratio - 1));
-  if (std::abs(ratio - 1) > 0.02) item.status = std::abs(ratio - 1) > 0.2 ? Status::problem : Status::warning;
+  compare(plateau, motion.constant_disc_velocity, "omega r");
   if (item.status != Status::ok) item.message += "; radius, speed, laser angle or creep of the contact";
   return item;
 }

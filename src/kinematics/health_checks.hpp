@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,12 +14,25 @@
 
 namespace tribofit::kinematics {
 
-/// Runs of identical samples at either end of a channel's range: a converter or an amplifier at its limit.
-/// To be called on the channels as recorded.
-HealthItem check_clipping(const Trace& trace, const Chunks& friction, const Chunks& velocity,
-                          const Instruments& instruments);
+/// Samples that lie in runs of identical values at an end of a channel's range.
+struct EndRuns {
+  double at = 0;          ///< the end, in the channel's unit as recorded
+  std::size_t count = 0;  ///< samples in runs of at least three; 0 where the channel repeats at other values too
+};
 
-/// Gaps in time and samples that stand alone far from both neighbours.
+/// Both ends of both channels as recorded.
+struct RangeEnds {
+  std::array<EndRuns, 2> friction, velocity;
+  double largest_velocity = 0;  ///< [m/s]
+};
+RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity);
+
+/// A converter or an amplifier at its limit. `plateau` is where the velocity rests in stick, as recorded: a record
+/// without noise repeats it, and that is no clipping. Nor is a lowest friction that is above zero.
+HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
+                          std::optional<double> plateau);
+
+/// Gaps in time, samples that stand alone far from both neighbours, and stretches in which both channels stand still.
 HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity);
 
 /// What became of the high-pass search. `declared` is the declared corner, if any.
@@ -38,7 +52,13 @@ HealthItem check_speed_ripple(const Motion& motion, const Rests& rests, std::siz
 
 HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found);
 
-/// Plateau of v_b against the stated omega r.
-HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known);
+/// Where v_b rests, and what the recorded speed says there [m/s].
+struct RecordedPlateau {
+  double block = 0, disc = 0;
+};
+
+/// Plateau of v_b against the stated omega r, or against the recorded one.
+HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known,
+                               const std::optional<RecordedPlateau>& recorded);
 
 }  // namespace tribofit::kinematics

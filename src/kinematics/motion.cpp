@@ -276,6 +276,56 @@ void settle_friction_sign(Motion& motion, double scale) {
   motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");
 }
 
+// Where v_b rests beside a recorded speed. A record whose rests follow the recorded speed is compared there; where none
+// do, or far from it, the rests of v_b alone tell what the disc did.
+std::optional<kinematics::RecordedPlateau> recorded_plateau(const Survey& s, const Disc& disc, bool block) {
+  if (!block || disc.varying.empty() || s.disc.mean.empty()) return std::nullopt;
+  const auto recorded_in = [&](const Rests& rests) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Rest& run : rests.runs) {
+      for (std::size_t b = run.begin; b < run.end; ++b) sum += s.disc.mean[b], ++count;
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, count));
+  };
+  std::optional<kinematics::RecordedPlateau> following;
+  if (s.sticks) {
+    const double recorded = recorded_in(s.rests);
+    following = {recorded + s.rests.level, recorded};
+    if (std::abs(s.rests.level) <= 0.2 * std::abs(recorded)) return following;
+  }
+  const std::span<const double> v(s.blocks.mean);
+  const kinematics::Extremes range = kinematics::extremes(v);
+  Rests alone = range.high - range.low <= 8 * s.noise ? Rests{{{0, v.size(), kinematics::fit_line(v).value}}, 0, 0}
+                                                      : find_rests(v);
+  if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
+  std::size_t resting = 0;
+  for (const Rest& run : alone.runs) resting += run.size();
+  const bool rests = 10 * resting > v.size() && std::abs(alone.level) > 3 * s.noise;
+  return rests ? kinematics::RecordedPlateau{alone.level, recorded_in(alone)} : following;
+}
+
+// Where the velocity as recorded repeats in stick when there is no noise.
+std::optional<double> plateau_as_recorded(const Survey& s, const Disc& disc, const Instruments& instruments,
+                                          bool block, bool stated, bool reversed,
+                                          const std::optional<kinematics::RecordedPlateau>& recorded) {
+  double level = 0;  // of v_r
+  if (block) {
+    if (!disc.varying.empty() && !recorded) return std::nullopt;
+    if (disc.varying.empty() && (!s.sticks || (reversed && !stated))) return std::nullopt;
+    level = !disc.varying.empty() ? recorded->disc : disc.constant;
+  }
+  const auto& vibrometer = instruments.vibrometer;
+  return level * vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (reversed ? -1 : 1);
+}
+
+// A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
+bool is_useless(const Trace& trace) {
+  constexpr std::size_t few = 16;
+  const kinematics::Extremes range = kinematics::extremes(trace.velocity);
+  return range.low == range.high || (trace.size() < few && trace.conditions.radius.known());
+}
+
 [[noreturn]] void throw_no_speed(const Trace& trace) {
   throw InputError("v_r cannot be made: the block never sticks, so that no plateau shows the speed of the disc",
                    "give --radius and --speed, or a column with v_r", {trace.path, 0, ""});
@@ -288,7 +338,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   take_conditions_from_instruments(trace.conditions, instruments.rig);
   if (trace.steps.empty()) trace.steps.push_back({0, trace.size(), "", {}});
   Motion motion;
-  motion.step = trace.duration() / static_cast<double>(trace.size() - 1);
+  motion.step = trace.interval();
   motion.friction_kind = trace.friction_kind;
   motion.velocity_kind = trace.velocity_kind;
   const bool block = trace.velocity_kind == VelocityKind::block;
@@ -296,7 +346,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   // What the recorder did, on the channels as recorded; then what the user declared.
   const kinematics::Chunks friction_chunks = kinematics::chunks_of(trace.friction);
   const kinematics::Chunks velocity_chunks = kinematics::chunks_of(trace.velocity);
-  HealthItem clipping = check_clipping(trace, friction_chunks, velocity_chunks, instruments);
+  const kinematics::RangeEnds ends = kinematics::range_ends(trace, friction_chunks, velocity_chunks);
   HealthItem drop_outs = check_drop_outs(trace, friction_chunks, velocity_chunks);
   kinematics::Ends lost = kinematics::correct_declared(trace, instruments, motion.step, motion.notes);
   if (lost.head + lost.tail + 2 > trace.size()) lost = {};
@@ -313,7 +363,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
 
   // Where the velocity rests; a vibrometer that points the other way; a high-pass.
   Survey s = survey(trace, disc, motion.step);
-  if (points_the_other_way(trace, disc, s)) {
+  const bool reversed = points_the_other_way(trace, disc, s);
+  if (reversed) {
     for (double& v : trace.velocity) v = -v;
     motion.notes.push_back("velocity: sign reversed, the plateau runs against the disc");
     s = survey(trace, disc, motion.step);
@@ -335,14 +386,19 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   const bool stated = disc.known;
   const double plateau = s.sticks ? final_level(s.rests) : 0;
   if (block && !disc.known) {
-    if (!s.sticks || trace.disc_speed.size() == trace.size()) throw_no_speed(trace);
+    const bool unknown = !s.sticks || trace.disc_speed.size() == trace.size();
+    if (unknown && !is_useless(trace)) throw_no_speed(trace);
+    if (unknown) motion.notes.push_back("the speed of the disc is not known and no plateau shows it: v_r is -v_b");
     disc.known = true;
-    disc.constant = plateau;
-    disc.largest = std::abs(plateau);
-    if (trace.conditions.radius.known()) {
+    disc.constant = unknown ? 0 : plateau;
+    disc.largest = std::abs(disc.constant);
+    if (!unknown && trace.conditions.radius.known()) {
       trace.conditions.speed = {plateau / trace.conditions.radius.value, "plateau"};
     }
   }
+  const auto recorded = recorded_plateau(s, disc, block);
+  HealthItem clipping = check_clipping(
+      ends, trace, instruments, plateau_as_recorded(s, disc, instruments, block, stated, reversed, recorded));
   if (block && instruments.force_sensor.mass_below) {
     add_sensor_mass(trace, trace.velocity, instruments.force_sensor.mass_below->value, motion.step, motion.notes);
   }
@@ -399,7 +455,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
                    kinematics::check_revolutions(motion),
                    kinematics::check_speed_ripple(motion, rests, s.blocks.length),
                    kinematics::check_run_up(motion, options.trim, run_up),
-                   kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known())};
+                   kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known(),
+                                                   recorded)};
   return motion;
 }
 

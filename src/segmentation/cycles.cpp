@@ -197,6 +197,15 @@ void add_notes(Segmentation& result) {
   if (cycles.front().stick.size() == 0)
     result.notes.push_back("the record begins in slip: the first break-away is not in it");
   if (!cycles.back().slip_complete) result.notes.push_back("the last slip is cut off by the end of the record");
+  constexpr double least_slip = 4;  // samples that show a curve
+  std::vector<double> lengths;
+  for (const Cycle& c : cycles) lengths.push_back(static_cast<double>(c.slip.size()));
+  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
+  const double usual = lengths[lengths.size() / 2];
+  if (usual < least_slip) {
+    result.notes.push_back(
+        fmt::format("only {:.0f} sample{} a slip: too few for a curve", usual, usual == 1 ? "" : "s"));
+  }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
   if (complete < 3) result.notes.push_back(fmt::format("only {} complete cycles", complete));

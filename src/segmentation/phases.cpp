@@ -86,7 +86,11 @@ Thresholds thresholds_of(const Motion& motion) {
   if (motion.size() == 0) return t;
   const double noise = motion.velocity_noise;
   const double peak = typical_peak(motion);
-  if (peak <= 8 * noise || peak == 0) return {8 * noise, 5 * noise, 0};
+  // Rounding of omega r - v_b is no motion.
+  double fastest = std::abs(motion.plateau_velocity);
+  for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
+  fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
+  if (peak <= std::max(8 * noise, 1e-12 * fastest)) return {8 * noise, 5 * noise, 0};
   t.peak = peak;
   t.slip = std::max(0.06 * peak, std::min(8 * noise, 0.15 * peak));
   t.stick = std::max(0.03 * peak, std::min(5 * noise, 0.075 * peak));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "synthetic.hpp"
+#include "tribofit/friction/evaluate.hpp"
 #include "tribofit/segmentation/mean_error.hpp"
 
 namespace {
@@ -215,53 +216,173 @@ TEST(Fit, ProfileAgreesWithTheSymmetricIntervalWhereTheModelIsNearlyLinear) {
   }
 }
 
-TEST(Fit, SystematicPartFollowsADeclaredUncertainty) {
-  // An uncertain zero of the force sensor moves both levels by itself and nothing else.
+/// Every systematic part against a rerun with the quantity moved by its uncertainty.
+struct Moved {
+  const char* name;
+  Instruments instruments;
+  double (*friction)(double mu);
+  double (*velocity)(double v, double disc);
+};
+
+class Systematic : public testing::TestWithParam<Protocol> {};
+
+TEST_P(Systematic, PartIsWhatARerunWithTheMovedQuantityGives) {
+  Instruments zero, gain, vibrometer, load;
+  zero.force_sensor.zero = Declared{0, 0.002};
+  gain.force_sensor.gain = Declared{1, 0.01};
+  vibrometer.vibrometer.gain = Declared{1, 0.01};
+  load.rig.load = Declared{50, 0.5};
+  const auto same = [](double x) { return x; };
+  const auto same_velocity = [](double v, double) { return v; };
+  const Moved cases[] = {
+      {"zero", zero, [](double mu) { return mu - 0.002; }, same_velocity},
+      {"force gain", gain, [](double mu) { return mu / 1.01; }, same_velocity},
+      {"load", load, [](double mu) { return mu / 1.01; }, same_velocity},
+      {"vibrometer gain", vibrometer, same, [](double v, double disc) { return disc - (disc - v) / 1.01; }}};
   const FrictionModel model(BaseLaw::exponential);
   synthetic::Options options;
   options.noise = 0.001;
   const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
-  Instruments instruments;
-  instruments.force_sensor.zero = Declared{0, 0.004};
-  const Observations observations = observe(record.motion, record.segmentation);
-  const Fit fit = fit_model(model, record.motion, record.segmentation, observations, instruments);
-  EXPECT_NEAR(fit.parameters[0].systematic, 0.004, 1e-6);
-  EXPECT_NEAR(fit.parameters[1].systematic, 0.004, 1e-6);
-  EXPECT_NEAR(fit.parameters[2].systematic, 0, 1e-3);
-}
-
-TEST(Fit, SameToTheLastBitForAnyNumberOfThreads) {
-  const FrictionModel model(BaseLaw::fractional, {make_effect("viscous")});
-  synthetic::Options options;
-  options.noise = 0.003;
-  const synthetic::Record record = synthetic::make(model, {0.509, 0.318, 95.33, 0.5}, options);
-  FitOptions one, many;
-  one.threads = 1;
-  many.threads = 4;
-  const Fit a = fit_record(model, record, one), b = fit_record(model, record, many);
-  EXPECT_EQ(a.error.held_out_rmse, b.error.held_out_rmse);
-  for (std::size_t k = 0; k < a.parameters.size(); ++k) {
-    EXPECT_EQ(a.parameters[k].value, b.parameters[k].value);
-    EXPECT_EQ(a.parameters[k].std_error, b.parameters[k].std_error);
+  FitOptions with;
+  with.protocol = GetParam();
+  for (const Moved& c : cases) {
+    const Fit fit = fit_model(model, record.motion, record.segmentation,
+                              observe(record.motion, record.segmentation), c.instruments, with);
+    synthetic::Record moved = record;
+    for (double& mu : moved.motion.friction) mu = c.friction(mu);
+    for (double& v : moved.motion.relative_velocity) v = c.velocity(v, moved.motion.constant_disc_velocity);
+    for (Cycle& cycle : moved.segmentation.cycles) {
+      for (double* level : {&cycle.break_away_friction, &cycle.stick_maximum, &cycle.slip_minimum}) *level = c.friction(*level);
+    }
+    const Fit again = fit_record(model, moved, with);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double change = std::abs(again.parameters[k].value - fit.parameters[k].value);
+      EXPECT_NEAR(fit.parameters[k].systematic, change, 0.03 * change + 2e-5 * fit.parameters[k].value)
+          << c.name << " " << fit.parameters[k].parameter.name;
+    }
   }
 }
 
-TEST(Fit, HeldOutErrorIsThatOfRefitsOnEverySample) {
-  // The short cut through means over a few samples against refits evaluated sample by sample.
+INSTANTIATE_TEST_SUITE_P(Protocols, Systematic, testing::Values(Protocol::joint, Protocol::published),
+                         [](const auto& protocol) { return std::string(to_string(protocol.param)); });
+
+/// The record without the cycles of one fold.
+synthetic::Record without_fold(const synthetic::Record& record, const Fit& fit, std::size_t fold) {
+  synthetic::Record kept = record;
+  kept.segmentation.cycles.clear();
+  for (std::size_t c = 0; c < record.segmentation.cycles.size(); ++c) {
+    if (fit.fold_of(c) != fold) kept.segmentation.cycles.push_back(record.segmentation.cycles[c]);
+  }
+  return kept;
+}
+
+TEST(Fit, HeldOutParametersAreThoseOfRefits) {
+  const FrictionModel model(BaseLaw::exponential);
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.scatter = 0.01;
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  for (const Protocol protocol : {Protocol::joint, Protocol::published}) {
+    FitOptions with;
+    with.protocol = protocol;
+    const Fit fit = fit_record(model, record, with);
+    for (std::size_t fold = 0; fold < fit.fold_parameters.size(); ++fold) {
+      const Fit refit = fit_record(model, without_fold(record, fit, fold), with);
+      for (std::size_t k = 0; k < 3; ++k) {
+        // to a small part of what leaving the fold out changes
+        EXPECT_NEAR(fit.fold_parameters[fold][k], refit.parameters[k].value,
+                    0.1 * fit.parameters[k].std_error + 1e-9) << to_string(protocol) << " fold " << fold << " " << k;
+      }
+    }
+  }
+}
+
+TEST(Fit, MeansOverAFewSamplesDoNotChangeTheErrors) {
   const FrictionModel model(BaseLaw::exponential);
   synthetic::Options options;
   options.noise = 0.003;
   options.rate = 40e3;
   options.scatter = 0.01;
   const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
-  const Observations reduced = observe(record.motion, record.segmentation),
-                     every = observe(record.motion, record.segmentation, {}, 0);
-  ASSERT_GT(reduced.samples_per_value, 5u);
-  ASSERT_EQ(every.samples_per_value, 1u);
-  const Fit a = fit_model(model, record.motion, record.segmentation, reduced);
-  const Fit b = fit_model(model, record.motion, record.segmentation, every);
-  EXPECT_NEAR(a.error.held_out_rmse / b.error.held_out_rmse, 1, 1e-4);
-  EXPECT_NEAR(a.error.rmse / b.error.rmse, 1, 1e-4);
+  const Fit reduced = fit_record(model, record), every = fit_record(model, record, {}, 0);
+  EXPECT_NEAR(reduced.error.held_out_rmse / every.error.held_out_rmse, 1, 1e-4);
+  EXPECT_NEAR(reduced.error.rmse / every.error.rmse, 1, 1e-4);
+}
+
+TEST(Fit, AnEffectThatIsNotThereDoesNotMakeTheFitWorse) {
+  synthetic::Options options;
+  options.noise = 0.003;
+  const FrictionModel bare(BaseLaw::exponential);
+  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const double error = fit_record(bare, record).error.rmse;
+  EXPECT_LT(fit_record(FrictionModel(BaseLaw::exponential, {make_effect("viscous")}), record).error.rmse, 1.001 * error);
+  // The least memory within bounds, 0.5 um, still shows where these slips come to rest as gently as no rig does.
+  const FrictionModel memory(BaseLaw::exponential, {make_effect("rate-state")});
+  EXPECT_LT(fit_record(memory, record, {}, 1000).error.rmse, 1.06 * error);
+}
+
+TEST(Fit, AFormulaThatIsNotFiniteIsAReason) {
+  synthetic::Options options;
+  const FrictionModel bare(BaseLaw::exponential);
+  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
+  for (const char* text : {"x = a/0; a=0.1", "x = a*log(v-500); a=0.001", "x = a*sqrt(v-50); a=1", "x = a*1e308*1e308; a=1"}) {
+    const Fit fit = fit_record(FrictionModel(BaseLaw::exponential, {Formula(text)}), record);
+    EXPECT_FALSE(fit.converged) << text;
+    ASSERT_FALSE(fit.messages.empty()) << text;
+    EXPECT_NE(fit.messages[0].find("not finite"), std::string::npos) << fit.messages[0];
+  }
+}
+
+TEST(Fit, PublishedCoulombFrictionHasNothingLeftToFit) {
+  const FrictionModel model(BaseLaw::coulomb);
+  synthetic::Options options;
+  options.noise = 0.002;
+  FitOptions published;
+  published.protocol = Protocol::published;
+  const Fit fit = fit_record(model, synthetic::make(model, {0.5, 0.3}, options), published);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.parameters[0].value, 0.5, 0.01);
+}
+
+TEST(Fit, CurveIsTheModelInSteadySliding) {
+  synthetic::Options options;
+  options.cycles = 8;
+  const std::vector<Effect> every[] = {{make_effect("viscous")}, {make_effect("rate-state")}, {make_effect("bristle")},
+                                       {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s")}};
+  for (const auto& effects : every) {
+    const FrictionModel model(BaseLaw::exponential, effects);
+    const Fit fit = fit_record(model, synthetic::make(FrictionModel(BaseLaw::exponential),
+                                                      synthetic::table4_15mm(BaseLaw::exponential), options));
+    const double speed = 0.031;
+    const Curve curve = law_curve(fit, std::vector<double>{speed});
+    const std::vector<double> time = {0, 0.5, 1}, velocity(3, speed);
+    Slip slip;
+    slip.time = time;
+    slip.velocity = velocity;
+    std::vector<double> mu(3);
+    const std::vector<double> p = fit.values();
+    evaluate<double>(model, p.data(), slip, slip.velocity, mu);
+    EXPECT_NEAR(curve.mu[0], mu[2], 1e-12) << model.name();
+    EXPECT_LE(curve.lower95[0], curve.mu[0]);
+  }
+}
+
+TEST(Fit, EffectsScaleWithAForce) {
+  // The same record in newtons: levels and viscous coefficient times the load, same decay factor.
+  const FrictionModel model(BaseLaw::exponential, {make_effect("viscous")});
+  synthetic::Options options;
+  options.noise = 0.001;
+  synthetic::Record record = synthetic::make(model, {0.509, 0.318, 52.14, 1.0}, options);
+  const double load = 50;
+  for (double& mu : record.motion.friction) mu *= load;
+  for (Cycle& cycle : record.segmentation.cycles) cycle.break_away_friction *= load;
+  record.motion.friction_kind = FrictionKind::force;
+  const Fit fit = fit_record(model, record);
+  EXPECT_NEAR(fit.parameters[0].value, 50 * 0.509, 0.05);
+  EXPECT_NEAR(fit.parameters[3].value, 50, 2);
+  EXPECT_EQ(fit.parameters[0].parameter.unit, "N");
+  EXPECT_EQ(fit.parameters[3].parameter.unit, "N s/mm");
+  EXPECT_FALSE(fit.parameters[3].at_bound);
 }
 
 /// Coverage of a mean's 95 % interval on 4000 series: white, and first-order autoregressive.

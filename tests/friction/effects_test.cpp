@@ -1,6 +1,7 @@
 /// Each law and effect against what its equation says in closed form.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -150,6 +151,11 @@ TEST(Formula, RefusesWhatItCannotRead) {
   EXPECT_NE(problem("a*v; a=1").find("no '='"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=").find("no number"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,1]").find("bounds"), std::string::npos);
+  EXPECT_NE(problem("hump = a*v; a=5[0,10garbage]").find("bounds"), std::string::npos);
+  EXPECT_NE(problem("hump = a*v; a=5[0,inf]").find("bounds"), std::string::npos);
+  EXPECT_NE(problem("hump = v=3").find("assignment"), std::string::npos);
+  EXPECT_NE(problem("hump = a*v, 3; a=1").find("more than one"), std::string::npos);
+  EXPECT_EQ(problem("hump = a*(v>=3); a=1"), "accepted");
   EXPECT_EQ(problem("hump = a*v; a=5[0,10]"), "accepted");
 }
 
@@ -163,13 +169,17 @@ TEST(Model, RefusesTwiceTheSameAndUnknownEffects) {
   }
 }
 
-TEST(Model, LaysParametersOutInOrder) {
-  const FrictionModel model(BaseLaw::fractional, {make_effect("rate-state"), make_effect("viscous")});
-  const std::vector<std::string> expected = {"mu_s", "mu_k", "beta", "D_c", "a", "sigma"};
-  ASSERT_EQ(model.parameters().size(), expected.size());
-  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(model.parameters()[k].parameter.name, expected[k]);
-  EXPECT_EQ(model.offset(1), 5u);
-  EXPECT_EQ(model.name(), "fractional + rate-state + viscous");
+TEST(Model, LaysParametersOutInOneOrderForAnyOrderGiven) {
+  const std::vector<std::string> expected = {"mu_s", "mu_k", "beta", "sigma", "D_c", "a", "sigma0", "sigma1"};
+  for (const bool reversed : {false, true}) {
+    std::vector<Effect> effects = {make_effect("bristle"), make_effect("rate-state"), make_effect("viscous")};
+    if (reversed) std::reverse(effects.begin(), effects.end());
+    const FrictionModel model(BaseLaw::fractional, effects);
+    ASSERT_EQ(model.parameters().size(), expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(model.parameters()[k].parameter.name, expected[k]);
+    EXPECT_EQ(model.offset(1), 4u);
+    EXPECT_EQ(model.name(), "fractional + viscous + rate-state + bristle");
+  }
 }
 
 }  // namespace

@@ -132,5 +132,31 @@ TEST_F(BadInput, ConditionsThatCannotBe) {
   expect_error(write("time_s,mu,v_b_mm_s\n0,1,10\n"), {}, "one row only", "two samples");
 }
 
+TEST_F(BadInput, ALoneTimeStampInThePastIsNoRestart) {
+  const auto with_stamp = [](int row, const char* stamp, int rows) {
+    std::string text = "time_s,mu,v_b_mm_s\n";
+    for (int i = 0; i < rows; ++i) {
+      text += (i == row ? std::string(stamp) : fmt::format("{:.1f}", 0.1 * i)) + ",0.3,6.1\n";
+    }
+    return text;
+  };
+  expect_error(write(with_stamp(30, "0.0", 60)), {}, "time goes backwards", "sort", 32, "time_s");
+  expect_error(write(with_stamp(59, "0.0", 60)), {}, "time goes backwards", "sort", 61, "time_s");
+  std::string restart = with_stamp(-1, "", 30);
+  for (int i = 0; i < 30; ++i) restart += fmt::format("{:.1f},0.3,6.1\n", 0.1 * i);
+  EXPECT_EQ(read_trace(write(restart)).steps.size(), 2U);
+}
+
+TEST_F(BadInput, APartOfTheRunGivenTwice) {
+  const std::string file = write(table("0.3,0.33,6.4\n")), next = write(table("0.3,0.33,6.4\n"), "next.csv");
+  ReadOptions options;
+  options.continued_in = {next};
+  EXPECT_NO_THROW(read_trace(file, options)) << "another file that happens to hold the same";
+  options.continued_in = {(folder_ / "." / "trace.csv").string()};
+  EXPECT_THROW(read_trace(file, options), InputError);
+  options.continued_in = {next, next};
+  EXPECT_THROW(read_trace(file, options), InputError);
+}
+
 }  // namespace
 }  // namespace tribofit

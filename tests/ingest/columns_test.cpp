@@ -209,5 +209,31 @@ TEST_F(Columns_, OnlyNeededColumnsMustBeNumbers) {
   EXPECT_THAT(trace.friction, ::testing::ElementsAre(0.1, 0.2, 0.3));
 }
 
+TEST_F(Columns, AStatedSpeedBeatsAColumnThatContradictsIt) {
+  const auto with_speed = [](double rpm) {
+    std::string text = "time_s,mu,v_b_mm_s,speed_rpm\n";
+    for (int i = 0; i < 40; ++i) text += fmt::format("{:.1f},0.3,6.1,{}\n", 0.1 * i, rpm);
+    return text;
+  };
+  ReadOptions options;
+  options.conditions.speed = {4 * 2 * std::numbers::pi / 60, "command line"};
+  for (const double rpm : {8.0, -4.0, 0.0}) {
+    const Trace trace = read_trace(write(with_speed(rpm)), options);
+    EXPECT_TRUE(trace.disc_speed.empty()) << rpm;
+    EXPECT_EQ(trace.conditions.speed.source, "command line");
+    EXPECT_THAT(trace.warnings, Contains(HasSubstr("stated speed of 4 rpm (command line) contradicts"))) << rpm;
+  }
+  const Trace agrees = read_trace(write(with_speed(4.02)), options);
+  EXPECT_EQ(agrees.disc_speed.size(), agrees.size());
+  EXPECT_TRUE(agrees.warnings.empty());
+}
+
+TEST_F(Columns, ACoefficientAboveFiveIsDoubted) {
+  const std::string header = "time_s,mu,v_b_mm_s\n";
+  EXPECT_THAT(read_trace(write(header + "0,15,1\n1,17.5,2\n2,16,1\n")).warnings,
+              Contains(HasSubstr("friction reaches 17.5: is the column really a coefficient?")));
+  EXPECT_TRUE(read_trace(write(header + "0,1.5,1\n1,4.9,2\n2,1,1\n")).warnings.empty());
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -68,5 +68,32 @@ TEST_F(InstrumentsFile, MistakesAreNamed) {
   EXPECT_THROW(read_instruments(path("absent.json")), InputError);
 }
 
+TEST_F(InstrumentsFile, AZeroInNewtonsIsOneOfTheForce) {
+  const auto sensor = read_instruments(write(R"({"force_sensor": {"zero": ["0.5 N", "0.1 N"]}})")).force_sensor;
+  EXPECT_TRUE(sensor.zero_is_force);
+  const auto of_mu = zero_of_friction(sensor, FrictionKind::coefficient, {50, "command line"});
+  EXPECT_DOUBLE_EQ(of_mu->value, 0.01);
+  EXPECT_DOUBLE_EQ(of_mu->uncertainty, 0.002);
+  EXPECT_DOUBLE_EQ(zero_of_friction(sensor, FrictionKind::force, {})->value, 0.5);
+  EXPECT_THROW(zero_of_friction(sensor, FrictionKind::coefficient, {}), InputError);
+  const auto bare = read_instruments(write(R"({"force_sensor": {"zero": 0.02}})")).force_sensor;
+  EXPECT_FALSE(bare.zero_is_force);
+  EXPECT_DOUBLE_EQ(zero_of_friction(bare, FrictionKind::coefficient, {})->value, 0.02);
+}
+
+TEST_F(InstrumentsFile, NumbersBeyondRangeAndRepeatedKeysAreNamed) {
+  expect_refused(R"({"rig": {"load": "50 N"}, "vibrometer": {"gain": 1e999}})",
+                 "vibrometer.gain: a number is outside the range", "correct");
+  expect_refused(R"({"rig": {"radius": ["15 mm", 1e999]}})", "rig.radius: a number is outside the range", "correct");
+  expect_refused(R"({"rig": {"load": "50 N", "radius": "15 mm", "load": "60 N"}})", "rig.load: is there twice", "one");
+  expect_refused(R"({"rig": {"load": "50 N"}, "rig": {"radius": "15 mm"}})", "rig: is there twice", "one");
+  EXPECT_NO_THROW(read_instruments(
+      write(R"({"rig": {"load": {"value": "50 N"}, "radius": {"value": "15 mm"}}})", "lab.json")));
+}
+
+TEST_F(InstrumentsFile, TheArticleFitsTheQuantity) {
+  expect_refused(R"({"rig": {"speed": "4 mm"}})", "is a length, not an angular velocity", "give an angular velocity");
+}
+
 }  // namespace
 }  // namespace tribofit

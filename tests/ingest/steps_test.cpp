@@ -98,5 +98,14 @@ TEST_F(Steps, AnAngleThatWrapsIsUnwrapped) {
   EXPECT_NEAR(trace.disc_angle.back() - trace.disc_angle.front(), 990 * std::numbers::pi / 180, 1e-9);
 }
 
+TEST_F(Steps, TheRateIsThatBetweenTheGaps) {
+  const Trace gap = read_trace(write("time_s,mu,v_b_mm_s\n" + stretch(0, 40) + stretch(50, 40)));
+  EXPECT_NEAR(gap.rate(), 10, 1e-9);
+  // A clock written with too few digits: intervals of 3, 3 and 4 units are a third of 10 units each.
+  std::string rounded = "time_s,mu,v_b_mm_s\n";
+  for (int i = 0; i <= 300; ++i) rounded += fmt::format("{:.1f},0.3,6\n", i / 3.0);
+  EXPECT_NEAR(read_trace(write(rounded)).rate(), 3, 1e-9);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -117,6 +118,71 @@ TEST(Health, BandwidthOfAFilteredChannel) {
   EXPECT_EQ(found.status, Status::warning);
   EXPECT_THAT(found.message, ::testing::HasSubstr("velocity falls"));
   EXPECT_THAT(found.message, ::testing::HasSubstr("friction stands"));
+}
+
+TEST(Health, HalfTheSamplesClipped) {
+  for (double noise : {2e-5, 0.0}) {
+    truth::Rig rig;
+    rig.velocity_noise = noise;
+    Trace trace = truth::simulate(rig).trace;
+    std::vector<double> sorted = trace.velocity;
+    std::sort(sorted.begin(), sorted.end());
+    const double limit = sorted[sorted.size() * 2 / 5];
+    for (double& v : trace.velocity) v = std::max(v, limit);
+    const HealthItem found = item(compute_motion(std::move(trace)), "clipping");
+    EXPECT_EQ(found.status, Status::problem) << noise;
+    EXPECT_THAT(found.message, ::testing::HasSubstr("velocity stays at")) << noise;
+  }
+  Trace trace = truth::simulate(truth::Rig{}).trace;
+  std::vector<double> sorted = trace.friction;
+  std::sort(sorted.begin(), sorted.end());
+  for (double& mu : trace.friction) mu = std::min(mu, sorted[sorted.size() / 2]);
+  EXPECT_THAT(item(compute_motion(std::move(trace)), "clipping").message, ::testing::HasSubstr("friction stays at"));
+}
+
+TEST(Health, APlateauWithoutNoiseIsNoClipping) {
+  for (bool coulomb : {false, true}) {
+    for (bool stated : {true, false}) {
+      truth::Rig rig;
+      rig.friction_noise = rig.velocity_noise = 0;
+      rig.coulomb = coulomb;
+      Trace trace = truth::simulate(rig).trace;
+      if (!stated) trace.conditions.speed = {};
+      const HealthItem found = item(compute_motion(std::move(trace)), "clipping");
+      EXPECT_EQ(found.status, Status::ok) << found.message;
+    }
+  }
+}
+
+TEST(Health, ChannelsThatStandStill) {
+  for (double from : {0.4, 0.9}) {
+    Trace trace = truth::simulate(truth::Rig{}).trace;
+    const auto begin = static_cast<std::size_t>(from * static_cast<double>(trace.size()));
+    const auto end = begin + trace.size() * 6 / 100;
+    for (std::size_t i = begin; i < end; ++i) {
+      trace.friction[i] = trace.friction[begin];
+      trace.velocity[i] = trace.velocity[begin];
+    }
+    const HealthItem found = item(compute_motion(std::move(trace)), "drop-outs");
+    EXPECT_EQ(found.status, Status::problem);
+    EXPECT_THAT(found.message, ::testing::HasSubstr("both channels stand still"));
+  }
+}
+
+TEST(Health, ARecordedSpeedIsComparedWithThePlateau) {
+  const auto with_column = [](double factor) {
+    truth::Rig rig;
+    Trace trace = truth::simulate(rig).trace;
+    trace.conditions.speed = {};
+    trace.disc_speed.assign(trace.size(), factor * rig.speed());
+    return item(compute_motion(std::move(trace)), "plateau-speed");
+  };
+  EXPECT_EQ(with_column(1).status, Status::ok) << with_column(1).message;
+  EXPECT_EQ(with_column(1.05).status, Status::warning) << with_column(1.05).message;
+  EXPECT_EQ(with_column(0.95).status, Status::warning) << with_column(0.95).message;
+  for (double factor : {2.0, -1.0, 0.0, 0.1, 30.0}) {
+    EXPECT_EQ(with_column(factor).status, Status::problem) << factor << ": " << with_column(factor).message;
+  }
 }
 
 }  // namespace

@@ -254,5 +254,49 @@ TEST(Motion, DegenerateRecordsAreNoAccident) {
   }
 }
 
+TEST(Motion, AZeroInNewtonsIsDividedByTheLoad) {
+  truth::Rig rig;
+  rig.duration = 2;
+  const Trace trace = truth::simulate(rig).trace;
+  Instruments instruments;
+  instruments.force_sensor.zero = Declared{0.5, 0};
+  instruments.force_sensor.zero_is_force = true;
+  const Motion nominal = compute_motion(trace, instruments);
+  EXPECT_NEAR(nominal.friction[100], trace.friction[100] - 0.01, 1e-12);
+  Trace measured = trace;
+  measured.load.assign(trace.size(), 40);
+  EXPECT_NEAR(compute_motion(measured, instruments).friction[100], trace.friction[100] - 0.0125, 1e-12);
+  Trace unknown = trace;
+  unknown.conditions.load = {};
+  EXPECT_THROW(compute_motion(unknown, instruments), InputError);
+}
+
+TEST(Motion, TheStepIsThatBetweenTheGaps) {
+  truth::Rig rig;
+  rig.duration = 2;
+  Trace trace = truth::simulate(rig).trace;
+  for (std::size_t i = trace.size() / 2; i < trace.size(); ++i) trace.time[i] += 5;
+  EXPECT_NEAR(compute_motion(std::move(trace)).step, 1 / rig.rate, 1e-12);
+}
+
+TEST(Motion, ValidButUselessDataAreNoError) {
+  for (std::size_t n : {2u, 3u, 5u, 10u, 4000u}) {
+    Trace trace = constant_trace(n, 0);
+    trace.conditions.radius = {0.015, "command line"};
+    const Motion zero = compute_motion(trace);
+    EXPECT_EQ(zero.size(), n);
+    EXPECT_FALSE(zero.conditions.speed.known());
+    EXPECT_EQ(zero.relative_velocity[n - 1], 0);
+    EXPECT_FALSE(zero.notes.empty());
+    trace.friction.assign(n, 0);
+    EXPECT_NO_THROW(compute_motion(trace));
+    if (n > 10) continue;
+    for (std::size_t i = 0; i < n; ++i) trace.velocity[i] = 1e-3 * static_cast<double>((i * 7) % 5) - 1e-3;
+    EXPECT_NO_THROW(compute_motion(trace)) << n;
+    trace.conditions.speed = {0.4, "command line"};
+    EXPECT_NO_THROW(compute_motion(trace)) << n;
+  }
+}
+
 }  // namespace
 }  // namespace tribofit

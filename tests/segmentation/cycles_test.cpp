@@ -246,5 +246,53 @@ TEST(Cycles, TwoSlipsAreFewerThanThreeCyclesAndSaid) {
   EXPECT_FALSE(s.notes.empty());
 }
 
+TEST(Cycles, PureStickNeverSlips) {
+  for (bool stated : {true, false}) {
+    Trace trace;
+    const double radius = 0.015, speed = 4 * 2 * std::numbers::pi / 60;
+    for (int i = 0; i < 4000; ++i) {
+      trace.time.push_back(1e-3 * i);
+      trace.velocity.push_back(6.283185e-3);
+      trace.friction.push_back(0.3 + 1e-5 * i);
+    }
+    trace.steps = {{0, trace.size(), "", {}}};
+    trace.conditions.radius = {radius, "command line"};
+    if (stated) trace.conditions.speed = {speed, "command line"};
+    const Segmentation s = find_cycles(compute_motion(std::move(trace)));
+    EXPECT_EQ(s.kind, MotionKind::always_sticking);
+    ASSERT_EQ(s.notes.size(), 1u);
+    EXPECT_EQ(s.notes[0], "the record never slips");
+  }
+}
+
+TEST(Cycles, AFewSamplesAreNoError) {
+  for (std::size_t n = 2; n <= 10; ++n) {
+    Trace trace;
+    for (std::size_t i = 0; i < n; ++i) {
+      trace.time.push_back(1e-3 * static_cast<double>(i));
+      trace.velocity.push_back(1e-3 * static_cast<double>((i * 7) % 5) - 1e-3);
+      trace.friction.push_back(0.3);
+    }
+    trace.steps = {{0, n, "", {}}};
+    trace.conditions.radius = {0.015, "command line"};
+    expect_ordered(find_cycles(compute_motion(trace)), n);
+    trace.velocity.assign(n, 0);
+    expect_ordered(find_cycles(compute_motion(trace)), n);
+  }
+}
+
+TEST(Cycles, TooFewSamplesASlipAreSaid) {
+  const auto notes_at = [](double rate) {
+    truth::Rig rig;
+    rig.rate = rate;
+    rig.duration = 20;
+    std::string all;
+    for (const std::string& note : find_cycles(compute_motion(truth::simulate(rig).trace)).notes) all += note + "; ";
+    return all;
+  };
+  EXPECT_NE(notes_at(100).find("too few for a curve"), std::string::npos) << notes_at(100);
+  EXPECT_EQ(notes_at(5000).find("too few for a curve"), std::string::npos) << notes_at(5000);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -74,6 +74,7 @@ struct Fit {
   std::vector<FitParameter> parameters;
   ErrorFigures error;
   Floor floor;
+  double constant_rmse = 0;  ///< what a constant |friction| would leave [1 or N]
   double explained = 0;  ///< share of the error above the floor that the model explains, against constant friction
   bool converged = false;
   int iterations = 0;
@@ -82,6 +83,8 @@ struct Fit {
   double stick_rmse =
       0;               ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
   double fastest = 0;  ///< the data reach up to this |v_r| [m/s]
+  double slowest = 0;  ///< and down to this one; 0 where slips begin in stick [m/s]
+  double degrees_of_freedom = 1;  ///< of the t distribution of the statistical errors
   std::vector<Correlation> correlations;             ///< those above 0.9 in size, largest first
   std::vector<double> covariance;                    ///< of the values (SI), row by row, statistical
   std::vector<double> cycle_squares;                 ///< held-out sum of squares of each cycle
@@ -98,14 +101,17 @@ struct Fit {
 ///
 /// Statistical errors come from the cycles: the influence of each cycle on each parameter (jackknife, one Newton step)
 /// is a series in time whose mean_error() is the standard error. So neither coloured noise nor a break-away level that
-/// wanders breaks them. Errors on held-out cycles come from refits that leave out contiguous blocks of cycles. `motion`
-/// serves the error figures on every sample. Cost: linear in samples.
+/// wanders breaks them. Errors on held-out cycles: contiguous blocks of cycles are left out in turn and the rest
+/// refitted, by one Gauss-Newton step from the fit of all. `motion` serves the error figures on every sample. Cost: linear in samples.
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
 /// Sensor noise and break-away scatter. Noise is taken about a smooth ramp in stick (or about local fits in slip where
 /// nothing sticks), from the spread itself and not from differences, so that coloured noise is not underestimated.
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
+
+/// Sets the floor of a fit and the share of the error above it that the model explains.
+void set_floor(const Floor& floor, Fit& fit);
 
 /// Which of two fits predicts held-out cycles better.
 struct Comparison {
@@ -116,7 +122,8 @@ struct Comparison {
 };
 Comparison compare_held_out(const Fit& first, const Fit& second);
 
-/// mu(v) of a fit with its pointwise 95 % band (statistical), steady state, at the given speeds [m/s].
+/// mu(v) of a fit with its pointwise 95 % band (statistical) in steady sliding at the given speeds [m/s], at mean load and
+/// temperature, at the start of the record.
 struct Curve {
   std::vector<double> velocity, mu, lower95, upper95;
 };

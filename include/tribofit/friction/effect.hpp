@@ -29,6 +29,7 @@ namespace tribofit {
 ///        it)
 ///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick
 ///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
+///   void modulate_all(p, const Slip&, std::span<const T> velocity, std::span<T> mu)   the same, a whole slip at a time
 ///   void sense(p, const Slip&, std::span<T> mu)           what the sensor reads of it, a whole slip at a time
 ///
 /// All memories of the catalogue are linear in their state, which makes a step over any interval exact and stable.

@@ -65,7 +65,8 @@ class Formula {
     return x.v.squaredNorm() > 0;
   }
 
-  /// terms[i] of the formula for parameter values (SI) at every sample. Throws InputError where it is not finite.
+  /// terms[i] of the formula for parameter values (in the units of the formula) at every sample. Not finite where the
+  /// expression is not.
   void evaluate(std::span<const double> values, const Slip& slip, std::span<const double> speed,
                 std::span<double> terms) const;
   /// d term/d parameter k (k == parameter_count(): d term/d speed), by central differences.

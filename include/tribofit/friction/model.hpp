@@ -17,7 +17,8 @@ namespace tribofit {
 /// order.
 class FrictionModel {
  public:
-  /// Throws InputError when two effects are the same.
+  /// Effects are put into the order of the catalogue, those that act in stick and the user's own last.
+  /// Throws InputError when two effects are the same, or two act in stick.
   explicit FrictionModel(BaseLaw law, std::vector<Effect> effects = {});
 
   struct Slot {

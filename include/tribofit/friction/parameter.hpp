@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace tribofit {
@@ -12,6 +13,9 @@ struct Parameter {
   double si = 1;                ///< SI value of one `unit`
   double lower = 0, upper = 0;  ///< plausible bounds for dry contacts [unit]
   double start = 0;             ///< where a search begins when the data say nothing better [unit]
+  /// Where the effect says nothing, or as little as its bounds allow [unit]; NaN: at `start`.
+  double neutral = std::numeric_limits<double>::quiet_NaN();
+  bool of_friction = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
 };
 
 }  // namespace tribofit

@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "tribofit/ingest/trace.hpp"
+
 namespace tribofit {
 
 /// A declared value with its standard uncertainty, in SI.
@@ -25,7 +27,8 @@ struct Instruments {
   } vibrometer;
   struct ForceSensor {
     std::optional<Declared> bandwidth;   ///< second-order corner [Hz]
-    std::optional<Declared> zero;        ///< reading at no force, of mu [1] (or of Ft [N] when friction is a force)
+    std::optional<Declared> zero;        ///< reading at no force: of mu [1], or of Ft [N] (see zero_is_force)
+    bool zero_is_force = false;          ///< the zero was declared in N
     std::optional<Declared> crosstalk;   ///< part of Fn that shows in Ft [1]
     std::optional<Declared> mass_below;  ///< mass hanging below the sensor [kg]
     std::optional<Declared> gain;        ///< reading over true friction [1]
@@ -45,5 +48,10 @@ struct Instruments {
 /// {"value": "0.5 Hz", "uncertainty": "0.05 Hz"}). Throws InputError naming the key for unknown keys (nearest known
 /// one offered), wrong units, values that cannot be.
 Instruments read_instruments(const std::string& path);
+
+/// The declared zero of the force sensor in the unit of the friction channel: a zero in N over the load [N] where
+/// friction is a coefficient. Nothing when none is declared. Throws InputError where a load is needed and not known.
+std::optional<Declared> zero_of_friction(const Instruments::ForceSensor& sensor, FrictionKind kind,
+                                         const Condition& load);
 
 }  // namespace tribofit

@@ -58,8 +58,11 @@ struct Trace {
 
   std::size_t size() const { return time.size(); }
   double duration() const { return time.empty() ? 0 : time.back() - time.front(); }
-  /// Samples per second: (n-1)/duration.
-  double rate() const { return time.size() > 1 ? double(time.size() - 1) / duration() : 0; }
+  /// Sampling interval [s]: the mean of the intervals that are no gaps (up to 1.5 times the median; the median itself
+  /// would take over the rounding of a clock written with few digits). 0 for fewer than two samples. Cost: one pass.
+  double interval() const;
+  /// Samples per second: 1/interval.
+  double rate() const { return time.size() > 1 ? 1 / interval() : 0; }
 };
 
 }  // namespace tribofit

@@ -21,7 +21,8 @@ struct Bristle {
                 "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
                 "(1995) 419, doi:10.1109/9.376053",
             .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
-            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0.0}},
+            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100, 2000, true},
+                           {"sigma1", "s/mm", 1e3, 0, 0.1, 0, 0, true}},
             .needs = {.lead = true}};
   }
 

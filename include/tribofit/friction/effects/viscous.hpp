@@ -14,7 +14,7 @@ struct Viscous {
                 "R. Stribeck, Z. VDI 46 (1902) 1341; B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "
                 "Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7",
             .experiment = "run four times the disc speed: the excess keeps growing in a straight line",
-            .parameters = {{"sigma", "s/mm", 1e3, -0.0005, 0.002, 0.0}}};
+            .parameters = {{"sigma", "s/mm", 1e3, -0.0005, 0.002, 0.0, 0.0, true}}};
   }
 
   template <class T>
