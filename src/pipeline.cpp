@@ -17,7 +17,6 @@ namespace {
 std::vector<std::pair<FrictionModel, FitOptions>> plan(const IdentifyOptions& options) {
   std::vector<std::pair<FrictionModel, FitOptions>> fits;
   FitOptions inner = options.fit;
-  inner.threads = 1;  // fits run beside each other
   for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, options.effects), inner);
   inner.protocol = Protocol::published;
   for (const BaseLaw law : options.laws) {
@@ -44,7 +43,7 @@ void share_floor(std::vector<Fit>& fits, std::size_t best) {
   }
 }
 
-/// Where the instruments file contradicts what was used.
+/// Where the instruments file contradicts what was used, or says more than is used.
 void compare_declared(const Motion& motion, const Instruments& instruments, std::vector<std::string>& warnings) {
   const auto compare = [&](const Condition& used, const std::optional<Declared>& declared, const char* name) {
     if (!declared || !used.known() || used.source == "instruments file") return;
@@ -56,6 +55,12 @@ void compare_declared(const Motion& motion, const Instruments& instruments, std:
   compare(motion.conditions.radius, instruments.rig.radius, "radius");
   compare(motion.conditions.speed, instruments.rig.speed, "disc speed");
   compare(motion.conditions.load, instruments.rig.load, "load");
+  const auto unused = [&](const std::optional<Declared>& declared, const char* name) {
+    if (declared) warnings.push_back(fmt::format("{} is declared in the instruments file but nothing uses it yet", name));
+  };
+  unused(instruments.rig.stiffness, "rig.stiffness");
+  unused(instruments.rig.ping_frequency, "rig.ping_frequency");
+  unused(instruments.rig.pad_radius, "rig.pad_radius");
 }
 
 /// What the instruments file says of the conditions, where neither the user nor the manifest said it.
@@ -75,10 +80,15 @@ bool is_constant(const std::vector<double>& channel) {
 
 /// What keeps the data from carrying an analysis, as sentences; none when nothing does.
 std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation) {
+  constexpr std::size_t kFewestSamples = 16;
   std::vector<std::string> found;
+  if (motion.size() < kFewestSamples) {
+    found.push_back(fmt::format("there are only {} samples: too few for any analysis", motion.size()));
+    return found;
+  }
   if (is_constant(motion.friction))
     found.push_back("friction is the same in every sample: the channel was not recorded");
-  if (is_constant(motion.relative_velocity) && motion.velocity_kind != VelocityKind::fixed_block) {
+  if (is_constant(motion.relative_velocity) && !motion.sticks && motion.velocity_kind != VelocityKind::fixed_block) {
     found.push_back("the velocity is the same in every sample: the channel was not recorded");
   }
   if (found.empty() && segmentation.kind == MotionKind::always_sticking) {
@@ -139,7 +149,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   }
   const auto fits = plan(options);
   out.fits.resize(fits.size());
-  run_tasks(fits.size(), options.fit.threads, [&](std::size_t k) {
+  run_tasks(fits.size(), options.threads, [&](std::size_t k) {
     out.fits[k] =
         fit_model(fits[k].first, out.motion, out.segmentation, observations, options.instruments, fits[k].second);
   });

@@ -124,7 +124,7 @@ IdentifyOptions options_from(const Settings& s) {
   if (!s.rate.empty()) options.read.rate = positive(s.rate, Quantity::frequency, "--rate");
   options.read.second_file = s.second_file;
   options.read.continued_in = s.continued_in;
-  options.read.threads = options.fit.threads = s.threads;
+  options.read.threads = options.threads = s.threads;
   options.motion.trim = s.trim;
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
 

@@ -96,7 +96,8 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
                          low_pass_delay(sensor.bandwidth, 2 * kSensorDamping)}) {
     if (u > 0) shifts.push_back({slopes(observations, u), {}});
   }
-  if (const double u = uncertainty(sensor.zero); u > 0) shifts.push_back({{}, {}, -u, 0});
+  const auto zero = zero_of_friction(sensor, motion.friction_kind, motion.conditions.load);
+  if (const double u = uncertainty(zero); u > 0) shifts.push_back({{}, {}, -u, 0});
   if (const double u = uncertainty(sensor.crosstalk); u > 0) shifts.push_back({{}, {}, -u, 0});
   if (const double u = uncertainty(sensor.gain); u > 0) shifts.push_back({{}, {}, 0, -u / sensor.gain->value});
   if (const double u = uncertainty(rig.load); u > 0 && !sensor.load_measured) {

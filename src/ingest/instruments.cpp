@@ -30,8 +30,9 @@ class InstrumentsReader {
     text.resize(file.read(0, text));
     Json root;
     try {
-      root = Json::parse(text, [this](int, Json::parse_event_t event, Json& parsed) { return follow(event, parsed); },
-                         true, true);  // comments are allowed
+      root = Json::parse(
+          text, [this](int, Json::parse_event_t event, Json& parsed) { return follow(event, parsed); }, true,
+          true);  // comments are allowed
     } catch (const Json::out_of_range&) {
       fail(current_key(), "a number is outside the range of numbers", "correct the number");
     } catch (const Json::parse_error& error) {
@@ -210,8 +211,9 @@ std::optional<Declared> zero_of_friction(const Instruments::ForceSensor& sensor,
                                          const Condition& load) {
   if (!sensor.zero || !sensor.zero_is_force || kind == FrictionKind::force) return sensor.zero;
   if (!(load.value > 0)) {
-    throw InputError("the zero of the force sensor is declared in N, but friction is a coefficient and no load is known",
-                     "give the load with --load 50N, or the zero as a coefficient");
+    throw InputError(
+        "the zero of the force sensor is declared in N, but friction is a coefficient and no load is known",
+        "give the load with --load 50N, or the zero as a coefficient");
   }
   return Declared{sensor.zero->value / load.value, sensor.zero->uncertainty / load.value};
 }

@@ -42,8 +42,8 @@ void subtract_zero(Trace& trace, const Instruments::ForceSensor& sensor, std::ve
     for (std::size_t i = 0; i < trace.friction.size(); ++i) {
       if (trace.load[i] > 0) trace.friction[i] -= sensor.zero->value / trace.load[i];
     }
-    notes.push_back(fmt::format("friction: declared zero {:.4g} N over the measured load subtracted",
-                                sensor.zero->value));
+    notes.push_back(
+        fmt::format("friction: declared zero {:.4g} N over the measured load subtracted", sensor.zero->value));
     return;
   }
   const double zero = zero_of_friction(sensor, trace.friction_kind, trace.conditions.load)->value;

@@ -203,10 +203,10 @@ HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chu
   HealthItem item{"drop-outs", Status::ok, fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
   if (frozen.length >= 16 && 20 * frozen.length > n && frozen.length < n) {
     item.status = Status::problem;
-    item.message = fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
-                               trace.time[frozen.begin],
-                               trace.time[frozen.begin + frozen.length - 1] - trace.time[frozen.begin],
-                               100 * static_cast<double>(frozen.length) / static_cast<double>(n));
+    item.message =
+        fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
+                    trace.time[frozen.begin], trace.time[frozen.begin + frozen.length - 1] - trace.time[frozen.begin],
+                    100 * static_cast<double>(frozen.length) / static_cast<double>(n));
     return item;
   }
   if (gaps.count == 0 && spikes == 0) return item;

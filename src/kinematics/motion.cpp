@@ -263,6 +263,7 @@ void make_relative(std::vector<double>& velocity, const Disc& disc) {
 
 // Friction opposes sliding: where it is recorded with the other sign throughout, the sign is settled once.
 void settle_friction_sign(Motion& motion, double scale) {
+  if (scale == 0) return;
   double agreement = 0, total = 0;
   const std::size_t stride = std::max<std::size_t>(1, motion.size() / 65536);
   for (std::size_t i = 0; i < motion.size(); i += stride) {
@@ -306,8 +307,8 @@ std::optional<kinematics::RecordedPlateau> recorded_plateau(const Survey& s, con
 }
 
 // Where the velocity as recorded repeats in stick when there is no noise.
-std::optional<double> plateau_as_recorded(const Survey& s, const Disc& disc, const Instruments& instruments,
-                                          bool block, bool stated, bool reversed,
+std::optional<double> plateau_as_recorded(const Survey& s, const Disc& disc, const Instruments& instruments, bool block,
+                                          bool stated, bool reversed,
                                           const std::optional<kinematics::RecordedPlateau>& recorded) {
   double level = 0;  // of v_r
   if (block) {
@@ -397,8 +398,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
     }
   }
   const auto recorded = recorded_plateau(s, disc, block);
-  HealthItem clipping = check_clipping(
-      ends, trace, instruments, plateau_as_recorded(s, disc, instruments, block, stated, reversed, recorded));
+  HealthItem clipping = check_clipping(ends, trace, instruments,
+                                       plateau_as_recorded(s, disc, instruments, block, stated, reversed, recorded));
   if (block && instruments.force_sensor.mass_below) {
     add_sensor_mass(trace, trace.velocity, instruments.force_sensor.mass_below->value, motion.step, motion.notes);
   }
@@ -435,7 +436,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   }
   double scale = s.rests.depth;
   if (scale == 0) scale = largest_of(motion.relative_velocity);
-  settle_friction_sign(motion, scale);
+  if (disc.largest > 0 || !block) settle_friction_sign(motion, scale);
 
   // Rests in blocks of the trimmed record.
   Rests rests = s.rests;
@@ -443,20 +444,20 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   std::erase_if(rests.runs, [&](const Rest& run) { return run.begin < cut || run.end - cut > kept; });
   for (Rest& run : rests.runs) run.begin -= cut, run.end -= cut;
 
-  motion.health = {std::move(clipping),
-                   std::move(drop_outs),
-                   kinematics::check_sagging(sag, declared, undo, s.sticks),
-                   kinematics::check_bandwidth(motion.friction,
-                                               motion.velocity_kind == VelocityKind::fixed_block
-                                                   ? std::span<const double>()
-                                                   : std::span<const double>(motion.relative_velocity),
-                                               motion.step),
-                   kinematics::check_channel_delay(motion, rests, s.blocks.length),
-                   kinematics::check_revolutions(motion),
-                   kinematics::check_speed_ripple(motion, rests, s.blocks.length),
-                   kinematics::check_run_up(motion, options.trim, run_up),
-                   kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known(),
-                                                   recorded)};
+  motion.health = {
+      std::move(clipping),
+      std::move(drop_outs),
+      kinematics::check_sagging(sag, declared, undo, s.sticks),
+      kinematics::check_bandwidth(motion.friction,
+                                  motion.velocity_kind == VelocityKind::fixed_block
+                                      ? std::span<const double>()
+                                      : std::span<const double>(motion.relative_velocity),
+                                  motion.step),
+      kinematics::check_channel_delay(motion, rests, s.blocks.length),
+      kinematics::check_revolutions(motion),
+      kinematics::check_speed_ripple(motion, rests, s.blocks.length),
+      kinematics::check_run_up(motion, options.trim, run_up),
+      kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known(), recorded)};
   return motion;
 }
 

@@ -209,7 +209,7 @@ TEST_F(Columns_, OnlyNeededColumnsMustBeNumbers) {
   EXPECT_THAT(trace.friction, ::testing::ElementsAre(0.1, 0.2, 0.3));
 }
 
-TEST_F(Columns, AStatedSpeedBeatsAColumnThatContradictsIt) {
+TEST_F(Columns_, AStatedSpeedBeatsAColumnThatContradictsIt) {
   const auto with_speed = [](double rpm) {
     std::string text = "time_s,mu,v_b_mm_s,speed_rpm\n";
     for (int i = 0; i < 40; ++i) text += fmt::format("{:.1f},0.3,6.1,{}\n", 0.1 * i, rpm);
@@ -228,7 +228,7 @@ TEST_F(Columns, AStatedSpeedBeatsAColumnThatContradictsIt) {
   EXPECT_TRUE(agrees.warnings.empty());
 }
 
-TEST_F(Columns, ACoefficientAboveFiveIsDoubted) {
+TEST_F(Columns_, ACoefficientAboveFiveIsDoubted) {
   const std::string header = "time_s,mu,v_b_mm_s\n";
   EXPECT_THAT(read_trace(write(header + "0,15,1\n1,17.5,2\n2,16,1\n")).warnings,
               Contains(HasSubstr("friction reaches 17.5: is the column really a coefficient?")));

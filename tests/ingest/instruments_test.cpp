@@ -87,8 +87,8 @@ TEST_F(InstrumentsFile, NumbersBeyondRangeAndRepeatedKeysAreNamed) {
   expect_refused(R"({"rig": {"radius": ["15 mm", 1e999]}})", "rig.radius: a number is outside the range", "correct");
   expect_refused(R"({"rig": {"load": "50 N", "radius": "15 mm", "load": "60 N"}})", "rig.load: is there twice", "one");
   expect_refused(R"({"rig": {"load": "50 N"}, "rig": {"radius": "15 mm"}})", "rig: is there twice", "one");
-  EXPECT_NO_THROW(read_instruments(
-      write(R"({"rig": {"load": {"value": "50 N"}, "radius": {"value": "15 mm"}}})", "lab.json")));
+  EXPECT_NO_THROW(
+      read_instruments(write(R"({"rig": {"load": {"value": "50 N"}, "radius": {"value": "15 mm"}}})", "lab.json")));
 }
 
 TEST_F(InstrumentsFile, TheArticleFitsTheQuantity) {

@@ -287,6 +287,7 @@ TEST(Motion, ValidButUselessDataAreNoError) {
     EXPECT_EQ(zero.size(), n);
     EXPECT_FALSE(zero.conditions.speed.known());
     EXPECT_EQ(zero.relative_velocity[n - 1], 0);
+    EXPECT_EQ(zero.friction[0], 0.4) << "no direction is known";
     EXPECT_FALSE(zero.notes.empty());
     trace.friction.assign(n, 0);
     EXPECT_NO_THROW(compute_motion(trace));

@@ -77,7 +77,6 @@ TEST(Effects, ComeBackFromTheRigTheyWereSimulatedOn) {
     const Twin twin = make_twin(options);
     const auto fitted = [&](const FrictionModel& model) {
       FitOptions fit;
-      fit.threads = 1;
       return fit_model(model, twin.motion, twin.segmentation,
                        observe(twin.motion, twin.segmentation, model.needs(), 1000), {}, fit);
     };

@@ -75,7 +75,6 @@ inline tribofit::Fit fit_twin(const Twin& twin, tribofit::BaseLaw law,
                               tribofit::Protocol protocol = tribofit::Protocol::joint) {
   tribofit::FitOptions options;
   options.protocol = protocol;
-  options.threads = 1;
   return tribofit::fit_model(tribofit::FrictionModel(law), twin.motion, twin.segmentation,
                              tribofit::observe(twin.motion, twin.segmentation), {}, options);
 }

@@ -285,7 +285,8 @@ TEST(Cycles, TooFewSamplesASlipAreSaid) {
   const auto notes_at = [](double rate) {
     truth::Rig rig;
     rig.rate = rate;
-    rig.duration = 20;
+    rig.rpm = 1;
+    rig.duration = 40;
     std::string all;
     for (const std::string& note : find_cycles(compute_motion(truth::simulate(rig).trace)).notes) all += note + "; ";
     return all;

@@ -30,7 +30,6 @@ struct FitOptions {
   std::uint64_t seed = 1;
   int folds = 5;         ///< contiguous blocks of cycles held out in turn
   bool profile = false;  ///< profile likelihood intervals beside the others
-  int threads = 0;       ///< 0: as many as there are; the result does not depend on it
 };
 
 /// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
