@@ -49,14 +49,16 @@ void compare_declared(const Motion& motion, const Instruments& instruments, std:
     if (!declared || !used.known() || used.source == "instruments file") return;
     const double allowed = std::max(1e-6 * std::abs(declared->value), 2 * declared->uncertainty);
     if (std::abs(used.value - declared->value) <= allowed) return;
-    warnings.push_back(fmt::format("the {} from the {} ({:.4g} in SI units) is used, not that of the instruments file ({:.4g})",
-                                   name, used.source, used.value, declared->value));
+    warnings.push_back(
+        fmt::format("the {} from the {} ({:.4g} in SI units) is used, not that of the instruments file ({:.4g})", name,
+                    used.source, used.value, declared->value));
   };
   compare(motion.conditions.radius, instruments.rig.radius, "radius");
   compare(motion.conditions.speed, instruments.rig.speed, "disc speed");
   compare(motion.conditions.load, instruments.rig.load, "load");
   const auto unused = [&](const std::optional<Declared>& declared, const char* name) {
-    if (declared) warnings.push_back(fmt::format("{} is declared in the instruments file but nothing uses it yet", name));
+    if (declared)
+      warnings.push_back(fmt::format("{} is declared in the instruments file but nothing uses it yet", name));
   };
   unused(instruments.rig.stiffness, "rig.stiffness");
   unused(instruments.rig.ping_frequency, "rig.ping_frequency");

@@ -418,7 +418,9 @@ void add_options(CLI::App& verb, Request& r) {
 
 void add_simulate(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("simulate", "Writes a simulated trace with the truth beside it");
-  verb->footer("Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out trace.csv");
+  verb->footer(
+      "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out "
+      "trace.csv");
   auto request = std::make_shared<tribofit::Request>();
   tribofit::add_options(*verb, *request);
   verb->callback([request, &status] {

@@ -5,8 +5,8 @@
 /// out.
 /// - v_r = omega r - v_b ([D] Eq 4); mu is positive when v_r is; time is in seconds from the trace's first sample.
 /// - Options in, results out, valid on construction. A fit that fails is a result with a reason. Bad input throws
-///   InputError (ingest/input_error.hpp) with file, line, column and what to do; a wrong call from code (a wrong count of
-///   parameters) throws std::invalid_argument.
+///   InputError (ingest/input_error.hpp) with file, line, column and what to do; a wrong call from code (a wrong count
+///   of parameters) throws std::invalid_argument.
 /// - Library code never prints and never exits. Results are the same to the last bit for any number of threads.
 /// - [D]: Stick-Slip Characteristic Analysis of High-Speed Train Brake Systems: A Disc-Block Friction System with
 /// Different
@@ -31,7 +31,7 @@ struct IdentifyOptions {
   MotionOptions motion;
   FitOptions fit;
   std::vector<BaseLaw> laws = {BaseLaw::exponential, BaseLaw::fractional};
-  int threads = 0;  ///< 0: as many as there are; the result does not depend on it
+  int threads = 0;                 ///< 0: as many as there are; the result does not depend on it
   std::vector<Effect> effects;     ///< added to every law
   bool published_protocol = true;  ///< fit by the published protocol too, beside the joint one
 };

@@ -100,7 +100,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
-SolverResult published_estimate(Job& job, const Extremes& extremes, std::vector<double>& start) {
+SolverResult published_estimate(Job& job, const CycleExtremes& extremes, std::vector<double>& start) {
   start = start_from_data(job.model, job.observations, job.bounds);
   const std::array<double, 2> levels = extremes.means();
   SolverResult failed;
@@ -118,7 +118,7 @@ SolverResult published_estimate(Job& job, const Extremes& extremes, std::vector<
 /// would.
 /// Levels from extremes are those of the cycles kept.
 void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
-              const std::vector<bool>& free, const SampleErrors& errors, const Extremes* extremes, Fit& fit) {
+              const std::vector<bool>& free, const SampleErrors& errors, const CycleExtremes* extremes, Fit& fit) {
   const std::size_t folds = fold_count(job.observations, job.options);
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
@@ -179,8 +179,8 @@ std::string in_newtons(const std::string& unit) {
   return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
 }
 
-void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution, const std::vector<double>& start,
-                     const Eigen::MatrixXd& influences, Fit& fit) {
+void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution,
+                     const std::vector<double>& start, const Eigen::MatrixXd& influences, Fit& fit) {
   const Spread spread = spread_of(influences);
   for (std::size_t k = 0; k < solution.p.size(); ++k) {
     const auto& slot = job.model.parameters()[k];
@@ -275,7 +275,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   }
 
   std::vector<double> start;
-  Extremes extremes;
+  CycleExtremes extremes;
   const bool published = options.protocol == Protocol::published;
   if (published) extremes = extremes_of(observations, segmentation);
   const SolverResult solution = published ? published_estimate(job, extremes, start) : joint_estimate(job, fit, start);
@@ -288,8 +288,9 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   const ModelResiduals residuals = job.residuals(all_slips(observations));
   const NormalEquations equations = normal_equations(residuals, observations, p);
   if (!equations.finite) {
-    return failed_fit(std::move(fit), "the model is not finite on these data: an effect or formula divides by zero, "
-                                      "overflows or leaves its domain");
+    return failed_fit(std::move(fit),
+                      "the model is not finite on these data: an effect or formula divides by zero, "
+                      "overflows or leaves its domain");
   }
   const std::vector<bool> silent = equations.silent();
   std::vector<bool> free(p.size()), inside(p.size());

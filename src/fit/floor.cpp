@@ -103,11 +103,13 @@ std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& s
   return parts;
 }
 
-/// Standard deviation of the break-away level from cycle to cycle: what is left when its dependence on time, direction, load,
-/// temperature and disc angle is taken out (such a dependence is not scatter), less what sensor noise does to each level.
+/// Standard deviation of the break-away level from cycle to cycle: what is left when its dependence on time, direction,
+/// load, temperature and disc angle is taken out (such a dependence is not scatter), less what sensor noise does to
+/// each level.
 double break_away_scatter(const Motion& motion, const Segmentation& segmentation) {
   const std::vector<double> angle = disc_angle(motion);
-  const bool turns = !angle.empty() && std::abs(angle.back() - angle.front()) > 4 * std::numbers::pi;  // two revolutions
+  const bool turns =
+      !angle.empty() && std::abs(angle.back() - angle.front()) > 4 * std::numbers::pi;  // two revolutions
   std::vector<double> levels;
   std::vector<Eigen::VectorXd> rows;
   double noise = 0;
@@ -135,8 +137,8 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   const Eigen::Map<const Eigen::VectorXd> level(levels.data(), n);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(design);
   const Eigen::VectorXd left = level - design * qr.solve(level);
-  const double variance =
-      left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - qr.rank())) - noise / static_cast<double>(n);
+  const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - qr.rank())) -
+                          noise / static_cast<double>(n);
   return std::sqrt(std::max(0.0, variance));
 }
 

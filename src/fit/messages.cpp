@@ -54,9 +54,10 @@ void add_messages(const std::vector<bool>& silent, Fit& fit) {
   if (model.law() == BaseLaw::coulomb || fit.parameters.size() < 3) return;
   const double missing = 1 - stribeck_shape(model.law(), fit.parameters[2].value * fit.slowest);
   if (missing > 0.1) {
-    fit.messages.push_back(fmt::format(
-        "mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the way to mu_k is already gone",
-        fit.slowest * 1e3, 100 * missing));
+    fit.messages.push_back(
+        fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the way to mu_k "
+                    "is already gone",
+                    fit.slowest * 1e3, 100 * missing));
   }
   const double reached = stribeck_shape(model.law(), fit.parameters[2].value * fit.fastest);
   const double drop = std::abs(fit.parameters[0].value - fit.parameters[1].value);

@@ -10,7 +10,7 @@ constexpr std::size_t kFewestCycles = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
-std::array<double, 2> Extremes::means(const std::vector<bool>& left_out) const {
+std::array<double, 2> CycleExtremes::means(const std::vector<bool>& left_out) const {
   std::array<double, 2> out{};
   for (std::size_t k = 0; k < 2; ++k) {
     double sum = 0;
@@ -25,8 +25,8 @@ std::array<double, 2> Extremes::means(const std::vector<bool>& left_out) const {
   return out;
 }
 
-Extremes extremes_of(const Observations& observations, const Segmentation& segmentation) {
-  Extremes out;
+CycleExtremes extremes_of(const Observations& observations, const Segmentation& segmentation) {
+  CycleExtremes out;
   for (auto& values : out.of_cycle) values.assign(observations.cycles, kNaN);
   for (const auto& slip : observations.slips) {
     const Cycle& cycle = segmentation.cycles[slip.segment];
@@ -38,8 +38,9 @@ Extremes extremes_of(const Observations& observations, const Segmentation& segme
 }
 
 Eigen::MatrixXd published_influence(const NormalEquations& equations, const std::vector<bool>& free,
-                                    const Extremes& extremes) {
-  Eigen::MatrixXd levels = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equations.curvature.size()), equations.total.cols());
+                                    const CycleExtremes& extremes) {
+  Eigen::MatrixXd levels =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(equations.curvature.size()), equations.total.cols());
   const std::array<double, 2> means = extremes.means();
   for (std::size_t k = 0; k < 2; ++k) {
     double known = 0;

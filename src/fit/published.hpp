@@ -10,16 +10,17 @@
 namespace tribofit {
 
 /// Levels of the published protocol ([D] 3.2): the largest friction in stick and the smallest in slip, cycle by cycle.
-struct Extremes {
-  std::array<std::vector<double>, 2> of_cycle;  ///< mu_s, mu_k of each unit of evidence; NaN where a cycle is not complete
+struct CycleExtremes {
+  std::array<std::vector<double>, 2>
+      of_cycle;  ///< mu_s, mu_k of each unit of evidence; NaN where a cycle is not complete
 
   /// Means over the cycles that are not in `left_out` (or over all); NaN when fewer than three are left.
   std::array<double, 2> means(const std::vector<bool>& left_out = {}) const;
 };
-Extremes extremes_of(const Observations& observations, const Segmentation& segmentation);
+CycleExtremes extremes_of(const Observations& observations, const Segmentation& segmentation);
 
 /// Influence of each cycle: that on the two means, and what the parameters fitted after them (free) make of both.
 Eigen::MatrixXd published_influence(const NormalEquations& equations, const std::vector<bool>& free,
-                                    const Extremes& extremes);
+                                    const CycleExtremes& extremes);
 
 }  // namespace tribofit

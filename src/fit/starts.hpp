@@ -8,8 +8,8 @@
 
 namespace tribofit {
 
-/// Bounds of every parameter in SI. Levels of friction, and what scales with them, grow with the data where friction is a force; decay
-/// factors with the speeds that were recorded.
+/// Bounds of every parameter in SI. Levels of friction, and what scales with them, grow with the data where friction is
+/// a force; decay factors with the speeds that were recorded.
 struct Bounds {
   std::vector<double> lower, upper;
 };
@@ -19,8 +19,8 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations);
 /// two levels follow linearly from mean friction over speed; effects from their catalogue start.
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations, const Bounds& bounds);
 
-/// At least `count` starts: the one from the data, the bare law with effects that hardly act, then seeded ones: decay factors log-uniform over what the data can
-/// resolve, effects over their bounds.
+/// At least `count` starts: the one from the data, the bare law with effects that hardly act, then seeded ones: decay
+/// factors log-uniform over what the data can resolve, effects over their bounds.
 std::vector<std::vector<double>> make_starts(const FrictionModel& model, const Observations& observations,
                                              const Bounds& bounds, int count, std::uint64_t seed);
 

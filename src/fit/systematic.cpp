@@ -79,7 +79,8 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
     // v_b = reading/gain; where omega r was read off the plateau it scales with it, and so does v_r as a whole.
     const double part = u / vibrometer.gain->value;
     shifts.push_back(
-        {values([&](std::size_t i) { return plateau ? -part * observations.velocity[i] : part * block_velocity(i); }), {}});
+        {values([&](std::size_t i) { return plateau ? -part * observations.velocity[i] : part * block_velocity(i); }),
+         {}});
   }
   const double corner = vibrometer.high_pass ? uncertainty(vibrometer.high_pass) : motion.high_pass_std_error;
   if (corner > 0) {
@@ -157,8 +158,10 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   const Eigen::VectorXd base = gradient(observations, &curvature);
   const Eigen::MatrixXd inverse = inverse_over(curvature, free);
   for (const Shift& shift : shifts) {
-    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());  // of the published protocol, given by the extremes
-    for (Eigen::Index k = 0; published && k < 2; ++k) levels(k) = shift.offset + shift.part * p[static_cast<std::size_t>(k)];
+    Eigen::VectorXd levels =
+        Eigen::VectorXd::Zero(curvature.rows());  // of the published protocol, given by the extremes
+    for (Eigen::Index k = 0; published && k < 2; ++k)
+      levels(k) = shift.offset + shift.part * p[static_cast<std::size_t>(k)];
     const Eigen::VectorXd pull = gradient(moved(observations, shift), nullptr) - base;
     const Eigen::VectorXd step = levels - inverse * (pull + curvature * levels);
     for (std::size_t k = 0; k < p.size(); ++k) squares[k] += std::pow(step(static_cast<Eigen::Index>(k)), 2);

@@ -12,7 +12,6 @@ namespace tribofit {
 /// how far the parameters follow, and independent sources add in squares. Zero where nothing is declared.
 std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
                                       const Observations& observations, const Instruments& instruments,
-                                      const std::vector<bool>& free,
-                                      bool published);
+                                      const std::vector<bool>& free, bool published);
 
 }  // namespace tribofit

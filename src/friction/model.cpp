@@ -28,7 +28,8 @@ std::optional<BaseLaw> find_law(std::string_view name) {
 }
 
 FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
-  // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into signed mu.
+  // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into
+  // signed mu.
   const auto in_stick = [](const Effect& effect) {
     return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
   };

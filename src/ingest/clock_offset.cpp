@@ -91,9 +91,9 @@ std::vector<Candidate> coincidences(const std::vector<double>& a, const std::vec
   return best;
 }
 
-/// How far friction is from balancing the motion at a given offset: m a + c v + k x = N mu holds for any law of friction, in
-/// stick and in slip, so friction is a linear function of the block's displacement, velocity and acceleration when the clocks
-/// agree, and is not when they do not.
+/// How far friction is from balancing the motion at a given offset: m a + c v + k x = N mu holds for any law of
+/// friction, in stick and in slip, so friction is a linear function of the block's displacement, velocity and
+/// acceleration when the clocks agree, and is not when they do not.
 class ForceBalance {
  public:
   ForceBalance(const std::vector<double>& friction_time, const std::vector<double>& friction,
@@ -116,7 +116,8 @@ class ForceBalance {
 
   /// Part of the variance of friction that the motion does not balance, for friction samples [begin, end).
   double operator()(double offset, std::size_t begin, std::size_t end, std::size_t stride) const {
-    // Regressors: a constant, a drift of the integral, x, v, a; scaled so that the normal equations are well conditioned.
+    // Regressors: a constant, a drift of the integral, x, v, a; scaled so that the normal equations are well
+    // conditioned.
     constexpr int count = 5;
     Eigen::Matrix<double, count, count> normal = Eigen::Matrix<double, count, count>::Zero();
     Eigen::Matrix<double, count, 1> right = Eigen::Matrix<double, count, 1>::Zero();

@@ -23,5 +23,6 @@ int main(int count, char** arguments) {
   const tribofit::Fit& fit = result.fits[result.best];
   std::printf("mu_s = %.4f, mu_k = %.4f\n", fit.parameters[0].value, fit.parameters[1].value);
   // The example was simulated with the 15 mm row of Table 4 of [D].
-  return std::abs(fit.parameters[0].value - 0.509) < 0.0025 && std::abs(fit.parameters[1].value - 0.318) < 0.0016 ? 0 : 1;
+  return std::abs(fit.parameters[0].value - 0.509) < 0.0025 && std::abs(fit.parameters[1].value - 0.318) < 0.0016 ? 0
+                                                                                                                  : 1;
 }

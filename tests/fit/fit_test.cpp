@@ -246,13 +246,14 @@ TEST_P(Systematic, PartIsWhatARerunWithTheMovedQuantityGives) {
   FitOptions with;
   with.protocol = GetParam();
   for (const Moved& c : cases) {
-    const Fit fit = fit_model(model, record.motion, record.segmentation,
-                              observe(record.motion, record.segmentation), c.instruments, with);
+    const Fit fit = fit_model(model, record.motion, record.segmentation, observe(record.motion, record.segmentation),
+                              c.instruments, with);
     synthetic::Record moved = record;
     for (double& mu : moved.motion.friction) mu = c.friction(mu);
     for (double& v : moved.motion.relative_velocity) v = c.velocity(v, moved.motion.constant_disc_velocity);
     for (Cycle& cycle : moved.segmentation.cycles) {
-      for (double* level : {&cycle.break_away_friction, &cycle.stick_maximum, &cycle.slip_minimum}) *level = c.friction(*level);
+      for (double* level : {&cycle.break_away_friction, &cycle.stick_maximum, &cycle.slip_minimum})
+        *level = c.friction(*level);
     }
     const Fit again = fit_record(model, moved, with);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -290,8 +291,8 @@ TEST(Fit, HeldOutParametersAreThoseOfRefits) {
       const Fit refit = fit_record(model, without_fold(record, fit, fold), with);
       for (std::size_t k = 0; k < 3; ++k) {
         // to a small part of what leaving the fold out changes
-        EXPECT_NEAR(fit.fold_parameters[fold][k], refit.parameters[k].value,
-                    0.1 * fit.parameters[k].std_error + 1e-9) << to_string(protocol) << " fold " << fold << " " << k;
+        EXPECT_NEAR(fit.fold_parameters[fold][k], refit.parameters[k].value, 0.1 * fit.parameters[k].std_error + 1e-9)
+            << to_string(protocol) << " fold " << fold << " " << k;
       }
     }
   }
@@ -315,7 +316,8 @@ TEST(Fit, AnEffectThatIsNotThereDoesNotMakeTheFitWorse) {
   const FrictionModel bare(BaseLaw::exponential);
   const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
   const double error = fit_record(bare, record).error.rmse;
-  EXPECT_LT(fit_record(FrictionModel(BaseLaw::exponential, {make_effect("viscous")}), record).error.rmse, 1.001 * error);
+  EXPECT_LT(fit_record(FrictionModel(BaseLaw::exponential, {make_effect("viscous")}), record).error.rmse,
+            1.001 * error);
   // The least memory within bounds, 0.5 um, still shows where these slips come to rest as gently as no rig does.
   const FrictionModel memory(BaseLaw::exponential, {make_effect("rate-state")});
   EXPECT_LT(fit_record(memory, record, {}, 1000).error.rmse, 1.06 * error);
@@ -325,7 +327,8 @@ TEST(Fit, AFormulaThatIsNotFiniteIsAReason) {
   synthetic::Options options;
   const FrictionModel bare(BaseLaw::exponential);
   const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
-  for (const char* text : {"x = a/0; a=0.1", "x = a*log(v-500); a=0.001", "x = a*sqrt(v-50); a=1", "x = a*1e308*1e308; a=1"}) {
+  for (const char* text :
+       {"x = a/0; a=0.1", "x = a*log(v-500); a=0.001", "x = a*sqrt(v-50); a=1", "x = a*1e308*1e308; a=1"}) {
     const Fit fit = fit_record(FrictionModel(BaseLaw::exponential, {Formula(text)}), record);
     EXPECT_FALSE(fit.converged) << text;
     ASSERT_FALSE(fit.messages.empty()) << text;
@@ -347,7 +350,9 @@ TEST(Fit, PublishedCoulombFrictionHasNothingLeftToFit) {
 TEST(Fit, CurveIsTheModelInSteadySliding) {
   synthetic::Options options;
   options.cycles = 8;
-  const std::vector<Effect> every[] = {{make_effect("viscous")}, {make_effect("rate-state")}, {make_effect("bristle")},
+  const std::vector<Effect> every[] = {{make_effect("viscous")},
+                                       {make_effect("rate-state")},
+                                       {make_effect("bristle")},
                                        {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s")}};
   for (const auto& effects : every) {
     const FrictionModel model(BaseLaw::exponential, effects);

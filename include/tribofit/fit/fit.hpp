@@ -74,7 +74,7 @@ struct Fit {
   ErrorFigures error;
   Floor floor;
   double constant_rmse = 0;  ///< what a constant |friction| would leave [1 or N]
-  double explained = 0;  ///< share of the error above the floor that the model explains, against constant friction
+  double explained = 0;      ///< share of the error above the floor that the model explains, against constant friction
   bool converged = false;
   int iterations = 0;
   std::size_t observations = 0;  ///< samples
@@ -83,7 +83,7 @@ struct Fit {
       0;               ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
   double fastest = 0;  ///< the data reach up to this |v_r| [m/s]
   double slowest = 0;  ///< and down to this one; 0 where slips begin in stick [m/s]
-  double degrees_of_freedom = 1;  ///< of the t distribution of the statistical errors
+  double degrees_of_freedom = 1;                     ///< of the t distribution of the statistical errors
   std::vector<Correlation> correlations;             ///< those above 0.9 in size, largest first
   std::vector<double> covariance;                    ///< of the values (SI), row by row, statistical
   std::vector<double> cycle_squares;                 ///< held-out sum of squares of each cycle
@@ -101,7 +101,8 @@ struct Fit {
 /// Statistical errors come from the cycles: the influence of each cycle on each parameter (jackknife, one Newton step)
 /// is a series in time whose mean_error() is the standard error. So neither coloured noise nor a break-away level that
 /// wanders breaks them. Errors on held-out cycles: contiguous blocks of cycles are left out in turn and the rest
-/// refitted, by one Gauss-Newton step from the fit of all. `motion` serves the error figures on every sample. Cost: linear in samples.
+/// refitted, by one Gauss-Newton step from the fit of all. `motion` serves the error figures on every sample. Cost:
+/// linear in samples.
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
@@ -121,8 +122,8 @@ struct Comparison {
 };
 Comparison compare_held_out(const Fit& first, const Fit& second);
 
-/// mu(v) of a fit with its pointwise 95 % band (statistical) in steady sliding at the given speeds [m/s], at mean load and
-/// temperature, at the start of the record.
+/// mu(v) of a fit with its pointwise 95 % band (statistical) in steady sliding at the given speeds [m/s], at mean load
+/// and temperature, at the start of the record.
 struct Curve {
   std::vector<double> velocity, mu, lower95, upper95;
 };

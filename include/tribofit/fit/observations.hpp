@@ -26,13 +26,13 @@ struct Observations {
     std::size_t begin = 0, end = 0;  ///< values of this slip
     Span samples;                    ///< the same in samples of the Motion
     std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
-    std::size_t segment = 0;  ///< index in Segmentation::cycles
+    std::size_t segment = 0;         ///< index in Segmentation::cycles
     bool from_stick = false;
     double break_away_time = 0;  ///< [s]
     double stick_time = 0;       ///< [s], NaN when not recorded
     double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
     double direction = 1;
-    double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
+    double break_away_friction = 0;            ///< |mu| at break-away; NaN when there is none
     std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
     double lead_friction = 0;                  ///< signed, at the first of them
   };
