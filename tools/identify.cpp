@@ -110,9 +110,14 @@ void check_usage(const Settings& s, const std::vector<std::string>& traces) {
   std::vector<std::string> inputs = traces;
   inputs.insert(inputs.end(), s.continued_in.begin(), s.continued_in.end());
   inputs.push_back(s.second_file);
+  inputs.push_back(s.instruments);
   for (const std::string& input : inputs) {
-    if (!s.json.empty() && same_file(s.json, input))
-      throw CLI::ValidationError("--json would overwrite the trace " + input);
+    if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite " + input);
+    for (const char* name : {"samples.csv", "cycles.csv", "curves.csv", "errors.csv"}) {
+      if (!s.csv.empty() && same_file((std::filesystem::path(s.csv) / name).string(), input)) {
+        throw CLI::ValidationError("--csv would overwrite " + input + " with its own " + name);
+      }
+    }
   }
 }
 

@@ -136,9 +136,11 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
   const Measure& branches = s.branch_difference;
   const Interval interval = interval_of(branches);
   if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
-    measure("branches", branches, 1, r.motion.friction_kind == FrictionKind::force ? "N" : "",
-            fmt::format("friction is {} while speeding up than while slowing down",
-                        branches.value > 0 ? "higher" : "lower"));
+    text += item(
+        style, "branches",
+        fmt::format("at the same speed friction is {} by {}{} while speeding up than while slowing down",
+                    branches.value > 0 ? "higher" : "lower", with_error(std::abs(branches.value), branches.std_error),
+                    r.motion.friction_kind == FrictionKind::force ? " N" : ""));
   }
   if (s.rms_velocity > 0) text += item(style, "RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   for (const std::string& note : s.notes) text += item(style, "note", note);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "measures.hpp"
 #include "numbers.hpp"
 #include "tribofit/pipeline.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 
 /// Held-out error over the floor up to which nothing worth naming is left.
 constexpr double kAtTheFloor = 1.15;
-/// ... and up to which little is.
-constexpr double kNearTheFloor = 1.5;
+/// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
+constexpr double kCarriesOver = 1.5;
 /// ... and from which a ratio says no more than "far".
 constexpr double kFarAbove = 100;
 /// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
@@ -39,6 +40,18 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
                            (fit.model.effects().empty() ? " law" : "");
   const std::string held_out = significant(fit.error.held_out_rmse, 2) + unit;
   const std::string floor = significant(fit.floor.rmse, 2) + unit;
+  if (ratio < 1 / kAtTheFloor) {
+    return fmt::format(
+        "{} leaves {} on data it has not seen, less than the floor of {}: the floor is overestimated here, so whether "
+        "anything is missing cannot be told from it.",
+        name, held_out, floor);
+  }
+  if (fit.error.held_out_rmse > kCarriesOver * fit.error.rmse) {
+    return fmt::format(
+        "{} does not carry over to cycles it has not seen: it leaves {} there and {} on those it was fitted to. Do not "
+        "rely on its values.",
+        name, held_out, significant(fit.error.rmse, 2) + unit);
+  }
   if (ratio <= kAtTheFloor) {
     return fmt::format(
         "{} describes this trace as well as its noise allows: its error on data it has not seen is "
@@ -49,10 +62,6 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
   std::string remains = fmt::format("its error on data it has not seen is {}", held_out);
   if (ratio > kFarAbove) remains += fmt::format(", far above the floor of {}", floor);
   if (ratio <= kFarAbove) remains += fmt::format(", {} times the floor of {}", significant(ratio, 2), floor);
-  if (ratio <= kNearTheFloor && fit.error.mean_relative <= kOutline) {
-    return fmt::format("{} describes this trace well (typically {} off): {}. Little is left to explain.", name, typical,
-                       remains);
-  }
   if (fit.error.mean_relative <= kClose) {
     return fmt::format("{} is close (typically {} off), but {}: something small is missing from it.", name, typical,
                        remains);
@@ -63,6 +72,27 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
   }
   return fmt::format("{} does not describe this trace (typically {} off): {}. Do not rely on its values.", name,
                      typical, remains);
+}
+
+/// Parameters that these data do not fix, as a sentence; empty where all are fixed.
+std::string undetermined(const Fit& fit) {
+  std::string names;
+  for (const FitParameter& p : fit.parameters) {
+    if (!p.at_bound && p.upper95 - p.lower95 < std::abs(p.value)) continue;
+    names += (names.empty() ? "" : ", ") + (p.effect.empty() ? "" : p.effect + " ") + p.parameter.name;
+  }
+  return names.empty() ? "" : " Not determined by these data: " + names + ".";
+}
+
+/// Checks of the data that bear on the values and are not in order.
+std::string open_problems(const Identification& r) {
+  std::string names;
+  for (const HealthItem& item : r.motion.health) {
+    const bool bears = item.check == "plateau-speed" || item.check == "speed-ripple" || item.check == "channel-delay" ||
+                       item.check == "clipping" || item.check == "drop-outs";
+    if (bears && item.status != HealthItem::Status::ok) names += (names.empty() ? "" : ", ") + item.check;
+  }
+  return names.empty() ? "" : " The values stand or fall with what the health check says of " + names + ".";
 }
 
 bool has_option(const std::vector<std::string>& arguments, const std::string& name) {
@@ -77,20 +107,13 @@ std::string command_line(const TerminalOptions& options, const std::string& more
   return text + " " + shell_quoted(path.rfind('-', 0) == 0 ? "./" + path : path);
 }
 
-bool has_channels(const Channels& needs, const Motion& motion) {
-  return (!needs.load || !motion.load.empty()) && (!needs.temperature || !motion.temperature.empty()) &&
-         (!needs.angle || !motion.disc_angle.empty() || motion.conditions.speed.known());
-}
-
-/// The first effect of the catalogue that is not in the fit and whose channels the trace has.
-std::optional<std::string> untried_effect(const Identification& r, const Fit& fit) {
+/// An effect that what was measured speaks for, not in the fit yet: a memory where the branches differ.
+std::optional<std::string> indicated_effect(const Identification& r, const Fit& fit) {
   const std::vector<std::string> used = fit.model.effect_keys();
-  for (const Effect& effect : effect_catalogue()) {
-    const EffectInfo info = describe(effect);
-    const bool tried = std::find(used.begin(), used.end(), info.key) != used.end();
-    if (!tried && has_channels(info.needs, r.motion)) return info.key;
-  }
-  return std::nullopt;
+  const Interval branches = interval_of(r.segmentation.branch_difference);
+  const bool loop = branches.lower > 0 || branches.upper < 0;
+  if (!loop || std::find(used.begin(), used.end(), "rate-state") != used.end()) return std::nullopt;
+  return "rate-state";
 }
 
 }  // namespace
@@ -100,7 +123,7 @@ std::string verdict(const Identification& result) {
   if (result.fits.empty() || !usable(result.fits[result.best])) {
     return "No fit can be trusted here; the notes at the fits say why.";
   }
-  return verdict_on(result, result.fits[result.best]);
+  return verdict_on(result, result.fits[result.best]) + undetermined(result.fits[result.best]) + open_problems(result);
 }
 
 Suggestion next_command(const Identification& result, const TerminalOptions& options) {
@@ -118,9 +141,10 @@ Suggestion next_command(const Identification& result, const TerminalOptions& opt
   }
   const Fit& best = result.fits[result.best];
   if (!(over_floor(best) <= kAtTheFloor)) {
-    if (const auto key = untried_effect(result, best)) {
-      return {"to test whether '" + *key + "' is what is missing (`identify effects` explains it)",
-              command_line(options, "--effect " + *key, result.path)};
+    if (const auto key = indicated_effect(result, best)) {
+      return {
+          "to test a memory of sliding distance, as the branches differ (`identify effects " + *key + "` explains it)",
+          command_line(options, "--effect " + *key, result.path)};
     }
   }
   if (!options.csv_written) {

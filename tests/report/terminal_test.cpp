@@ -87,7 +87,14 @@ TEST(Terminal, TheVerdictFollowsTheErrorAboveTheFloor) {
   Identification result = made_up_result();
   EXPECT_THAT(rendered(result), HasSubstr("as well as its noise allows"));
   result.fits[0].error.held_out_rmse = 0.0075;
+  EXPECT_THAT(rendered(result), HasSubstr("does not carry over to cycles it has not seen"));
+  result.fits[0].error.rmse = 0.0074;
   EXPECT_THAT(rendered(result), HasSubstr("something small is missing"));
+  result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0020;
+  EXPECT_THAT(rendered(result), HasSubstr("the floor is overestimated here"));
+  result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0075;
+  result.fits[0].parameters[1].upper95 = 3;
+  EXPECT_THAT(rendered(result), HasSubstr("Not determined by these data: mu_k."));
   result.fits[0].error.mean_relative = 0.2;
   EXPECT_THAT(rendered(result), HasSubstr("Do not rely on its values"));
   result.fits[0].converged = false;
@@ -98,7 +105,9 @@ TEST(Terminal, EndsWithTheNextCommandInTheUsersOwnWords) {
   Identification result = made_up_result();
   EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
   result.fits[0].error.held_out_rmse = 0.0075;
-  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --effect viscous runs/r15.csv\n"));
+  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
+  result.segmentation.branch_difference = {0.01, 0.001, 10};
+  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --effect rate-state runs/r15.csv\n"));
   result.path = "my runs/r 15.csv";
   EXPECT_THAT(rendered(result), EndsWith(" 'my runs/r 15.csv'\n"));
 }
