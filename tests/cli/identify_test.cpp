@@ -63,6 +63,17 @@ TEST_F(Identify, ResultsAreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.dump(), two.dump());
 }
 
+TEST_F(Identify, NeverOverwritesItsInputs) {
+  std::filesystem::create_directory(shop_ / "own");
+  std::filesystem::copy_file(shop_ / "trace.csv", shop_ / "own/samples.csv");
+  const std::string before = contents(shop_ / "own/samples.csv");
+  EXPECT_EQ(shop_.identify("--radius 15mm --csv own own/samples.csv").status, 2);
+  EXPECT_EQ(contents(shop_ / "own/samples.csv"), before);
+  std::ofstream(shop_ / "lab.json") << R"({"rig": {"radius": "15 mm"}})";
+  EXPECT_EQ(shop_.identify("--instruments lab.json --json lab.json trace.csv").status, 2);
+  EXPECT_EQ(contents(shop_ / "lab.json"), R"({"rig": {"radius": "15 mm"}})");
+}
+
 TEST_F(Identify, WritesTheFolderOfTables) {
   ASSERT_EQ(shop_.identify("--radius 15mm --quiet --csv out trace.csv").status, 0);
   EXPECT_EQ(contents(shop_ / "out/samples.csv")
