@@ -107,9 +107,14 @@ std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& s
 /// load, temperature and disc angle is taken out (such a dependence is not scatter), less what sensor noise does to
 /// each level.
 double break_away_scatter(const Motion& motion, const Segmentation& segmentation) {
-  const std::vector<double> angle = disc_angle(motion);
-  const bool turns =
-      !angle.empty() && std::abs(angle.back() - angle.front()) > 4 * std::numbers::pi;  // two revolutions
+  // At constant speed the angle is that of the clock; a long record need not be integrated for it.
+  const bool steady = motion.disc_angle.empty() && motion.disc_speed.empty() && motion.conditions.speed.known();
+  const std::vector<double> recorded = steady ? std::vector<double>() : disc_angle(motion);
+  const auto angle = [&](std::size_t i) {
+    return steady ? motion.conditions.speed.value * motion.time[i] : recorded[i];
+  };
+  const bool known = motion.size() > 0 && (steady || !recorded.empty());
+  const bool turns = known && std::abs(angle(motion.size() - 1) - angle(0)) > 4 * std::numbers::pi;  // two revolutions
   std::vector<double> levels;
   std::vector<Eigen::VectorXd> rows;
   double noise = 0;
@@ -121,8 +126,8 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
     if (!motion.load.empty()) row.push_back(motion.load[i]);
     if (!motion.temperature.empty()) row.push_back(motion.temperature[i]);
     for (int h = 1; turns && h <= 3; ++h) {
-      row.push_back(std::cos(h * angle[i]));
-      row.push_back(std::sin(h * angle[i]));
+      row.push_back(std::cos(h * angle(i)));
+      row.push_back(std::sin(h * angle(i)));
     }
     rows.push_back(Eigen::Map<Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
     levels.push_back(cycle.break_away_friction);
