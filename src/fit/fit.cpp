@@ -280,7 +280,6 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   if (published) extremes = extremes_of(observations, segmentation);
   const SolverResult solution = published ? published_estimate(job, extremes, start) : joint_estimate(job, fit, start);
   fit.converged = solution.converged;
-  fit.iterations = solution.iterations;
   if (!solution.converged) fit.messages.push_back(solution.message);
   if (published && !(std::isfinite(extremes.means()[0]) && std::isfinite(extremes.means()[1]))) return fit;
 

@@ -76,7 +76,6 @@ struct Fit {
   double constant_rmse = 0;  ///< what a constant |friction| would leave [1 or N]
   double explained = 0;      ///< share of the error above the floor that the model explains, against constant friction
   bool converged = false;
-  int iterations = 0;
   std::size_t observations = 0;  ///< samples
   std::size_t cycles = 0;
   double stick_rmse =
