@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,11 +14,20 @@ namespace tribofit {
 
 namespace {
 
+/// Effects with a term in a friction model.
+std::vector<Effect> of_friction(const std::vector<Effect>& effects) {
+  std::vector<Effect> out;
+  for (const Effect& effect : effects) {
+    if (!is_of_motion(effect)) out.push_back(effect);
+  }
+  return out;
+}
+
 /// Every model and protocol to fit: joint fits first, then the published protocol for the bare laws.
 std::vector<std::pair<FrictionModel, FitOptions>> plan(const IdentifyOptions& options) {
   std::vector<std::pair<FrictionModel, FitOptions>> fits;
   FitOptions inner = options.fit;
-  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, options.effects), inner);
+  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, of_friction(options.effects)), inner);
   inner.protocol = Protocol::published;
   for (const BaseLaw law : options.laws) {
     if (options.published_protocol && law != BaseLaw::coulomb) fits.emplace_back(FrictionModel(law), inner);
@@ -112,21 +122,23 @@ void require_channels(const IdentifyOptions& options, const Motion& motion, std:
   missing(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }
 
-}  // namespace
-
-Identification identify(const std::string& path, const IdentifyOptions& options) {
+/// The stages up to the cycles. Effects of the motion among `effects` are corrected.
+Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options) {
   Identification out;
-  out.path = path;
-
-  Trace trace = read_trace(path, with_declared(options.read, options.instruments));
+  out.path = input.path;
+  Trace trace = read_trace(input.path, with_declared(input.read, options.instruments));
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
   out.rate = trace.rate();
   out.notes = trace.notes;
   out.warnings = trace.warnings;
-
-  out.motion = compute_motion(std::move(trace), options.instruments, options.motion);
+  for (const Effect& effect : options.effects) {
+    const std::string key = describe(effect).key;
+    if (key == "radius-offset") motion_options.plateau = PlateauCorrection::radius;
+    if (key == "velocity-gain") motion_options.plateau = PlateauCorrection::gain;
+  }
+  out.motion = compute_motion(std::move(trace), options.instruments, motion_options);
   out.segmentation = find_cycles(out.motion);
   out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
@@ -138,16 +150,20 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
     out.warnings.push_back(obstacle);
     out.analysed = false;
   }
-  if (!out.analysed) return out;
+  return out;
+}
 
+/// Fits every model of the plan to one trace.
+void fit_all(const IdentifyOptions& options, Identification& out) {
   // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
-  const std::size_t values_per_slip = options.effects.empty() ? 80 : 1000;
-  const Observations observations = observe(
-      out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, options.effects).needs(), values_per_slip);
+  const std::vector<Effect> effects = of_friction(options.effects);
+  const std::size_t values_per_slip = effects.empty() ? 80 : 1000;
+  const Observations observations =
+      observe(out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, effects).needs(), values_per_slip);
   if (observations.cycles < 3) {
     out.warnings.push_back("there are fewer than three cycles: no law can be fitted with an uncertainty");
     out.analysed = false;
-    return out;
+    return;
   }
   const auto fits = plan(options);
   out.fits.resize(fits.size());
@@ -157,6 +173,232 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   });
   out.best = best_of(out.fits);
   share_floor(out.fits, out.best);
+}
+
+/// What kinematics/ found and undid, as effects.
+std::vector<EffectFinding> motion_findings(const Motion& motion) {
+  std::vector<EffectFinding> out;
+  const auto add = [&](const char* key, std::vector<std::pair<double, double>> values) {
+    EffectFinding finding;
+    finding.key = key;
+    finding.status = EffectStatus::missing;
+    finding.held_out_rmse = finding.error_reduction = std::numeric_limits<double>::quiet_NaN();
+    finding.p_value = 0;
+    const EffectInfo info = describe(make_effect(key));
+    for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+      FitParameter parameter;
+      parameter.parameter = info.parameters[k];
+      parameter.effect = key;
+      parameter.value = values[k].first * info.parameters[k].si;
+      parameter.std_error = values[k].second * info.parameters[k].si;
+      parameter.lower95 = parameter.value - 1.96 * parameter.std_error;
+      parameter.upper95 = parameter.value + 1.96 * parameter.std_error;
+      parameter.profile_lower95 = parameter.profile_upper95 = std::numeric_limits<double>::quiet_NaN();
+      finding.parameters.push_back(parameter);
+    }
+    finding.reason = "the plateau of stick shows it; it was undone before the law was fitted";
+    out.push_back(std::move(finding));
+  };
+  if (motion.speed_ripple.amplitude > 0) {
+    const DiscRipple& ripple = motion.speed_ripple;
+    add("speed-ripple", {{ripple.amplitude, ripple.amplitude_std_error},
+                         {static_cast<double>(ripple.order), 0.0},
+                         {ripple.phase, ripple.phase_std_error}});
+  }
+  if (motion.plateau_correction != PlateauCorrection::none) {
+    const std::pair<double, double> ratio = {motion.corrected_ratio, motion.plateau_ratio_std_error};
+    add("radius-offset", {ratio});
+    add("velocity-gain", {ratio});
+    const bool gain = motion.plateau_correction == PlateauCorrection::gain;
+    EffectFinding& other = out[out.size() - (gain ? 2 : 1)];
+    other.status = EffectStatus::equivalent;
+    other.reason = std::string("these data cannot tell it from ") + (gain ? "velocity-gain" : "radius-offset");
+  }
+  if (motion.high_pass > 0) add("velocity-highpass", {{motion.high_pass, motion.high_pass_std_error}});
+  return out;
+}
+
+/// Why an effect of the motion cannot show, for one that was not found.
+EffectFinding not_found(const Effect& effect, const std::vector<Identification>& traces) {
+  const EffectInfo info = describe(effect);
+  EffectFinding finding;
+  finding.key = info.key;
+  finding.held_out_rmse = finding.error_reduction = finding.p_value = std::numeric_limits<double>::quiet_NaN();
+  finding.status = EffectStatus::unsupported;
+  finding.reason = "the plateau of stick does not show it";
+  const bool sticks = std::any_of(traces.begin(), traces.end(), [](const auto& t) { return t.motion.sticks; });
+  const bool measured = std::any_of(traces.begin(), traces.end(), [](const auto& t) {
+    return t.motion.velocity_kind == VelocityKind::block;
+  });
+  const bool stated = std::any_of(traces.begin(), traces.end(),
+                                  [](const auto& t) { return std::isfinite(t.motion.plateau_ratio); });
+  if (!sticks || !measured) {
+    finding.status = EffectStatus::untestable;
+    finding.reason = "there is no plateau of stick in v_b";
+  } else if (!stated && (info.key == "radius-offset" || info.key == "velocity-gain")) {
+    finding.status = EffectStatus::untestable;
+    finding.reason = "there is no stated speed and radius to compare the plateau with";
+  } else if (info.key == "speed-ripple" && !traces[0].motion.disc_speed.empty()) {
+    finding.status = EffectStatus::untestable;
+    finding.reason = "the disc speed was recorded: it is used as it is";
+  } else if (info.key == "speed-ripple") {
+    const Motion& motion = traces[0].motion;
+    const double turns = motion.conditions.speed.known() ? motion.conditions.speed.value * motion.duration() / 6.2831853 : 0;
+    if (turns < 2) {
+      finding.status = EffectStatus::untestable;
+      finding.reason = fmt::format("the record holds {:.1f} revolutions of the disc; two are needed", turns);
+    }
+  }
+  return finding;
+}
+
+/// The plateau is not where the stated speed and radius put it.
+bool plateau_is_off(const Motion& motion) {
+  constexpr double kLeast = 0.004, kSigmas = 5;
+  const double off = std::abs(motion.plateau_ratio - 1);
+  return off > kLeast && off > kSigmas * motion.plateau_ratio_std_error && motion.plateau_ratio > 0.85 &&
+         motion.plateau_ratio < 1.15;
+}
+
+/// Puts what kinematics/ found into a diagnosis: rungs below all others, and a finding each.
+void add_motion(const std::vector<Identification>& traces, const std::optional<Fit>& uncorrected, DiagnosedTraces& out) {
+  Diagnosis& diagnosis = out.diagnosis;
+  const std::vector<EffectFinding> found = motion_findings(traces[0].motion);
+  std::vector<EffectFinding> findings;
+  for (const Effect& effect : effect_catalogue()) {
+    const std::string key = describe(effect).key;
+    const auto named = [&](const EffectFinding& f) { return f.key == key; };
+    if (!is_of_motion(effect)) {
+      const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(), named);
+      if (at != diagnosis.effects.end()) findings.push_back(*at);
+      continue;
+    }
+    const auto at = std::find_if(found.begin(), found.end(), named);
+    findings.push_back(at != found.end() ? *at : not_found(effect, traces));
+  }
+  for (const EffectFinding& finding : diagnosis.effects) {  // the user's own
+    const auto same = [&](const EffectFinding& f) { return f.key == finding.key; };
+    if (std::none_of(findings.begin(), findings.end(), same)) findings.push_back(finding);
+  }
+  diagnosis.effects = std::move(findings);
+  if (found.empty()) return;
+  if (diagnosis.verdict == Verdict::sufficient) diagnosis.verdict = Verdict::effect_found;
+  if (diagnosis.ladder.empty()) return;
+  std::vector<Rung> rungs;
+  Rung first = diagnosis.ladder.front();
+  if (uncorrected) {
+    first.rmse = uncorrected->error.rmse;
+    first.held_out_rmse = uncorrected->error.held_out_rmse;
+    first.held_out_std_error = held_out_std_error(*uncorrected);
+  }
+  rungs.push_back(first);
+  for (const EffectFinding& finding : found) {
+    if (finding.status != EffectStatus::missing) continue;
+    Rung rung = diagnosis.ladder.front();
+    rung.added = finding.key;
+    for (const EffectFinding& other : found) {
+      const bool pair = other.status == EffectStatus::equivalent && finding.key != "speed-ripple" &&
+                        finding.key != "velocity-highpass";
+      if (pair) rung.equivalent.push_back(other.key);
+    }
+    rungs.push_back(rung);
+  }
+  rungs.insert(rungs.end(), diagnosis.ladder.begin() + 1, diagnosis.ladder.end());
+  diagnosis.ladder = std::move(rungs);
+}
+
+std::vector<Record> records_of(const std::vector<Identification>& traces) {
+  std::vector<Record> records;
+  for (const Identification& trace : traces) records.push_back({&trace.motion, &trace.segmentation});
+  return records;
+}
+
+/// What the base law leaves where nothing of the motion is undone; nothing where the record cannot be read like that.
+std::optional<Fit> fit_uncorrected(const TraceInput& input, const IdentifyOptions& options, BaseLaw law) {
+  MotionOptions raw = options.motion;
+  raw.undo_high_pass = raw.undo_speed_ripple = false;
+  Identification trace = prepare(input, options, raw);
+  if (!trace.analysed) return std::nullopt;
+  IdentifyOptions bare = options;
+  bare.laws = {law};
+  bare.effects.clear();
+  bare.published_protocol = false;
+  fit_all(bare, trace);
+  if (trace.fits.empty() || trace.fits[0].parameters.empty()) return std::nullopt;
+  return trace.fits[0];
+}
+
+/// The final model against the base law on a run that took no part, every parameter frozen.
+Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, const Fit& base, const Fit& last) {
+  Confirmation out;
+  out.path = input.path;
+  out.base_rmse = out.final_rmse = std::numeric_limits<double>::quiet_NaN();
+  const Identification trace = prepare(input, options, options.motion);
+  if (!trace.analysed) return out;
+  const Fit frozen_base = frozen_on(base, trace.motion, trace.segmentation);
+  const Fit frozen_last = frozen_on(last, trace.motion, trace.segmentation);
+  out.base_rmse = frozen_base.error.rmse;
+  out.final_rmse = frozen_last.error.rmse;
+  const Comparison comparison = compare_held_out(frozen_last, frozen_base);
+  out.p_value = comparison.first_better ? 0.5 * comparison.p_value : 1 - 0.5 * comparison.p_value;
+  return out;
+}
+
+}  // namespace
+
+Identification identify(const std::string& path, const IdentifyOptions& options) {
+  Identification out = prepare({path, options.read}, options, options.motion);
+  if (out.analysed) fit_all(options, out);
+  return out;
+}
+
+DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& given,
+                         const DiagnoseOptions& more) {
+  DiagnosedTraces out;
+  IdentifyOptions options = given;
+  std::vector<Effect> own = of_friction(given.effects);
+  options.effects.erase(std::remove_if(options.effects.begin(), options.effects.end(),
+                                       [](const Effect& effect) { return !is_of_motion(effect); }),
+                        options.effects.end());
+  // Effects of the catalogue are candidates anyway.
+  own.erase(std::remove_if(own.begin(), own.end(),
+                           [](const Effect& effect) { return !std::holds_alternative<Formula>(effect); }),
+            own.end());
+  for (const TraceInput& input : inputs) {
+    out.traces.push_back(prepare(input, options, options.motion));
+    Identification& trace = out.traces.back();
+    if (trace.analysed && options.motion.plateau == PlateauCorrection::none && plateau_is_off(trace.motion)) {
+      MotionOptions corrected = options.motion;
+      corrected.plateau = PlateauCorrection::radius;
+      trace = prepare(input, options, corrected);
+    }
+    out.analysed &= trace.analysed;
+  }
+  if (!out.analysed) {
+    out.diagnosis.verdict = Verdict::not_enough_data;
+    return out;
+  }
+  const std::vector<Record> records = records_of(out.traces);
+  DiagnosisOptions inner = more.diagnosis;
+  inner.threads = options.threads;
+  Diagnosed diagnosed = diagnose(records, options.laws, own, options.instruments, options.fit, inner);
+  out.diagnosis = std::move(diagnosed.diagnosis);
+  std::optional<Fit> uncorrected;
+  const Motion& motion = out.traces[0].motion;
+  const bool moved = motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 ||
+                     motion.plateau_correction != PlateauCorrection::none;
+  if (moved && inputs.size() == 1 && !diagnosed.fits.empty()) {
+    uncorrected = fit_uncorrected(inputs[0], options, out.diagnosis.law);
+  }
+  add_motion(out.traces, uncorrected, out);
+  if (!diagnosed.fits.empty()) {
+    out.fits.push_back(diagnosed.fits.front());
+    if (diagnosed.fits.size() > 1) out.fits.push_back(diagnosed.fits.back());
+    out.best = out.fits.size() - 1;
+    for (const TraceInput& input : more.confirm) {
+      out.diagnosis.confirmations.push_back(confirm(input, options, diagnosed.fits.front(), diagnosed.fits.back()));
+    }
+  }
   return out;
 }
 

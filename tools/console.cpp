@@ -3,11 +3,15 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <system_error>
 
 #include "tribofit/ingest/input_error.hpp"
 
@@ -31,14 +35,51 @@ bool wants_colour() {
          std::string_view(terminal) != "dumb";
 }
 
+bool wants_unicode() {
+  const char* terminal = std::getenv("TERM");
+  if (terminal != nullptr && std::string_view(terminal) == "dumb") return false;
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {  // the first that is set decides, as in POSIX
+    const char* locale = std::getenv(name);
+    if (locale == nullptr || *locale == '\0') continue;
+    std::string lower(locale);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return lower.find("utf-8") != std::string::npos || lower.find("utf8") != std::string::npos;
+  }
+  return false;
+}
+
 std::size_t terminal_width() {
+  if (const char* columns = std::getenv("COLUMNS")) {
+    std::size_t width = 0;
+    const char* end = columns + std::strlen(columns);
+    const auto [last, error] = std::from_chars(columns, end, width);
+    if (error == std::errc{} && last == end && width > 0) return width;
+  }
   struct winsize size {};
   if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-  return 100;
+  return 80;
 }
 
 void progress(const std::string& text) {
   if (::isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+ProgressLine::ProgressLine() : watched_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+  if (watched_ && next_ != std::chrono::steady_clock::time_point{}) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressLine::show(std::string_view what, double part) {
+  if (!watched_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return;
+  next_ = now + std::chrono::milliseconds(100);
+  const std::size_t room = std::max<std::size_t>(terminal_width(), 20) - 8;  // a line that wraps cannot be rewritten
+  const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
+  std::fprintf(stderr, "\r\033[K%3d %%  %.*s", percent, static_cast<int>(std::min(what.size(), room)), what.data());
+  std::fflush(stderr);
 }
 
 void complain(const std::string& text) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 /// Writes to standard output. Nobody reading any more (a closed pipe) is no error and is not complained about; a full
 /// disc throws tribofit::InputError.
@@ -10,11 +12,30 @@ void print(const std::string& text);
 /// Whether colours are wanted: standard output is a terminal that can, and NO_COLOR is not set.
 bool wants_colour();
 
-/// Columns of the terminal; 100 where there is none.
+/// Whether signs beyond ASCII (bars, plus-minus) can be shown: the locale's encoding is UTF-8 and the terminal not
+/// dumb.
+bool wants_unicode();
+
+/// Columns to write: COLUMNS where it is set, else those of the terminal, else 80.
 std::size_t terminal_width();
 
 /// One line to standard error, only where a person watches.
 void progress(const std::string& text);
+
+/// One line on standard error that is rewritten as work goes on, only where a person watches; gone when it is done.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  /// What is being done and the part done, 0 to 1.
+  void show(std::string_view what, double part);
+
+ private:
+  bool watched_;
+  std::chrono::steady_clock::time_point next_{};
+};
 
 /// "identify: error: TEXT" to standard error.
 void complain(const std::string& text);

@@ -4,6 +4,8 @@
 
 #include "console.hpp"
 #include "tribofit/friction/effects/all.hpp"
+#include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/report/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
@@ -17,10 +19,12 @@ void add_effects(CLI::App& app, int& status) {
   verb->callback([key, &status] {
     TerminalOptions options;
     options.colour = wants_colour();
+    options.unicode = wants_unicode();
     options.width = terminal_width();
     status = 0;
     if (!key->empty()) {
-      print(render_effect(describe(make_effect(*key)), options));
+      const Effect effect = make_effect(*key);
+      print(render_effect(describe(effect), fingerprint(effect), options));
       return;
     }
     std::vector<EffectInfo> effects;

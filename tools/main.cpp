@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 
@@ -23,10 +24,11 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     "Units are accepted in any usual form: 15mm, 0.015 m, 4rpm, 0.419rad/s, 50N, 20kHz.\n"
-    "What the command line says beats the file.\n\n"
+    "What the command line says beats a folder's manifest.csv, which beats the file.\n\n"
     "Examples:\n"
     "  identify --radius 15mm trace.csv\n"
     "  identify --radius 15mm --effect viscous --csv out/ trace.csv\n"
+    "  identify diagnose --radius 15mm trace.csv\n"
     "  identify --radius 15mm --columns time=t,mu=COF,v_b=Velocity:mm/s trace.csv\n\n"
     "Exit status: 0 done; 1 data read but no analysis possible, or one of several traces failed;\n"
     "2 wrong usage; 3 unreadable or invalid input.";
@@ -63,6 +65,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "identify " + std::string(tribofit::version), "Print the version and leave");
   int status = 0;
   add_identify(app, status);
+  add_diagnose(app, status);
   add_effects(app, status);
   add_simulate(app, status);
   try {
@@ -74,10 +77,20 @@ int run(int argc, char** argv) {
   return status;
 }
 
+/// Leaves nothing half-written behind, then ends as the signal would have.
+void leave(int signal) {
+  tribofit::remove_unfinished_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // `identify ... | head` is no accident
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, leave) == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
+  }
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disc
   try {
     return run(argc, argv);

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
+#include <fstream>
 #include <string_view>
-#include <system_error>
 
+#include "console.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -105,13 +104,25 @@ Loss loss_from(const std::string& name) {
   return name == "soft-l1" ? Loss::soft_l1 : Loss::squares;
 }
 
-bool is_trace_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  // The manifest of a folder of runs holds their conditions, not a run.
-  return (extension == ".csv" || extension == ".tsv") && path.filename() != "manifest.csv" &&
-         path.filename().string().front() != '.';
+/// Adds the formulas of a file: one a line, # begins a comment line.
+void add_formulas_of(const std::string& path, std::vector<Effect>& effects) {
+  std::ifstream in(path);
+  if (!in) throw InputError("--formula: the file cannot be read", "write it as --formula @FILE", {path, 0, ""});
+  std::size_t number = 0, found = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    ++found;
+    try {
+      effects.emplace_back(Formula(line.substr(first, line.find_last_not_of(" \t\r") + 1 - first)));
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), error.advice(), {path, number, ""});
+    }
+  }
+  if (found == 0) {
+    throw InputError("holds no formula", "write one a line, as in hump = a*exp(-v/w); a=0.02, w=6mm/s", {path, 0, ""});
+  }
 }
 
 }  // namespace
@@ -135,7 +146,13 @@ IdentifyOptions options_from(const Settings& s) {
     if (found && !again) options.laws.push_back(*found);
   }
   for (const std::string& key : s.effects) options.effects.push_back(make_effect(key));
-  for (const std::string& formula : s.formulas) options.effects.emplace_back(Formula(formula));
+  for (const std::string& formula : s.formulas) {
+    if (formula.front() == '@') {
+      add_formulas_of(formula.substr(1), options.effects);
+    } else {
+      options.effects.emplace_back(Formula(formula));
+    }
+  }
 
   options.published_protocol = s.protocol == "both";
   options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;
@@ -147,25 +164,24 @@ IdentifyOptions options_from(const Settings& s) {
   return options;
 }
 
-std::vector<std::string> traces_from(const std::vector<std::string>& names) {
-  std::vector<std::string> traces;
-  for (const std::string& name : names) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(name, error)) {
-      traces.push_back(name);
-      continue;
-    }
-    std::vector<std::string> found;
-    for (std::filesystem::directory_iterator it(name, error), end; !error && it != end; it.increment(error)) {
-      if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
-    }
-    if (error)
-      throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {name, 0, ""});
-    if (found.empty()) {
-      throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {name, 0, ""});
-    }
-    std::sort(found.begin(), found.end());
-    traces.insert(traces.end(), found.begin(), found.end());
+std::vector<std::string> input_files(const Settings& s) {
+  std::vector<std::string> files = s.continued_in;
+  files.insert(files.end(), s.confirm.begin(), s.confirm.end());
+  files.push_back(s.second_file);
+  files.push_back(s.instruments);
+  for (const std::string& formula : s.formulas) {
+    if (formula.front() == '@') files.push_back(formula.substr(1));
   }
-  return traces;
+  return files;
+}
+
+TerminalOptions terminal_options(const Settings& s, const std::vector<std::string>& arguments) {
+  TerminalOptions options;
+  options.colour = wants_colour();
+  options.unicode = wants_unicode();
+  options.width = terminal_width();
+  options.instruments_declared = !s.instruments.empty();
+  options.csv_written = !s.csv.empty();
+  options.arguments = arguments;
+  return options;
 }

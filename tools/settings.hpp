@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/terminal.hpp"
 
 /// What a user types after `identify`, as typed.
 struct Settings {
@@ -12,6 +13,7 @@ struct Settings {
   std::vector<std::string> columns, units;
   std::string second_file;
   std::vector<std::string> continued_in;
+  std::vector<std::string> confirm;  // diagnose: runs that take no part
   bool trim = true;
 
   std::vector<std::string> laws, effects, formulas;
@@ -21,6 +23,7 @@ struct Settings {
 
   std::string json, csv;
   int threads = 0;
+  std::string seed_text;
   unsigned long long seed = 1;
   bool quiet = false;
 };
@@ -28,6 +31,8 @@ struct Settings {
 /// What is typed, in SI and checked. Throws tribofit::InputError that names the option.
 tribofit::IdentifyOptions options_from(const Settings& settings);
 
-/// The traces named, folders replaced by the CSV files in them in order of name. Throws tribofit::InputError for a
-/// folder without traces.
-std::vector<std::string> traces_from(const std::vector<std::string>& names);
+/// Files that are read besides the traces.
+std::vector<std::string> input_files(const Settings& settings);
+
+/// How to show a result here and now.
+tribofit::TerminalOptions terminal_options(const Settings& settings, const std::vector<std::string>& arguments);

@@ -8,19 +8,23 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "console.hpp"
+#include "simulated_drive.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate.hpp"
@@ -41,7 +45,8 @@ struct Request {
   std::string noise_mu = "0", noise_v = "0mm/s", noise_colour = "0", scatter = "0", wander = "0";
   std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
   std::string velocity_gain = "1";
-  std::string duration = "20s", rate = "20kHz", run_up, reversing, out;
+  std::string duration = "20s", rate = "20kHz", run_up, reversing, speed_steps, load_swing, temperature, out;
+  std::vector<std::string> pauses;
   std::uint64_t seed = 1;
   bool quiet = false;
 };
@@ -54,10 +59,11 @@ struct Plan {
   std::vector<double> parameters;
   Sensors sensors;
   SimulationOptions options;
-  double speed = 0;          ///< [rad/s], the amplitude where the drive reverses
-  double run_up = 0;         ///< [s]
-  double reversing = 0;      ///< [Hz]
-  double preset_radius = 0;  ///< of the published test the defaults come from [m]
+  double speed = 0;           ///< [rad/s], the amplitude where the drive reverses
+  double run_up = 0;          ///< [s]
+  double reversing = 0;       ///< [Hz]
+  bool writes_speed = false;  ///< the record has a channel of the disc's speed
+  double preset_radius = 0;   ///< of the published test the defaults come from [m]
 };
 
 constexpr double kRpm = 2 * std::numbers::pi / 60;
@@ -131,19 +137,22 @@ void plan_friction(const Request& request, const PublishedTest& test, BaseLaw la
                                        exponential ? "--alpha" : "--beta", "s/mm", test.friction.decay));
   }
   std::vector<Effect> effects;
+  std::map<std::string, std::vector<double>> values;  // by key: the model puts effects into its own order
   for (const std::string& text : request.effects) {
     const ChosenEffect chosen = read_effect(text);
     effects.push_back(chosen.effect);
-    plan.parameters.insert(plan.parameters.end(), chosen.values.begin(), chosen.values.end());
+    values[describe(chosen.effect).key] = chosen.values;
   }
   for (const std::string& text : request.formulas) {
     const Formula formula(text);
+    const EffectInfo info = formula.info();
     effects.emplace_back(formula);
-    for (const Parameter& parameter : formula.info().parameters) {
-      plan.parameters.push_back(parameter.start * parameter.si);
-    }
+    for (const Parameter& parameter : info.parameters) values[info.key].push_back(parameter.start * parameter.si);
   }
   plan.model = FrictionModel(law, std::move(effects));
+  for (const std::string& key : plan.model.effect_keys()) {
+    plan.parameters.insert(plan.parameters.end(), values[key].begin(), values[key].end());
+  }
 }
 
 void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
@@ -153,8 +162,9 @@ void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
   plan.speed = given_or(request.speed, Quantity::angular_velocity, "--speed", "rpm", test.speed);
   plan.run_up = given_or(request.run_up, Quantity::time, "--run-up", "s", 0);
   plan.reversing = given_or(request.reversing, Quantity::frequency, "--reversing", "Hz", 0);
-  if (!request.run_up.empty() && !request.reversing.empty()) {
-    throw InputError("--run-up and --reversing exclude each other", "give one of them");
+  const bool stepped = !request.speed_steps.empty() || !request.pauses.empty();
+  if (!request.run_up.empty() + !request.reversing.empty() + stepped > 1) {
+    throw InputError("--run-up, --reversing and --speed-steps with --pause exclude each other", "give one of them");
   }
   if (!request.run_up.empty() && !(plan.run_up > 0)) {
     throw InputError("--run-up is not positive", "give it as e.g. 1s, or leave it out");
@@ -162,6 +172,15 @@ void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
   drive.speed = constant_speed(plan.speed);
   if (plan.run_up > 0) drive.speed = run_up_speed(plan.speed, plan.run_up);
   if (!request.reversing.empty()) drive.speed = reversing_speed(plan.speed, plan.reversing);
+  if (stepped) {
+    drive.speed = stepped_speed_from(request.speed_steps, request.pauses, plan.speed);
+    plan.speed = drive.speed.speed(0);
+  }
+  plan.writes_speed = stepped || !request.reversing.empty();
+  const double duration = parse_quantity(request.duration, Quantity::time, "--duration", "s");
+  if (!(duration > 0)) throw InputError("--duration is not positive", "give it as e.g. 20s");
+  swing_load(request.load_swing, duration, drive);
+  vary_temperature(request.temperature, duration, drive);
 }
 
 Sensors plan_sensors(const Request& request) {
@@ -195,7 +214,8 @@ Plan make_plan(const Request& request) {
                   .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
                   .seed = request.seed};
   if (!(plan.options.rate > 0)) throw InputError("--rate is not positive", "give it as e.g. 20kHz");
-  if (plan.drive.speed.constant && plan.rig.mass > 0 && plan.rig.stiffness > 0) {
+  const bool starts_at_speed = plan.run_up == 0 && plan.reversing == 0 && plan.drive.speed.speed(0) != 0;
+  if (starts_at_speed && plan.rig.mass > 0 && plan.rig.stiffness > 0 && plan.parameters[0] > 0) {
     plan.options.settle = settling_time(plan.rig, plan.drive, plan.parameters);
   }
   return plan;
@@ -240,11 +260,13 @@ int time_decimals(double rate) {
   return decimals;
 }
 
-void write_trace(WholeFile& file, const Trace& trace, double rate, bool with_speed) {
-  std::vector<Column> columns = {{"time_s", &trace.time, 1, time_decimals(rate)},
+void write_trace(WholeFile& file, const Trace& trace, const Plan& plan) {
+  std::vector<Column> columns = {{"time_s", &trace.time, 1, time_decimals(plan.options.rate)},
                                  {"mu", &trace.friction, 1, 5},
                                  {"v_b_mm_s", &trace.velocity, 1e3, 4}};
-  if (with_speed) columns.push_back({"speed_rpm", &trace.disc_speed, 1 / kRpm, 5});
+  if (!trace.load.empty()) columns.push_back({"load_N", &trace.load, 1, 4});
+  if (!trace.temperature.empty()) columns.push_back({"temperature_C", &trace.temperature, 1, 3});
+  if (plan.writes_speed && !trace.disc_speed.empty()) columns.push_back({"speed_rpm", &trace.disc_speed, 1 / kRpm, 5});
   std::string text;
   for (const Column& column : columns) text.append(text.empty() ? "" : ",").append(column.header);
   text += '\n';
@@ -304,6 +326,11 @@ Json truth(const Request& request, const Plan& plan, const SimulatedMotion& moti
             {"load_N", plan.drive.mean_load},
             {"run_up_s", plan.run_up},
             {"reversing_hz", plan.reversing},
+            {"speed_steps", request.speed_steps},
+            {"pauses", request.pauses},
+            {"load_swing", request.load_swing},
+            {"temperature", request.temperature},
+            {"mean_temperature_degC", plan.drive.mean_temperature},
             {"settled_before_s", plan.options.settle}}},
           {"law", to_string(plan.model.law())},
           {"effects", plan.model.effect_keys()},
@@ -344,13 +371,15 @@ std::string json_path(const std::string& csv) {
 }
 
 void run(const Request& request) {
+  if (request.out == "-") {
+    throw InputError("--out - is no file", "two files are written, the trace and the truth beside it: give a name");
+  }
   const std::string truth_path = json_path(request.out);
   const Plan plan = make_plan(request);
   WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
-  const SimulatedMotion motion = simulate(plan.rig, plan.drive, plan.model, plan.parameters, plan.options);
-  const Recording recording = record(motion, plan.model, plan.parameters, plan.sensors);
-  const double floor = floor_rmse(motion, recording, plan.model, plan.parameters);
-  write_trace(trace_file, recording.trace, plan.options.rate, plan.reversing > 0);
+  const auto [motion, recording, floor] =
+      hide(plan.model, plan.parameters, plan.rig, plan.drive, plan.options, plan.sensors);
+  write_trace(trace_file, recording.trace, plan);
   truth_file.write(truth(request, plan, motion, floor).dump(1) + "\n");
   trace_file.finish();
   truth_file.finish();
@@ -385,6 +414,14 @@ void add_options(CLI::App& verb, Request& r) {
   group(rig, "--run-up", r.run_up, "start from standstill and reach the speed in this time; else the start is settled");
   group(rig, "--reversing", r.reversing,
         "the disc goes forth and back as a sine of this frequency; --speed is its peak");
+  group(rig, "--speed-steps", r.speed_steps, "speeds of the disc from times on, e.g. 0s:2rpm,10s:4rpm,20s:-4rpm");
+  group(rig, "--pause", r.pauses, "the disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
+      ->take_all()
+      ->expected(1);
+  group(rig, "--load-swing", r.load_swing,
+        "a sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
+  group(rig, "--temperature", r.temperature,
+        "temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
   const char* law = "Friction (default: the published values at the nearest radius)";
   group(law, "--law", r.law, "exponential, fractional or coulomb")->capture_default_str();
   group(law, "--mu-s", r.mu_s, "static friction");

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/read_trace.hpp"
@@ -51,6 +52,33 @@ struct Identification {
   std::vector<std::string> warnings;
   bool analysed = true;  ///< false: the data were read but cannot carry the analysis, warnings say why
 };
+
+/// One input file with what is known of it beforehand (a manifest's row over the command line).
+struct TraceInput {
+  std::string path;
+  ReadOptions read;
+};
+
+struct DiagnoseOptions {
+  DiagnosisOptions diagnosis;
+  std::vector<TraceInput> confirm;  ///< runs that take no part and on which the finding is tried
+};
+
+/// A diagnosis of one trace, or of several together with shared parameters.
+struct DiagnosedTraces {
+  std::vector<Identification> traces;  ///< as given; their `fits` are of each trace alone and empty where several are
+                                       ///< diagnosed together
+  std::vector<Fit> fits;  ///< the bare laws, then the last rung of the ladder where it holds more; all traces together
+  std::size_t best = 0;   ///< index in `fits`
+  Diagnosis diagnosis;
+  bool analysed = true;  ///< false: some trace cannot carry the analysis, its warnings say why
+};
+
+/// The stages in order: read, move, segment, fit, diagnose. options.effects are candidates of the user beside the
+/// catalogue (formulas), or part of the model from the start (catalogue effects). `options.read` is not used: each
+/// input brings its own.
+DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& options = {},
+                         const DiagnoseOptions& more = {});
 
 /// The stages in order: read, move, segment, fit.
 Identification identify(const std::string& path, const IdentifyOptions& options = {});

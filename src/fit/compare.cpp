@@ -30,6 +30,31 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
   return comparison;
 }
 
+Fit frozen_on(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+  Fit out = fit;
+  const Observations observations = observe(motion, segmentation, fit.model.needs());
+  const Record one = {&motion, &segmentation};
+  const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
+  const SampleErrors errors = sample_errors(fit.model, fit.values(), record, observations);
+  out.error = errors.figures;
+  out.error.held_out_rmse = out.error.rmse;
+  out.cycles = observations.cycles;
+  out.cycle_squares = errors.squares;
+  out.cycle_counts = errors.counts;
+  out.constant_rmse = errors.constant_rmse;
+  return out;
+}
+
+double held_out_std_error(const Fit& fit) {
+  const std::size_t n = fit.cycle_squares.size();
+  double counts = 0;
+  for (const double count : fit.cycle_counts) counts += count;
+  if (n < 3 || !(counts > 0) || !(fit.error.held_out_rmse > 0)) return 0;
+  std::vector<double> squares(n);
+  for (std::size_t c = 0; c < n; ++c) squares[c] = fit.cycle_squares[c] * static_cast<double>(n) / counts;
+  return mean_error(squares).std_error / (2 * fit.error.held_out_rmse);
+}
+
 Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   Curve curve;
   curve.velocity.assign(velocity.begin(), velocity.end());
@@ -72,7 +97,8 @@ std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmenta
   const std::vector<double> p = fit.values();
   if (p.empty()) return mu;
   const Observations observations = observe(motion, segmentation, fit.model.needs());
-  const FullRecord record(motion, observations, fit.model.needs());
+  const Record one = {&motion, &segmentation};
+  const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
   for (const auto& range : observations.slips) {
     const Slip slip = record.slip(range);
     evaluate<double>(fit.model, p.data(), slip, slip.velocity,

@@ -7,11 +7,16 @@
 
 namespace tribofit {
 
-FullRecord::FullRecord(const Motion& motion, const Observations& observations, const Channels& needs)
-    : motion_(motion), observations_(observations) {
-  if (needs.acceleration) acceleration_ = block_acceleration(motion);
-  if (needs.angle) angle_ = disc_angle(motion);
-  if (needs.distance) distance_ = sliding_distance(motion);
+FullRecord::FullRecord(std::span<const Record> records, const Observations& observations, const Channels& needs)
+    : records_(records), observations_(observations), needs_(needs), channels_(records.size()) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    if (needs.angle) channels_[r].angle = disc_angle(*records[r].motion);
+    if (needs.distance) channels_[r].distance = sliding_distance(*records[r].motion);
+  }
+}
+
+std::span<const double> FullRecord::friction(const Observations::Range& range) const {
+  return std::span(records_[range.record].motion->friction).subspan(range.samples.begin, range.samples.size());
 }
 
 Slip FullRecord::slip(const Observations::Range& range) const {
@@ -19,15 +24,24 @@ Slip FullRecord::slip(const Observations::Range& range) const {
     return channel.empty() ? std::span<const double>()
                            : std::span<const double>(channel).subspan(range.samples.begin, range.samples.size());
   };
+  const Motion& motion = *records_[range.record].motion;
+  const Channel& channel = channels_[range.record];
   Slip slip = observations_.slip(range);
-  slip.time = part(motion_.time);
-  slip.velocity = part(motion_.relative_velocity);
+  slip.time = part(motion.time);
+  slip.velocity = part(motion.relative_velocity);
   slip.velocity_variance = {};
-  slip.acceleration = part(acceleration_);
-  slip.angle = part(angle_);
-  slip.distance = part(distance_);
-  slip.load = part(motion_.load);
-  slip.temperature = part(motion_.temperature);
+  if (needs_.acceleration) {
+    acceleration_ = slip_acceleration(motion, range.samples);
+    slip.acceleration = acceleration_;
+  }
+  slip.angle = part(channel.angle);
+  slip.distance = part(channel.distance);
+  slip.load = part(motion.load);
+  if (motion.load.empty() && !observations_.load.empty()) {
+    load_.assign(range.samples.size(), observations_.load[range.begin]);
+    slip.load = load_;
+  }
+  slip.temperature = part(motion.temperature);
   return slip;
 }
 
@@ -42,7 +56,7 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
     const Slip slip = record.slip(range);
     mu.resize(slip.size());
     evaluate<double>(model, p.data(), slip, slip.velocity, mu);
-    const double* measured = record.motion().friction.data() + range.samples.begin;
+    const std::span<const double> measured = record.friction(range);
     double squares = 0;
     for (std::size_t i = 0; i < mu.size(); ++i) {
       const double r = measured[i] - mu[i];

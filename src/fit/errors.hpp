@@ -7,17 +7,24 @@
 
 namespace tribofit {
 
-/// The slips of a record, sample by sample, with the channels a model needs. Slips point into the Motion.
+/// The slips of the records, sample by sample, with the channels a model needs. Slips point into the Motions.
 class FullRecord {
  public:
-  FullRecord(const Motion& motion, const Observations& observations, const Channels& needs);
+  FullRecord(std::span<const Record> records, const Observations& observations, const Channels& needs);
+  /// Valid until the next call.
   Slip slip(const Observations::Range& range) const;
-  const Motion& motion() const { return motion_; }
+  /// Measured friction of a slip, signed.
+  std::span<const double> friction(const Observations::Range& range) const;
 
  private:
-  const Motion& motion_;
+  struct Channel {
+    std::vector<double> angle, distance;
+  };
+  std::span<const Record> records_;
   const Observations& observations_;
-  std::vector<double> acceleration_, angle_, distance_;
+  Channels needs_;
+  std::vector<Channel> channels_;                     // of each record
+  mutable std::vector<double> acceleration_, load_;   // of the slip asked for last
 };
 
 /// What a model leaves on every sample.

@@ -49,8 +49,7 @@ std::size_t fold_count(const Observations& observations, const FitOptions& optio
 /// One fit in the making: what all its steps share.
 struct Job {
   const FrictionModel& model;
-  const Motion& motion;
-  const Segmentation& segmentation;
+  std::span<const Record> records;
   const Observations& observations;
   const Instruments& instruments;
   const FitOptions& options;
@@ -72,7 +71,8 @@ struct Job {
 /// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the
 /// scatter of break-away, then with that scatter taken out.
 SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
-  const auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
+  auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
+  if (!job.options.start.empty()) starts = {job.options.start};
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
   SolverOptions quick;
   quick.max_iterations = 40;
@@ -190,7 +190,7 @@ void fill_parameters(const Job& job, const Bounds& given, const SolverResult& so
     const bool held = !(job.bounds.lower[k] < job.bounds.upper[k]);  // by the published protocol
     out.parameter.lower = given.lower[k] / slot.parameter.si;
     out.parameter.upper = given.upper[k] / slot.parameter.si;
-    if ((k < 2 || slot.parameter.of_friction) && job.motion.friction_kind == FrictionKind::force) {
+    if ((k < 2 || slot.parameter.of_friction) && job.records[0].motion->friction_kind == FrictionKind::force) {
       out.parameter.unit = in_newtons(out.parameter.unit);
     }
     out.effect = slot.effect;
@@ -213,8 +213,24 @@ void fill_parameters(const Job& job, const Bounds& given, const SolverResult& so
   fit.covariance.assign(spread.covariance.data(), spread.covariance.data() + spread.covariance.size());
 }
 
+/// Means over the records, in squares.
+Floor mean_floor(std::span<const Record> records) {
+  Floor floor = estimate_floor(*records[0].motion, *records[0].segmentation);
+  if (records.size() == 1) return floor;
+  const auto count = static_cast<double>(records.size());
+  double noise = floor.noise * floor.noise, scatter = floor.scatter * floor.scatter;
+  for (std::size_t r = 1; r < records.size(); ++r) {
+    const Floor next = estimate_floor(*records[r].motion, *records[r].segmentation);
+    noise += next.noise * next.noise;
+    scatter += next.scatter * next.scatter;
+  }
+  floor.noise = std::sqrt(noise / count);
+  floor.scatter = std::sqrt(scatter / count);
+  return floor;
+}
+
 void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
-  fit.floor = estimate_floor(job.motion, job.segmentation);
+  fit.floor = mean_floor(job.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
   const ModelResiduals::Whitening whitening =
       job.whitening.part > 0 ? job.whitening : job.residuals(all_slips(job.observations)).whitening_at(p.data());
@@ -257,6 +273,12 @@ void set_floor(const Floor& floor, Fit& fit) {
 
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments, const FitOptions& options) {
+  const Record record = {&motion, &segmentation};
+  return fit_model(model, std::span(&record, 1), observations, instruments, options);
+}
+
+Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
+              const Instruments& instruments, const FitOptions& options) {
   Fit fit;
   fit.model = model;
   fit.protocol = options.protocol;
@@ -267,17 +289,17 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   if (observations.cycles < kFewestCycles) {
     return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
   }
-  Job job{model, motion, segmentation, observations, instruments, options};
+  Job job{model, records, observations, instruments, options};
   job.bounds = bounds_of(model, observations);
   const Bounds given = job.bounds;
   if (options.loss != Loss::squares) {
-    job.loss = {options.loss, options.loss_scale * estimate_floor(motion, segmentation).noise};
+    job.loss = {options.loss, options.loss_scale * mean_floor(records).noise};
   }
 
   std::vector<double> start;
   CycleExtremes extremes;
-  const bool published = options.protocol == Protocol::published;
-  if (published) extremes = extremes_of(observations, segmentation);
+  const bool published = options.protocol == Protocol::published && records.size() == 1;
+  if (published) extremes = extremes_of(observations, *records[0].segmentation);
   const SolverResult solution = published ? published_estimate(job, extremes, start) : joint_estimate(job, fit, start);
   fit.converged = solution.converged;
   if (!solution.converged) fit.messages.push_back(solution.message);
@@ -309,16 +331,19 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
   }
   fill_parameters(job, given, solution, start, influences, fit);
 
-  const FullRecord record(motion, observations, model.needs());
+  const FullRecord record(records, observations, model.needs());
   const SampleErrors errors = sample_errors(model, p, record, observations);
   fit.error = errors.figures;
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
   fill_floor(job, p, errors, fit);
   hold_out(job, p, equations, inside, errors, published ? &extremes : nullptr, fit);
-  const std::vector<double> systematic =
-      systematic_errors(model, p, motion, observations, instruments, inside, published);
-  for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
-  if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, segmentation);
+  if (records.size() == 1) {
+    const Motion& motion = *records[0].motion;
+    const std::vector<double> systematic =
+        systematic_errors(model, p, motion, observations, instruments, inside, published);
+    for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
+    if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, *records[0].segmentation);
+  }
   if (options.profile && !published) add_profiles(residuals, given, inverse_over(equations.total, inside), fit);
   add_messages(silent, fit);
   return fit;

@@ -89,11 +89,22 @@ bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Bl
   return true;
 }
 
-bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks) const {
+bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
+                                const FurtherColumns& further) const {
   blocks.resize(slips_.size());
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     if (!fill(k, p, with_jacobian, block)) return false;
+    if (further) {
+      Block more = further(slips_[k]);
+      const auto& range = observations_.slips[slips_[k]];
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        more.row(static_cast<Eigen::Index>(i - range.begin)) *= observations_.root_weight[i];
+      }
+      Block wider(block.rows(), block.cols() + more.cols());
+      wider << block.leftCols(block.cols() - 2), more, block.rightCols(2);
+      block = std::move(wider);
+    }
     const Eigen::Index kept = std::min(block.rows(), block.cols());
     const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(block);  // in place
     blocks[k] = Block::Zero(block.cols(), block.cols());
@@ -160,6 +171,19 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   return out;
 }
 
+std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const FurtherColumns& further) const {
+  std::vector<Block> blocks;
+  if (!compressed(p, true, blocks, further) || blocks.empty()) return {};
+  const Eigen::Index columns = blocks[0].cols() - 1;
+  const auto added = corrections(blocks, whitening_ != nullptr ? whitening_->part : 0);
+  std::vector<Eigen::MatrixXd> out;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    out.push_back(blocks[k].leftCols(columns));
+    if (!added.empty()) out.back() += blocks[k].col(columns) * added[k];
+  }
+  return out;
+}
+
 std::vector<double> ModelResiduals::squares(const double* p) const {
   std::vector<double> out;
   Block block;
@@ -201,6 +225,8 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   const double noise = left / freedom, information = norms / n;  // of a sample; of a slip about its delta
   scatter = std::max(0.0, scatter - noise / information);
   out.part = 1 - 1 / std::sqrt(1 + scatter * information / noise);
+  out.noise = noise;
+  for (const Eigen::VectorXd& g : out.g) out.log_spread.push_back(std::log1p(scatter * g.squaredNorm() / noise));
   return out;
 }
 

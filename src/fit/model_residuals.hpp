@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,8 @@ class ModelResiduals final : public Residuals {
   struct Whitening {
     std::vector<Eigen::VectorXd> g;  ///< of every slip of the observations: its rows, then its break-away if it has one
     double part = 0;                 ///< c = 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
+    double noise = 0;                ///< sigma^2, variance of a row
+    std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
   };
 
   /// slips: indices into observations.slips.
@@ -57,6 +60,14 @@ class ModelResiduals final : public Residuals {
   /// One for each slip given. Empty where the model is not finite.
   std::vector<Normal> normal_equations(const double* p) const;
 
+  /// Further columns of the rows of slip k (index in observations.slips): d residual/d coefficient for every value and,
+  /// last, for the break-away if it has one; not weighted.
+  using FurtherColumns = std::function<Eigen::MatrixXd(std::size_t k)>;
+
+  /// Rows [J r] of every slip at p, whitened and compressed to at most as many rows as columns plus one; with further
+  /// columns [J more r]. Empty where the model is not finite.
+  std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further = {}) const;
+
   /// Sum of squares of every slip at p, break-away included, not whitened. Empty where the model is not finite.
   std::vector<double> squares(const double* p) const;
 
@@ -70,7 +81,8 @@ class ModelResiduals final : public Residuals {
   using Block = Eigen::MatrixXd;
   std::size_t rows_per_slip() const { return parameter_count() + 2; }
   bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block) const;
-  bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks) const;
+  bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
+                  const FurtherColumns& further = {}) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
   std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks, double part) const;
   template <class T, class Write>

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace tribofit {
 
@@ -40,6 +42,8 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
       range.cycle = ranges.size();
       range.segment = static_cast<std::size_t>(&cycle - segmentation.cycles.data());
       range.direction = cycle.direction;
+      const double speed = motion.conditions.speed.known() ? motion.conditions.speed.value : 0;
+      range.disc_speed = motion.disc_speed.empty() ? speed : motion.disc_speed[range.samples.begin];
       range.from_stick = from_stick && k == 0;
       range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
       range.break_away_time = motion.time[range.samples.begin];
@@ -54,6 +58,30 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
     }
   }
   return ranges;
+}
+
+/// Weights of a quadratic's slope at one sample of a window, `left` samples before it and `right` after [1/sample].
+std::vector<double> slope_weights(std::size_t left, std::size_t right) {
+  const std::size_t n = left + right + 1;
+  double moments[5] = {};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(left);
+    double power = 1;
+    for (double& moment : moments) {
+      moment += power;
+      power *= x;
+    }
+  }
+  // Normal equations of c0 + c1 x + c2 x^2; c1 is the slope at x = 0. Cofactors of the second row.
+  const auto& m = moments;
+  const double k0 = -(m[1] * m[4] - m[2] * m[3]), k1 = m[0] * m[4] - m[2] * m[2], k2 = -(m[0] * m[3] - m[1] * m[2]);
+  const double determinant = m[1] * k0 + m[2] * k1 + m[3] * k2;
+  std::vector<double> weights(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(left);
+    weights[i] = (k0 + k1 * x + k2 * x * x) / determinant;
+  }
+  return weights;
 }
 
 /// Means of `channel` over each value of the observations.
@@ -163,7 +191,78 @@ Slip Observations::slip(const Range& range) const {
   slip.direction = range.direction;
   slip.mean_load = mean_load;
   slip.mean_temperature = mean_temperature;
+  slip.disc_speed = range.disc_speed;
   return slip;
+}
+
+std::vector<double> slip_acceleration(const Motion& motion, const Span& samples) {
+  constexpr std::size_t kHalf = 10;
+  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * kHalf);
+  const std::size_t length = samples.end - begin;
+  std::vector<double> acceleration(samples.size(), 0.0);
+  if (length < 3) return acceleration;
+  std::vector<double> weights;
+  std::size_t last_left = 0, last_right = 0;
+  for (std::size_t i = samples.begin; i < samples.end; ++i) {
+    const std::size_t right = std::min(kHalf, samples.end - 1 - i);
+    const std::size_t left = std::min(i - begin, 2 * kHalf - right);
+    if (weights.empty() || left != last_left || right != last_right) weights = slope_weights(left, right);
+    last_left = left;
+    last_right = right;
+    double slope = 0;
+    for (std::size_t k = 0; k <= left + right; ++k) {
+      const std::size_t at = i - left + k;
+      slope += weights[k] * (motion.disc_velocity_at(at) - motion.relative_velocity[at]);
+    }
+    acceleration[i - samples.begin] = slope / motion.step;
+  }
+  return acceleration;
+}
+
+Observations join(std::vector<Observations> records) {
+  Observations out = std::move(records.at(0));
+  double values = static_cast<double>(out.size());
+  for (std::size_t r = 1; r < records.size(); ++r) {
+    Observations& next = records[r];
+    const double more = static_cast<double>(next.size());
+    out.mean_load += (next.mean_load - out.mean_load) * more / (values + more);
+    out.mean_temperature += (next.mean_temperature - out.mean_temperature) * more / (values + more);
+    values += more;
+    for (Observations::Range slip : next.slips) {
+      slip.begin += out.time.size();
+      slip.end += out.time.size();
+      slip.cycle += out.cycles;
+      slip.lead_begin += out.lead_time.size();
+      slip.lead_end += out.lead_time.size();
+      slip.record = r;
+      out.slips.push_back(slip);
+    }
+    out.cycles += next.cycles;
+    // Channels missing on one side cannot be used by an effect of all.
+    const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
+      if (to.empty() || from.empty()) {
+        to.clear();
+      } else {
+        to.insert(to.end(), from.begin(), from.end());
+      }
+    };
+    for (auto* side : {&out, &next}) {
+      if (side->velocity_variance.empty()) side->velocity_variance.assign(side->size(), 0.0);
+    }
+    for (const auto channel : {&Observations::acceleration, &Observations::angle, &Observations::distance,
+                               &Observations::load, &Observations::temperature, &Observations::velocity_variance}) {
+      append(out.*channel, next.*channel);
+    }
+    for (const auto channel :
+         {&Observations::time, &Observations::velocity, &Observations::friction, &Observations::weight,
+          &Observations::root_weight, &Observations::lead_time, &Observations::lead_velocity}) {
+      (out.*channel).insert((out.*channel).end(), (next.*channel).begin(), (next.*channel).end());
+    }
+    out.fastest = std::max(out.fastest, next.fastest);
+    out.slowest = std::min(out.slowest, next.slowest);
+    out.largest_friction = std::max(out.largest_friction, next.largest_friction);
+  }
+  return out;
 }
 
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
@@ -198,10 +297,27 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
       out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
     });
   }
-  if (needs.acceleration) out.acceleration = reduce.means(block_acceleration(motion));
+  if (needs.acceleration) {
+    for (const auto& slip : out.slips) {
+      const std::vector<double> full = slip_acceleration(motion, slip.samples);
+      for (std::size_t i = 0; i < full.size(); i += out.samples_per_value) {
+        const std::size_t end = std::min(i + out.samples_per_value, full.size());
+        out.acceleration.push_back(std::accumulate(full.begin() + static_cast<std::ptrdiff_t>(i),
+                                                   full.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
+                                   static_cast<double>(end - i));
+      }
+    }
+  }
   if (needs.angle) out.angle = reduce.means(disc_angle(motion));
   if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
-  if (needs.load) out.load = reduce.means(motion.load);
+  if (needs.load) {
+    // Records that differ in a constant load show together what none shows alone.
+    if (motion.load.empty() && motion.conditions.load.known()) {
+      out.load.assign(out.time.size(), motion.conditions.load.value);
+    } else {
+      out.load = reduce.means(motion.load);
+    }
+  }
   if (needs.temperature) out.temperature = reduce.means(motion.temperature);
   out.mean_load = mean_of(motion.load, motion.conditions.load.known() ? motion.conditions.load.value : 1);
   out.mean_temperature = mean_of(motion.temperature, 0);

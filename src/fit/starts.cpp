@@ -90,9 +90,10 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   const double scale = std::max(1.0, observations.largest_friction);
   Bounds bounds;
   for (const auto& slot : model.parameters()) {
-    const double unit = slot.parameter.si * (slot.parameter.of_friction ? scale : 1.0);
-    bounds.lower.push_back(slot.parameter.lower * unit);
-    bounds.upper.push_back(slot.parameter.upper * unit);
+    const Parameter& q = slot.parameter;
+    const double unit = q.si * (q.of_friction || q.of_force ? scale : 1.0);
+    bounds.lower.push_back(q.lower * unit);
+    bounds.upper.push_back(q.upper * unit);
   }
   bounds.upper[0] = bounds.upper[1] = 5 * scale;
   if (model.base_count() == 3) {

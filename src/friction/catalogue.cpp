@@ -4,7 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/effects/all.hpp"
+#include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 
@@ -27,7 +29,28 @@ std::span<const Effect> effect_catalogue() {
 }
 
 EffectInfo describe(const Effect& effect) {
-  return std::visit([](const auto& e) { return e.info(); }, effect);
+  EffectInfo info = std::visit([](const auto& e) { return e.info(); }, effect);
+  info.of_motion = is_of_motion(effect);
+  info.pairs = look_alikes(info.key);
+  return info;
+}
+
+std::string_view to_string(EffectGroup group) {
+  switch (group) {
+    case EffectGroup::friction:
+      return "friction";
+    case EffectGroup::rig:
+      return "rig";
+    case EffectGroup::measurement:
+      return "measurement";
+    case EffectGroup::user:
+      break;
+  }
+  return "your own";
+}
+
+bool is_of_motion(const Effect& effect) {
+  return std::visit([]<class E>(const E&) { return hooks::OfMotion<E>; }, effect);
 }
 
 Effect make_effect(std::string_view key) {

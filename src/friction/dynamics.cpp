@@ -34,6 +34,7 @@ struct OneSample {
     slip.direction = at.direction;
     slip.mean_load = at.mean_load;
     slip.mean_temperature = at.mean_temperature;
+    slip.disc_speed = at.disc_speed;
   }
   OneSample(const OneSample&) = delete;
   OneSample& operator=(const OneSample&) = delete;

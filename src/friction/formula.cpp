@@ -254,7 +254,8 @@ EffectInfo Formula::info() const {
           .source = "the user",
           .experiment = "",
           .parameters = parsed_->parameters,
-          .needs = parsed_->needs};
+          .needs = parsed_->needs,
+          .group = EffectGroup::user};
 }
 
 std::size_t Formula::parameter_count() const {

@@ -75,6 +75,8 @@ Channels FrictionModel::needs() const {
     all.temperature |= c.temperature;
     all.stick_time |= c.stick_time;
     all.lead |= c.lead;
+    all.force |= c.force;
+    all.plateau |= c.plateau;
   }
   return all;
 }

@@ -119,7 +119,30 @@ struct Band {
   double upper = 0;       // content above the floor up to here [Hz]
   double floor = 0;       // amplitude density of the floor, relative to the largest line
   bool filtered = false;  // the floor itself falls off towards the end of the band
+  double corner = 0;      // from here on the content falls steeply [Hz]; 0: nowhere
+  double order = 0;       // the power of frequency with which it does
 };
+
+// Stick-slip falls with the first power of frequency in friction (it jumps) and the second in velocity (it has kinks),
+// a sensor of second order adds two. What falls faster over an octave, while still above its floor, was low-passed.
+void find_corner(const Spectrum& spectrum, double floor, Band& band) {
+  constexpr double third_of_octave = 1.259921, steep = 4.5;
+  std::vector<double> frequency, amplitude;
+  for (double k = 4; k * third_of_octave < static_cast<double>(spectrum.amplitude.size()); k *= third_of_octave) {
+    const auto begin = static_cast<std::size_t>(k), end = static_cast<std::size_t>(k * third_of_octave) + 1;
+    const std::span<const double> part = std::span<const double>(spectrum.amplitude).subspan(begin, end - begin);
+    amplitude.push_back(std::sqrt(sum_of(part, [](double a) { return a * a; }) / static_cast<double>(part.size())));
+    frequency.push_back(k * spectrum.bin_width);
+  }
+  double before = 0;
+  for (std::size_t i = 0; i + 3 < amplitude.size(); ++i) {
+    if (amplitude[i + 3] < 3 * floor) break;
+    const double order = std::log2(amplitude[i] / amplitude[i + 3]);
+    if (std::min(order, before) > steep && band.corner == 0) band.corner = frequency[i];
+    if (band.corner > 0) band.order = std::max(band.order, order);
+    before = order;
+  }
+}
 
 // Content reaches up to where the smoothed spectrum comes within a factor of two of the floor (upper quarter).
 Band band_of(std::span<const double> signal, double step) {
@@ -145,11 +168,20 @@ Band band_of(std::span<const double> signal, double step) {
     if (k > 4 * upper + 16) break;  // a lone line far above is not content
   }
   band.upper = static_cast<double>(upper) * spectrum.bin_width;
+  find_corner(spectrum, floor, band);
   return band;
+}
+
+// Where the channel's filter begins [Hz]; 0: none seen.
+double lowest_pass(const Band& band) {
+  return band.corner > 0 ? band.corner : band.filtered ? band.upper : 0;
 }
 
 std::string describe(const char* name, const Band& band) {
   if (band.upper <= 0) return fmt::format("{}: too short to say", name);
+  if (band.corner > 0)
+    return fmt::format("{} falls from about {:.2g} Hz on like f^-{:.0f}, it was low-passed there", name, band.corner,
+                       band.order);
   if (band.filtered)
     return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {:.3g} Hz", name, band.floor,
                        band.upper);
@@ -255,9 +287,13 @@ HealthItem check_bandwidth(std::span<const double> friction, std::span<const dou
   const Band b = velocity.empty() ? Band{} : band_of(velocity, step);
   if (!velocity.empty()) item.message += "; " + describe("velocity", b);
   item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
-  if (a.filtered || b.filtered) {
-    item.status = Status::warning;
-    item.message += ": what is faster than the filter is not in the data";
+  const double low = lowest_pass(a), other = lowest_pass(b);
+  if (low == 0 && other == 0) return item;
+  item.status = Status::warning;
+  item.message += ": what is faster than the filter is not in the data";
+  const bool differ = low == 0 || other == 0 || std::max(low, other) > 1.5 * std::min(low, other);
+  if (!velocity.empty() && differ) {
+    item.message += "; the channels have different filters, one lags behind the other and that looks like memory";
   }
   return item;
 }
@@ -328,34 +364,24 @@ HealthItem check_revolutions(const Motion& motion) {
   return item;
 }
 
-HealthItem check_speed_ripple(const Motion& motion, const Rests& rests, std::size_t factor) {
+HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate) {
   HealthItem item{"speed-ripple", Status::ok, "no stick plateaus to follow over the disc angle"};
-  if (!motion.sticks || motion.constant_disc_velocity == 0) return item;
-  const double omega = motion.conditions.speed.value;
-  if (!motion.conditions.speed.known() || std::abs(omega) * motion.duration() < two_pi || rests.runs.size() < 12) {
-    item.message = "less than one revolution or too few plateaus: not known";
+  if (!motion.sticks || motion.velocity_kind != VelocityKind::block) return item;
+  const DiscRipple& ripple = estimate.ripple;
+  if (ripple.order == 0) {
+    const bool recorded = !motion.disc_velocity.empty();
+    item.message =
+        recorded ? "the speed of the disc is recorded" : "less than two revolutions or too few plateaus: not known";
     return item;
   }
-  const auto n = static_cast<Eigen::Index>(rests.runs.size());
-  Eigen::MatrixXd basis(n, 5);
-  Eigen::VectorXd level(n);
-  for (Eigen::Index r = 0; r < n; ++r) {
-    const Rest& run = rests.runs[static_cast<std::size_t>(r)];
-    const std::size_t middle = std::min(motion.size() - 1, (run.begin + run.end) / 2 * factor);
-    const double angle = motion.disc_angle.empty() ? omega * motion.time[middle] : motion.disc_angle[middle];
-    basis.row(r) << 1, std::cos(angle), std::sin(angle), std::cos(2 * angle), std::sin(2 * angle);
-    level(r) = run.level;
-  }
-  const Eigen::VectorXd x = basis.colPivHouseholderQr().solve(level);
-  const double spread = std::sqrt((level - basis * x).squaredNorm() / static_cast<double>(n - 5));
-  const double once = std::hypot(x(1), x(2)), twice = std::hypot(x(3), x(4));
-  const double scale = 1 / std::abs(motion.constant_disc_velocity);
-  const double error = spread * std::sqrt(2.0 / static_cast<double>(n));
   item.message =
-      fmt::format("the plateau follows the disc angle by {:.2f} % once and {:.2f} % twice a revolution (+- {:.2f} %)",
-                  100 * once * scale, 100 * twice * scale, 100 * error * scale);
-  const double largest = std::max(once, twice);
-  if (largest * scale > 0.02 && largest > 5 * error) item.status = Status::warning;
+      fmt::format("the plateau follows the disc angle by {:.2f} % {} a revolution (+- {:.2f} %, {} plateaus)",
+                  100 * ripple.amplitude, ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order),
+                  100 * ripple.amplitude_std_error, estimate.plateaus);
+  if (!estimate.significant) return item;
+  item.status = Status::warning;
+  item.message += motion.speed_ripple.order > 0 ? ": the speed of the disc ripples; undone"
+                                                : ": the speed of the disc ripples; left as it is";
   return item;
 }
 
@@ -384,7 +410,8 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
     return item;
   }
   if (!motion.sticks) return item;
-  if (motion.velocity_kind == VelocityKind::relative || !motion.disc_velocity.empty()) {
+  const bool recorded_speed = !motion.disc_velocity.empty() && motion.speed_ripple.order == 0;
+  if (motion.velocity_kind == VelocityKind::relative || recorded_speed) {
     item.message = fmt::format("v_r rests at {:.3g} mm/s in stick", 1e3 * motion.plateau_velocity);
     return item;
   }

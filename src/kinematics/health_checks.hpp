@@ -9,6 +9,7 @@
 #include "high_pass.hpp"
 #include "plateau.hpp"
 #include "reductions.hpp"
+#include "ripple.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
@@ -47,8 +48,8 @@ HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::si
 
 HealthItem check_revolutions(const Motion& motion);
 
-/// Plateau level over the disc angle: amplitude of its first two harmonics.
-HealthItem check_speed_ripple(const Motion& motion, const Rests& rests, std::size_t factor);
+/// What became of the search for a ripple of the disc's speed.
+HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate);
 
 HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found);
 

@@ -4,37 +4,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "corrections.hpp"
 #include "health_checks.hpp"
 #include "high_pass.hpp"
 #include "plateau.hpp"
+#include "plateau_ratio.hpp"
+#include "ripple.hpp"
+#include "survey.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 namespace {
 
 using kinematics::add_sensor_mass;
-using kinematics::block_means;
-using kinematics::BlockMeans;
+using kinematics::Disc;
+using kinematics::disc_of;
+using kinematics::disc_slopes;
+using kinematics::final_level;
 using kinematics::find_rests;
+using kinematics::first_known;
 using kinematics::HighPassEstimate;
+using kinematics::largest_of;
 using kinematics::LevelRange;
 using kinematics::Rest;
 using kinematics::Rests;
-
-/// omega r of every sample, or one value for all.
-struct Disc {
-  bool known = false;
-  double constant = 0;
-  std::vector<double> varying;  // empty when constant
-  double largest = 0;           // |omega r|
-};
-
-const Condition& first_known(const Condition& a, const Condition& b) {
-  return a.known() ? a : b;
-}
+using kinematics::RippleEstimate;
+using kinematics::run_up_blocks;
+using kinematics::Survey;
 
 void require_channels(const Trace& trace) {
   const std::size_t n = trace.size();
@@ -57,110 +56,6 @@ void take_conditions_from_instruments(Conditions& conditions, const Instruments:
   take(conditions.load, rig.load);
 }
 
-Disc disc_of(const Trace& trace) {
-  Disc disc;
-  const std::size_t n = trace.size();
-  const bool channel = trace.disc_speed.size() == n;
-  std::vector<std::pair<const Step*, double>> parts;  // omega r, or r with a speed channel
-  for (const Step& step : trace.steps) {
-    const Condition& radius = first_known(step.conditions.radius, trace.conditions.radius);
-    const Condition& speed = first_known(step.conditions.speed, trace.conditions.speed);
-    if (!radius.known() || !(channel || speed.known())) return disc;
-    parts.emplace_back(&step, channel ? radius.value : radius.value * speed.value);
-  }
-  if (parts.empty()) return disc;
-  disc.known = true;
-  const bool same = std::all_of(parts.begin(), parts.end(), [&](const auto& p) { return p.second == parts[0].second; });
-  if (same && !channel) {
-    disc.constant = parts[0].second;
-    disc.largest = std::abs(disc.constant);
-    return disc;
-  }
-  disc.varying.resize(n);
-  for (const auto& [step, value] : parts) {
-    for (std::size_t i = step->begin; i < step->end; ++i)
-      disc.varying[i] = channel ? value * trace.disc_speed[i] : value;
-  }
-  for (double v : disc.varying) disc.largest = std::max(disc.largest, std::abs(v));
-  return disc;
-}
-
-Rests evenly_spaced_windows(std::size_t samples) {
-  Rests windows;
-  const std::size_t count = 64, length = std::clamp<std::size_t>(samples / 4, 16, 64);
-  if (samples < length) return windows;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t begin = k * (samples - length) / count;
-    windows.runs.push_back({begin, begin + length, 0});
-  }
-  return windows;
-}
-
-double largest_of(std::span<const double> values) {
-  if (values.empty()) return 0;
-  const kinematics::Extremes e = kinematics::extremes(values);
-  return std::max(std::abs(e.low), std::abs(e.high));
-}
-
-/// The velocity in blocks, where it rests, and what its noise is.
-struct Survey {
-  BlockMeans blocks;  // of v_b, or of v_r where that was measured
-  BlockMeans disc;    // of omega r, where it varies
-  Rests rests;        // of blocks minus disc where that varies, else of blocks
-  double noise = 0;   // [m/s]
-  bool sticks = false;
-};
-
-Survey survey(const Trace& trace, const Disc& disc, double step) {
-  Survey s;
-  const std::span<const double> velocity(trace.velocity);
-  const std::size_t length = kinematics::block_length(velocity);
-  s.blocks = block_means(velocity, length, step);
-  std::vector<double> relative = s.blocks.mean;
-  if (!disc.varying.empty()) {
-    s.disc = block_means(disc.varying, length, step);
-    for (std::size_t b = 0; b < relative.size(); ++b) relative[b] -= s.disc.mean[b];
-  }
-  const double roughness = spread_about_parabolas(velocity, evenly_spaced_windows(velocity.size()).runs, 1);
-  const bool block = trace.velocity_kind == VelocityKind::block;
-  if (trace.velocity_kind == VelocityKind::fixed_block) {  // a block that is held cannot stick to the disc
-    s.noise = roughness;
-    return s;
-  }
-  const double stated = block && disc.known && disc.varying.empty() ? disc.constant : 0;
-  const double centre = relative.empty() ? 0 : relative[relative.size() / 2];
-  double spread = 0;
-  for (double v : relative) spread = std::max(spread, std::abs(v - centre));
-  if (spread <= 8 * roughness) {  // nothing moves: one rest, or steady sliding
-    const double level = kinematics::fit_line(relative).value;
-    const bool rests_on_disc = !block || !disc.varying.empty() ? std::abs(level) <= 3 * roughness
-                               : disc.known ? std::abs(std::abs(level) - std::abs(stated)) < 0.5 * std::abs(stated)
-                                            : std::abs(level) > 5 * roughness;
-    s.noise = roughness;
-    s.sticks = rests_on_disc;
-    if (rests_on_disc) s.rests = {{{0, relative.size(), level}}, level, spread};
-    return s;
-  }
-  if (!block) {
-    const double limit = 0.06 * largest_of(relative);  // a rest of v_r is at zero
-    s.rests = find_rests(relative, LevelRange{-limit, limit});
-  } else if (!disc.varying.empty()) {
-    s.rests = find_rests(relative, LevelRange{-0.5 * disc.largest, 0.5 * disc.largest});
-  } else if (disc.known) {
-    // First where it ought to be, then pointing the other way, then anywhere but at rest.
-    const double near = 0.5 * std::abs(stated), far = 1.5 * std::abs(stated);
-    const LevelRange right = stated > 0 ? LevelRange{near, far} : LevelRange{-far, -near};
-    s.rests = find_rests(relative, right);
-    if (s.rests.empty()) s.rests = find_rests(relative, LevelRange{-right.high, -right.low});
-  }
-  if (block && s.rests.empty() && disc.varying.empty()) s.rests = find_rests(relative);
-  s.noise = s.rests.empty() ? roughness : spread_about_parabolas(velocity, s.rests.runs, s.blocks.length);
-  if (s.noise == 0) s.noise = s.rests.empty() ? 0 : std::min(roughness, 1e-3 * s.rests.depth);
-  s.sticks = !s.rests.empty() && (!block || !disc.varying.empty() || std::abs(s.rests.level) > 3 * s.noise);
-  if (!s.sticks) s.rests.runs.clear();
-  return s;
-}
-
 // The direction of the vibrometer, where nobody declared it, from the plateau.
 bool points_the_other_way(const Trace& trace, const Disc& disc, const Survey& s) {
   if (!s.sticks || trace.velocity_kind != VelocityKind::block || !disc.varying.empty()) return false;
@@ -171,68 +66,6 @@ bool points_the_other_way(const Trace& trace, const Disc& disc, const Survey& s)
     sum += part[0] + part[(run.inner_end() - run.inner_begin()) * s.blocks.length - 1];
   }
   return s.rests.level < 0 && sum > 0;
-}
-
-std::vector<double> disc_slopes(const Survey& s) {
-  std::vector<double> slopes;
-  if (s.disc.mean.empty()) return slopes;
-  for (const Rest& run : s.rests.runs) {
-    const auto part =
-        std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
-    slopes.push_back(kinematics::fit_line(part).slope / s.blocks.step);
-  }
-  return slopes;
-}
-
-// The level towards which the plateaus tend: median over the second half of the record.
-double final_level(const Rests& rests) {
-  std::vector<double> levels;
-  for (std::size_t r = rests.runs.size() / 2; r < rests.runs.size(); ++r) levels.push_back(rests.runs[r].level);
-  return kinematics::median(std::move(levels));
-}
-
-/// Blocks before the plateau comes within 2 % of its final value and stays there.
-std::size_t run_up_blocks(const Survey& s) {
-  if (s.rests.runs.size() < 3) return 0;
-  const double level = final_level(s.rests);
-  const std::span<const double> v(s.blocks.mean);
-  struct Piece {
-    std::size_t begin;
-    double level;
-  };
-  std::vector<Piece> pieces;
-  for (const Rest& run : s.rests.runs) {
-    // The first rest may be the run-up itself: it is looked at from end to end, and more finely.
-    const bool first = run.begin == 0;
-    const std::size_t begin = first ? 0 : run.inner_begin(), end = first ? run.end - run.size() / 32 : run.inner_end();
-    const std::size_t length = std::max<std::size_t>(1, (end - begin) / (first ? 64 : 16));
-    for (std::size_t b = begin; b + length <= end; b += length) {
-      pieces.push_back({b, kinematics::fit_line(v.subspan(b, length)).value});
-    }
-  }
-  const double tolerance = std::max(0.02 * std::abs(level), 4 * s.noise);
-  const auto settled = [&](const Piece& p) { return std::abs(p.level - level) <= tolerance; };
-  // A disc that starts from rest begins well below its final speed; a disc that ripples does not settle.
-  const std::size_t head = s.rests.runs.front().begin;
-  std::vector<double> gaps;
-  for (std::size_t r = 1; r < s.rests.runs.size(); ++r) {
-    gaps.push_back(static_cast<double>(s.rests.runs[r].begin - s.rests.runs[r - 1].end));
-  }
-  const bool slow_head =
-      static_cast<double>(head) > 3 * kinematics::median(std::move(gaps)) && std::abs(v[0]) < 0.5 * std::abs(level);
-  std::size_t k = 0;
-  if (std::abs(pieces.front().level) < 0.9 * std::abs(level)) {
-    while (k < pieces.size() && !settled(pieces[k])) ++k;
-    const auto later =
-        static_cast<double>(std::count_if(pieces.begin() + static_cast<std::ptrdiff_t>(k), pieces.end(), settled));
-    if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
-    // Ringing after a re-stick at the very beginning is no run-up either.
-    std::vector<double> durations;
-    for (const Rest& run : s.rests.runs) durations.push_back(static_cast<double>(run.size()));
-    const double least = 0.25 * kinematics::median(std::move(durations));
-    return k < pieces.size() && static_cast<double>(pieces[k].begin) > least ? pieces[k].begin : 0;
-  }
-  return slow_head ? head : 0;
 }
 
 void drop_ends(std::vector<double>& channel, std::size_t head, std::size_t tail) {
@@ -332,6 +165,60 @@ bool is_useless(const Trace& trace) {
                    "give --radius and --speed, or a column with v_r", {trace.path, 0, ""});
 }
 
+// The one stated speed of the whole record [rad/s], NaN where there are several or it was recorded.
+double steady_speed(const Trace& trace) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!trace.disc_speed.empty() || !trace.disc_angle.empty()) return none;
+  double speed = none;
+  for (const Step& step : trace.steps) {
+    const double here = first_known(step.conditions.speed, trace.conditions.speed).value;
+    if (speed == speed && here != speed) return none;
+    speed = here;
+  }
+  return speed;
+}
+
+// A ripple of the disc's speed. Where the speed is read off the plateau, it is read off again without the ripple.
+RippleEstimate find_ripple(Trace& trace, const Survey& s, Disc& disc, bool stated) {
+  if (!s.sticks || !disc.varying.empty() || trace.velocity_kind != VelocityKind::block) return {};
+  const double omega = steady_speed(trace);
+  if (!(std::abs(omega) > 0)) return {};
+  RippleEstimate ripple = estimate_ripple(s.blocks, s.rests, omega, trace.time, trace.friction);
+  const bool from_plateau = trace.conditions.speed.source == "plateau" && trace.conditions.radius.known();
+  if (stated) return ripple;
+  Condition speed = trace.conditions.speed;
+  for (int pass = 0; pass < 3 && from_plateau && ripple.level != 0; ++pass) {
+    speed.value = ripple.level / trace.conditions.radius.value;
+    ripple = estimate_ripple(s.blocks, s.rests, speed.value, trace.time, trace.friction);
+  }
+  if (!ripple.significant) return ripple;
+  disc.constant = ripple.level;
+  if (from_plateau) trace.conditions.speed = speed;
+  return ripple;
+}
+
+// The survey as a disc without the ripple would have shown it.
+void flatten(Survey& s, const RippleEstimate& ripple, double omega, std::span<const double> time) {
+  std::vector<double> middles(s.blocks.mean.size());
+  for (std::size_t b = 0; b < middles.size(); ++b) middles[b] = time[b * s.blocks.length + s.blocks.length / 2];
+  const kinematics::RippledDisc rippled = kinematics::rippled_disc(ripple, omega, middles);
+  for (std::size_t b = 0; b < middles.size(); ++b) s.blocks.mean[b] /= rippled.factor[b];
+  const double near = 0.5 * s.rests.level, far = 1.5 * s.rests.level;
+  Rests rests = find_rests(s.blocks.mean, LevelRange{std::min(near, far), std::max(near, far)});
+  if (!rests.empty()) s.rests = std::move(rests);
+}
+
+// Speed and angle of the disc, and omega r, with the ripple.
+void ripple_disc(Trace& trace, Disc& disc, const RippleEstimate& ripple, double omega) {
+  kinematics::RippledDisc rippled = kinematics::rippled_disc(ripple, omega, trace.time);
+  trace.disc_angle = std::move(rippled.angle);
+  trace.disc_speed = rippled.factor;
+  disc.varying = std::move(rippled.factor);
+  for (double& v : trace.disc_speed) v *= omega;
+  for (double& v : disc.varying) v *= disc.constant;
+  disc.largest = std::abs(disc.constant) * (1 + ripple.ripple.amplitude);
+}
+
 }  // namespace
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
@@ -385,7 +272,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
 
   // Speed from the plateau where nobody said it.
   const bool stated = disc.known;
-  const double plateau = s.sticks ? final_level(s.rests) : 0;
+  double plateau = s.sticks ? final_level(s.rests) : 0;
   if (block && !disc.known) {
     const bool unknown = !s.sticks || trace.disc_speed.size() == trace.size();
     if (unknown && !is_useless(trace)) throw_no_speed(trace);
@@ -396,6 +283,26 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
     if (!unknown && trace.conditions.radius.known()) {
       trace.conditions.speed = {plateau / trace.conditions.radius.value, "plateau"};
     }
+  }
+  const RippleEstimate ripple = find_ripple(trace, s, disc, stated);
+  const bool undo_ripple = ripple.significant && options.undo_speed_ripple;
+  const double omega = undo_ripple ? steady_speed(trace) : 0;
+  if (undo_ripple) {
+    motion.speed_ripple = ripple.ripple;
+    if (motion.high_pass > 0) {  // its integration constants came from plateaus with the ripple on them
+      const double shift = disc.constant - ripple.level;
+      for (std::size_t i = 0; i < trace.size(); ++i) {
+        trace.velocity[i] += shift - ripple.drift * (trace.time[i] - ripple.middle);
+      }
+      s = survey(trace, disc, motion.step);
+    }
+    flatten(s, ripple, omega, trace.time);
+    plateau = final_level(s.rests);
+    motion.notes.push_back(
+        fmt::format("disc: its speed follows its angle by {:.2f} +- {:.2f} %, {} a revolution ({} plateaus); omega r "
+                    "follows it",
+                    100 * ripple.ripple.amplitude, 100 * ripple.ripple.amplitude_std_error,
+                    ripple.ripple.order == 1 ? "once" : fmt::format("{} times", ripple.ripple.order), ripple.plateaus));
   }
   const auto recorded = recorded_plateau(s, disc, block);
   HealthItem clipping = check_clipping(ends, trace, instruments,
@@ -409,6 +316,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   if (run_up + 2 > trace.size()) run_up = 0;
   const std::size_t head = std::max(lost.head, options.trim ? run_up : 0);
 
+  if (undo_ripple) ripple_disc(trace, disc, ripple, omega);
   if (block) make_relative(trace.velocity, disc);
   for (auto* channel : {&trace.time, &trace.friction, &trace.velocity, &trace.load, &trace.temperature,
                         &trace.disc_speed, &trace.disc_angle, &disc.varying}) {
@@ -423,16 +331,15 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   motion.disc_speed = std::move(trace.disc_speed);
   motion.disc_angle = std::move(trace.disc_angle);
   motion.disc_velocity = std::move(disc.varying);
-  motion.constant_disc_velocity = disc.known && motion.disc_velocity.empty() ? disc.constant : 0;
+  const bool constant = disc.known && (motion.disc_velocity.empty() || undo_ripple);
+  motion.constant_disc_velocity = constant ? disc.constant : 0;
   motion.conditions = trace.conditions;
   motion.steps = steps_within(trace.steps, head, motion.size());
   motion.sticks = s.sticks;
   motion.velocity_noise = s.noise;
   if (s.sticks) {
     const double level = s.rests.level;
-    motion.plateau_velocity = !block                         ? level
-                              : motion.disc_velocity.empty() ? motion.constant_disc_velocity - level
-                                                             : -level;
+    motion.plateau_velocity = !block ? level : motion.constant_disc_velocity - level;
   }
   double scale = s.rests.depth;
   if (scale == 0) scale = largest_of(motion.relative_velocity);
@@ -455,9 +362,15 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
                                   motion.step),
       kinematics::check_channel_delay(motion, rests, s.blocks.length),
       kinematics::check_revolutions(motion),
-      kinematics::check_speed_ripple(motion, rests, s.blocks.length),
+      kinematics::check_speed_ripple(motion, ripple),
       kinematics::check_run_up(motion, options.trim, run_up),
       kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known(), recorded)};
+  if (block && stated && s.sticks) {
+    const kinematics::PlateauRatio ratio = plateau_ratio(motion, rests, s.blocks.length);
+    motion.plateau_ratio = ratio.value;
+    motion.plateau_ratio_std_error = ratio.std_error;
+    correct_plateau(motion, ratio, options.plateau);
+  }
   return motion;
 }
 

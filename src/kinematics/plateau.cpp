@@ -162,7 +162,8 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor) {
+std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches,
+                                            std::size_t factor) {
   constexpr std::size_t most_stretches = 256, parts = 4, least_samples = 8;
   std::vector<double> spreads;
   const std::size_t stride = std::max<std::size_t>(1, stretches.size() / most_stretches);
@@ -184,7 +185,11 @@ double spread_about_parabolas(std::span<const double> signal, const std::vector<
       spreads.push_back(std::sqrt(std::max(0.0, rest) / (n - 3)));
     }
   }
-  return median(std::move(spreads));
+  return spreads;
+}
+
+double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor) {
+  return median(spreads_about_parabolas(signal, stretches, factor));
 }
 
 }  // namespace tribofit::kinematics

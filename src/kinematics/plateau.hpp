@@ -61,7 +61,10 @@ Line fit_line(std::span<const double> samples);
 double median(std::vector<double> values);
 
 /// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
-/// parabolas through windows in the given stretches of samples, as the median over windows.
+/// parabolas through windows in the given stretches of samples, one value a window.
+std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches,
+                                            std::size_t factor);
+/// The median of these.
 double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor);
 
 }  // namespace tribofit::kinematics

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
@@ -71,6 +72,70 @@ SpeedProfile piecewise_linear_speed(std::vector<double> times, std::vector<doubl
   const double at_zero = line->angle(0);
   return {[line](double t) { return line->speed(t); }, [line](double t) { return line->acceleration(t); },
           [line, at_zero](double t) { return line->angle(t) - at_zero; }};
+}
+
+SpeedProfile rippled_speed(SpeedProfile base, double amplitude, double order, double phase) {
+  if (!(amplitude >= 0 && amplitude < 1)) {
+    throw InputError("the amplitude of the speed ripple is not within 0 and 1 (excluded)", "give it as e.g. 0.05");
+  }
+  if (!(order > 0))
+    throw InputError("the order of the speed ripple is not positive", "give waves a revolution, e.g. 1");
+  if (amplitude == 0) return base;
+  // u = n theta + phase obeys du/d(base angle) = n (1 + A cos u): the true and the eccentric anomaly of an orbit of
+  // eccentricity A, of which the latter grows in proportion to the base angle.
+  const double root = std::sqrt(1 - amplitude * amplitude), b = amplitude / (1 + root);
+  const double begin = phase - 2 * std::atan2(b * std::sin(phase), 1 + b * std::cos(phase));
+  const auto wave = [=, angle = base.angle](double t) {
+    const double e = begin + order * root * angle(t);
+    return e + 2 * std::atan2(b * std::sin(e), 1 - b * std::cos(e));
+  };
+  const auto speed = [=, base_speed = base.speed](double t) {
+    return base_speed(t) * (1 + amplitude * std::cos(wave(t)));
+  };
+  const auto acceleration = [=](double t) {
+    const double u = wave(t);
+    return base.acceleration(t) * (1 + amplitude * std::cos(u)) -
+           base.speed(t) * amplitude * order * std::sin(u) * speed(t);
+  };
+  return {speed, acceleration, [=](double t) { return (wave(t) - phase) / order; }};
+}
+
+SpeedProfile stepped_speed(std::vector<double> times, std::vector<double> speeds, const std::vector<Pause>& pauses) {
+  if (times.empty() || times.size() != speeds.size()) {
+    throw InputError("a speed profile needs as many speeds as times, at least one", "give one speed for every time");
+  }
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) {
+    throw InputError("the times of a speed profile do not increase", "sort them and remove repeated ones");
+  }
+  const auto wanted = [&](double t) {
+    for (const Pause& pause : pauses) {
+      if (t >= pause.begin && t < pause.begin + pause.duration) return 0.0;
+    }
+    const auto after = std::upper_bound(times.begin() + 1, times.end(), t);
+    return speeds[static_cast<std::size_t>(after - times.begin()) - 1];
+  };
+  std::vector<double> at(times.begin() + 1, times.end());
+  for (const Pause& pause : pauses) {
+    if (!(pause.duration > 0)) throw InputError("a pause of the disc is not positive", "give it as e.g. 10s,5s");
+    at.insert(at.end(), {pause.begin, pause.begin + pause.duration});
+  }
+  std::sort(at.begin(), at.end());
+  std::vector<double> line_times = {at.empty() ? times[0] : std::min(times[0], at[0]) - 1};
+  std::vector<double> line_speeds = {wanted(line_times[0])};
+  for (const double t : at) {
+    if (wanted(t) == line_speeds.back()) continue;
+    if (t < line_times.back()) {
+      throw InputError("the speed of the disc changes twice within " + std::to_string(kSpeedChangeTime) + " s",
+                       "leave more time between steps and pauses");
+    }
+    if (t > line_times.back()) {
+      line_times.push_back(t);
+      line_speeds.push_back(line_speeds.back());
+    }
+    line_times.push_back(t + kSpeedChangeTime);
+    line_speeds.push_back(wanted(t));
+  }
+  return piecewise_linear_speed(std::move(line_times), std::move(line_speeds));
 }
 
 SpeedProfile run_up_speed(double omega, double duration) {

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "normal_stream.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/oscillator/hide.hpp"
 
 namespace tribofit {
 
@@ -41,8 +44,8 @@ void check(const Sensors& sensors) {
   }
 }
 
-/// The whole record as one slip, for hooks that work on a stretch of samples. (Unused while no effect has one.)
-[[maybe_unused]] Slip whole_record(const SimulatedMotion& motion) {
+/// The whole record as one slip, for hooks that work on a stretch of samples.
+Slip whole_record(const SimulatedMotion& motion) {
   Slip slip;
   slip.time = motion.time;
   slip.velocity = motion.relative_velocity;
@@ -54,29 +57,6 @@ void check(const Sensors& sensors) {
   slip.mean_load = motion.mean_load;
   slip.mean_temperature = motion.mean_temperature;
   return slip;
-}
-
-double load_at(const SimulatedMotion& motion, std::size_t i) {
-  return motion.load.empty() ? motion.mean_load : motion.load[i];
-}
-
-/// Second-order low-pass, bilinear transform with the corner prewarped; starts as if the first value had always been.
-void low_pass(std::vector<double>& x, double rate, double corner, double damping) {
-  if (x.empty()) return;
-  if (!(corner < 0.5 * rate)) {
-    throw InputError("the bandwidth of the force sensor is above half the sampling rate",
-                     "leave it out, or sample faster");
-  }
-  const double w = std::tan(std::numbers::pi * corner / rate);
-  const double a0 = 1 + 2 * damping * w + w * w;
-  const double b = w * w / a0, a1 = 2 * (w * w - 1) / a0, a2 = (1 - 2 * damping * w + w * w) / a0;
-  double x1 = x[0], x2 = x[0], y1 = x[0], y2 = x[0];
-  for (double& value : x) {
-    const double y = b * (value + 2 * x1 + x2) - a1 * y1 - a2 * y2;
-    x2 = std::exchange(x1, value);
-    y2 = std::exchange(y1, y);
-    value = y;
-  }
 }
 
 /// First-order high-pass, exact for straight lines between samples. `drift`: its low-pass part at the first sample.
@@ -91,19 +71,6 @@ void high_pass(std::vector<double>& v, double rate, double corner, double drift)
     before = v[i];
     v[i] = y;
   }
-}
-
-/// x(t - delay) by straight lines between samples; before the first sample, the first sample.
-std::vector<double> delayed(const std::vector<double>& x, double rate, double delay) {
-  std::vector<double> y(x.size());
-  const double last = static_cast<double>(x.size()) - 1;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double at = std::clamp(static_cast<double>(i) - delay * rate, 0.0, last);
-    const auto low = static_cast<std::size_t>(at);
-    const std::size_t high = std::min(low + 1, x.size() - 1);
-    y[i] = x[low] + (at - static_cast<double>(low)) * (x[high] - x[low]);
-  }
-  return y;
 }
 
 std::vector<double> add_noise(std::vector<double>& x, double deviation, double colour, std::uint64_t seed,
@@ -123,19 +90,55 @@ void round_to(std::vector<double>& x, double resolution) {
   for (double& value : x) value = std::round(value / resolution) * resolution;
 }
 
-std::vector<double> sensed_friction(const SimulatedMotion& motion, const FrictionModel& model,
-                                    std::span<const double> p, const Sensors& sensors) {
-  std::vector<double> mu = motion.friction;
-  for_each_effect(model, p.data(), [&]<class E>(const E& effect, const double* q) {
-    if constexpr (hooks::Senses<E, double>) effect.sense(q, whole_record(motion), std::span<double>(mu));
-  });
-  if (sensors.mass_below > 0) {
+/// What the effect's sensor makes of a record.
+template <class E>
+void sense_record(const E& effect, const double* q, const SimulatedMotion& motion, const Slip& whole,
+                  std::vector<double>& mu) {
+  if constexpr (hooks::Reads<E, double>) {
+    auto next = motion.slips.begin();
+    double last_break_away = std::numeric_limits<double>::quiet_NaN();
+    double direction = 1;
     for (std::size_t i = 0; i < mu.size(); ++i) {
-      mu[i] -= sensors.mass_below * motion.acceleration[i] / load_at(motion, i);
+      for (; next != motion.slips.end() && next->break_away_time <= motion.time[i]; ++next) {
+        if (next->stick_time > 0) last_break_away = next->break_away_time;
+        direction = next->direction;
+      }
+      Instant<double> at = whole.at(i, motion.relative_velocity[i]);
+      at.velocity = motion.relative_velocity[i];
+      at.direction = direction;
+      at.since_break_away = motion.time[i] - last_break_away;
+      mu[i] = effect.read(q, at, mu[i]);
     }
   }
-  if (sensors.force_bandwidth > 0) low_pass(mu, motion.rate, sensors.force_bandwidth, sensors.force_damping);
-  if (sensors.friction_delay != 0) mu = delayed(mu, motion.rate, sensors.friction_delay);
+  if constexpr (hooks::Senses<E, double>) effect.sense(q, whole, 0.0, std::span<double>(mu));
+}
+
+/// The normal force at the contact [N]: that of the drive, changed where the tangential force loads the contact. Empty
+/// where it is constant.
+std::vector<double> true_load(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p) {
+  std::vector<double> load = motion.load;
+  for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
+    if constexpr (std::is_same_v<E, LoadCoupling>) {
+      if (load.empty()) load.assign(motion.size(), motion.mean_load);
+      for (std::size_t i = 0; i < load.size(); ++i) load[i] *= 1 + q[0] * motion.friction[i];
+    }
+  });
+  return load;
+}
+
+std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::vector<double>& load,
+                                    const FrictionModel& model, std::span<const double> p, const Sensors& sensors) {
+  std::vector<double> mu = motion.friction;
+  Slip whole = whole_record(motion);
+  whole.load = load;
+  for_each_effect(model, p.data(),
+                  [&]<class E>(const E& effect, const double* q) { sense_record(effect, q, motion, whole, mu); });
+  if (sensors.mass_below > 0) sense_record(SensorInertia{}, &sensors.mass_below, motion, whole, mu);
+  if (sensors.force_bandwidth > 0) {
+    const double filter[] = {sensors.force_bandwidth, sensors.force_damping};
+    sense_record(ForceBandwidth{}, filter, motion, whole, mu);
+  }
+  if (sensors.friction_delay != 0) sense_record(ChannelDelay{}, &sensors.friction_delay, motion, whole, mu);
   return mu;
 }
 
@@ -160,12 +163,18 @@ std::vector<double> sensed_velocity(const SimulatedMotion& motion, const Sensors
 }  // namespace
 
 Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
-                 const Sensors& sensors) {
+                 const Sensors& stated) {
+  const Sensors sensors = true_sensors(stated, model, p);
   check(sensors);
+  if (sensors.force_bandwidth >= 0.5 * motion.rate && sensors.force_bandwidth > 0) {
+    throw InputError("the bandwidth of the force sensor is above half the sampling rate",
+                     "leave it out, or sample faster");
+  }
   Recording recording;
   Trace& trace = recording.trace;
   trace.time = motion.time;
-  trace.friction = sensed_friction(motion, model, p, sensors);
+  trace.load = true_load(motion, model, p);
+  trace.friction = sensed_friction(motion, trace.load, model, p, sensors);
   trace.velocity = sensed_velocity(motion, sensors);
   using Purpose = NormalStream::Purpose;
   recording.friction_noise =
@@ -175,13 +184,14 @@ Recording record(const SimulatedMotion& motion, const FrictionModel& model, std:
   round_to(trace.friction, sensors.friction_resolution);
   round_to(trace.velocity, sensors.velocity_resolution);
 
-  trace.load = motion.load;
   trace.temperature = motion.temperature;
   const std::string source = "simulation";
   trace.conditions.radius = {motion.radius, source};
   trace.conditions.load = {motion.mean_load, source};
   const auto [slowest, fastest] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
-  if (motion.size() > 0 && *slowest == *fastest) {
+  if (std::isfinite(motion.stated_speed)) {
+    trace.conditions.speed = {motion.stated_speed, source};
+  } else if (motion.size() > 0 && *slowest == *fastest) {
     trace.conditions.speed = {*fastest, source};
   } else {
     trace.disc_speed = motion.disc_speed;
@@ -198,7 +208,7 @@ std::pair<FrictionModel, std::vector<double>> at_the_interface(const FrictionMod
   std::vector<double> kept(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(model.base_count()));
   for (std::size_t k = 0; k < model.effects().size(); ++k) {
     const Effect& effect = model.effects()[k];
-    if (std::visit([]<class E>(const E&) { return hooks::Senses<E, double>; }, effect)) continue;
+    if (std::visit([]<class E>(const E&) { return hooks::OfSensor<E>; }, effect)) continue;
     effects.push_back(effect);
     const std::size_t count = describe(effect).parameters.size();
     for (std::size_t i = 0; i < count; ++i) kept.push_back(p[model.offset(k) + i]);
@@ -247,6 +257,7 @@ double floor_rmse(const SimulatedMotion& motion, const Recording& recording, con
     slip.direction = event.direction;
     slip.mean_load = motion.mean_load;
     slip.mean_temperature = motion.mean_temperature;
+    slip.disc_speed = motion.disc_speed[begin];
     std::vector<double> model_mu(end - begin);
     evaluate<double>(law, kept.data(), slip, velocity, model_mu);
     for (std::size_t i = begin; i < end; ++i) {

@@ -10,8 +10,10 @@
 #include <string>
 
 #include "normal_stream.hpp"
+#include "simulation_checks.hpp"
 #include "slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/oscillator/hide.hpp"
 
 namespace tribofit {
 
@@ -45,9 +47,11 @@ class Simulation {
   bool try_step(double h);
   double land_on_zero_speed(double h);
   void end_slip();
+  void count_step();
   void turn_round();
   void confirm_creeping_slip(double restick_time);
   void watch_creep(double h);
+  void end_creeping_slip(double restick_time);
 
   double spring_pull(double x, double t) const;
   double gap_to_break_away(double t);
@@ -71,7 +75,7 @@ class Simulation {
   double time_ = 0;
   bool sticking_ = true;
   double slid_ = 0;  ///< up to the last event [m]
-  std::size_t next_sample_ = 0, samples_ = 0;
+  std::size_t next_sample_ = 0, samples_ = 0, steps_ = 0;
 
   // In rigid stick.
   double stick_begin_ = 0, stick_position_ = 0, stick_travel_ = 0, march_ = 0;
@@ -83,47 +87,18 @@ class Simulation {
 
   // Where the law acts in stick: from the last reversal.
   double reversal_time_ = 0, slid_at_reversal_ = 0, creep_end_ = 0, friction_at_creep_end_ = 0, least_slip_ = 0;
+  double slow_again_ = kNaN;  ///< when |v_r| fell below half the disc's speed, where nothing but that ends a slip
 };
-
-void require(bool good, const std::string& problem, const std::string& advice) {
-  if (!good) throw InputError(problem, advice);
-}
-
-void check(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
-           const SimulationOptions& options) {
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  const auto not_negative = [](double x) { return std::isfinite(x) && x >= 0; };
-  require(positive(rig.mass), "the mass of the block is not positive", "give the moving mass in kg");
-  require(positive(rig.stiffness), "the stiffness is not positive", "give the spring's stiffness, e.g. 16.2 N/mm");
-  require(not_negative(rig.damping), "the damping is negative", "give zero or more");
-  require(positive(drive.radius), "the friction radius is not positive", "give it as e.g. 15mm");
-  require(positive(drive.mean_load), "the load is not positive", "give the normal force, e.g. 50N");
-  require(drive.speed.speed && drive.speed.acceleration && drive.speed.angle, "the drive has no speed",
-          "use constant_speed() or another profile");
-  require(positive(options.duration), "the duration is not positive", "give it as e.g. 20s");
-  require(not_negative(options.rate), "the sampling rate is negative", "give it as e.g. 20kHz");
-  require(not_negative(options.settle), "the settling time is negative", "give zero or more seconds");
-  require(positive(options.tolerance), "the tolerance is not positive", "1e-10 is usual");
-  require(not_negative(options.max_step), "the longest step is negative", "0 leaves it to the simulation");
-  require(not_negative(options.scatter.deviation), "the break-away scatter is negative", "give zero or more");
-  require(options.scatter.wander >= 0 && options.scatter.wander < 1,
-          "the correlation of the break-away scatter is not within 0 (included) and 1", "0.7 is a slow wander");
-  require(p.size() == model.parameters().size(),
-          "the model has " + std::to_string(model.parameters().size()) + " parameters, not " + std::to_string(p.size()),
-          "give one value for each of model.parameters()");
-  require(std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); }),
-          "a parameter of the friction model is not finite", "give numbers");
-  require(p[0] > 0 && p[1] >= 0, "mu_s or mu_k is not positive", "give levels such as 0.5 and 0.3");
-  require(model.state_count() <= kMostMemories,
-          "the model has " + std::to_string(model.state_count()) + " effects with a memory",
-          "simulate with at most " + std::to_string(kMostMemories));
-}
 
 Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
                        const SimulationOptions& options)
-    : options_((check(rig, drive, model, p, options), options)),
-      setup_{
-          rig, drive, rig.natural_frequency(), model.needs().angle, model.needs().distance, model.needs().acceleration},
+    : options_((check_simulation(rig, drive, model, p, options), options)),
+      setup_{rig,
+             true_drive(drive, model, p),
+             rig.natural_frequency(),
+             model.needs().angle,
+             model.needs().distance,
+             model.needs().acceleration},
       friction_(model, {p.begin(), p.end()}),
       flow_(setup_, friction_),
       scatter_(options.scatter.deviation, options.scatter.wander, options.seed, NormalStream::Purpose::scatter) {
@@ -148,6 +123,7 @@ Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& 
   motion_.rate = options_.rate;
   motion_.settled = options_.settle > 0;
   motion_.radius = drive.radius;
+  motion_.stated_speed = drive.speed.constant ? drive.speed.speed(0) : kNaN;
   motion_.mean_load = drive.mean_load;
   motion_.mean_temperature = drive.mean_temperature;
 }
@@ -211,7 +187,8 @@ double Simulation::gap_to_break_away(double t) {
                               .load = setup_.load(t),
                               .mean_load = setup_.drive.mean_load,
                               .temperature = setup_.temperature(t),
-                              .mean_temperature = setup_.drive.mean_temperature};
+                              .mean_temperature = setup_.drive.mean_temperature,
+                              .disc_speed = setup_.drive.speed.speed(t)};
   const double limit = at.load * friction_.break_away_friction(at);
   if (!(at.load > 0) || !std::isfinite(limit)) {
     throw InputError((at.load > 0 ? "friction is not finite at t = " : "the load is not positive at t = ") +
@@ -233,6 +210,7 @@ void Simulation::stick(double until) {
     breaks = at_low >= 0;
     if (breaks) end = low;
     while (!breaks && low < until) {
+      count_step();
       const double high = std::min(low + march_, until);
       const double at_high = gap(high);
       breaks = at_high >= 0;
@@ -267,8 +245,19 @@ void Simulation::break_away() {
 
 // ---- slip
 
+/// Refuses what would take for ever: normal simulations need a few thousand steps a second.
+void Simulation::count_step() {
+  constexpr double kMostSteps = 2e6, kMostStepsASecond = 2e6;
+  if (static_cast<double>(++steps_) < kMostSteps + kMostStepsASecond * (time_ + options_.settle)) return;
+  throw InputError("the simulation needs too many steps: after " + std::to_string(steps_) +
+                       " it is at t = " + std::to_string(time_) + " s",
+                   "check that load, mass, stiffness and damping fit together, and that the effects have plausible "
+                   "parameters");
+}
+
 /// One step of length h from state_; false (and a shorter step_) when its error is too large.
 bool Simulation::try_step(double h) {
+  count_step();
   BlockState error;
   stepper_.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
   scaled_error_ = 0;
@@ -329,6 +318,7 @@ void Simulation::slip(double until) {
     state_ = next_state_;
     derivative_ = next_derivative_;
     fresh = crosses;
+    if (!std::isnan(slow_again_)) end_creeping_slip(slow_again_);
     if (crosses) {
       state_[1] = setup_.disc_velocity(time_);
       end_slip();
@@ -377,10 +367,28 @@ void Simulation::watch_creep(double h) {
     return flow_.slip_speed(t, y) - 0.5 * std::abs(setup_.disc_velocity(t));
   };
   const double before = excess(time_, state_), after = excess(time_ + h, next_state_);
-  const bool still_creeping = flow_.slid(time_, state_) - slid_at_reversal_ < least_slip_;
+  const bool has_memory = friction_.state_count() > 0;
+  if (!has_memory && before >= 0 && after < 0) {
+    slow_again_ = find_zero([&](double t) { return excess(t, dense(t, h)); }, time_, time_ + h, before, after);
+  }
+  const bool still_creeping = !has_memory || flow_.slid(time_, state_) - slid_at_reversal_ < least_slip_;
   if (!(before < 0 && after >= 0 && still_creeping)) return;
+  if (!has_memory) slid_at_reversal_ = flow_.slid(time_, state_);
   creep_end_ = find_zero([&](double t) { return excess(t, dense(t, h)); }, time_, time_ + h, before, after);
   friction_at_creep_end_ = flow_.friction(creep_end_, dense(creep_end_, h));
+}
+
+/// A contact without memory need not turn round after a slip: it goes over into forward creep.
+void Simulation::end_creeping_slip(double restick_time) {
+  slow_again_ = kNaN;
+  slid_ = flow_.slid(time_, state_);
+  if (slid_ - slid_at_reversal_ <= least_slip_) return;
+  confirm_creeping_slip(restick_time);
+  scatter_.next();
+  friction_.begin_slip(creep_end_ - reversal_time_, flow_.direction(), scatter_.value());
+  reversal_time_ = creep_end_ = restick_time;
+  slid_at_reversal_ = slid_;
+  flow_(state_, derivative_, time_);
 }
 
 /// Records the motion since the last reversal as a slip when it went far enough.

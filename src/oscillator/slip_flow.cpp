@@ -30,7 +30,8 @@ double SlipFlow::friction_at(double speed, double block_acceleration, double t, 
                               .load = setup_.load(t),
                               .mean_load = setup_.drive.mean_load,
                               .temperature = setup_.temperature(t),
-                              .mean_temperature = setup_.drive.mean_temperature};
+                              .mean_temperature = setup_.drive.mean_temperature,
+                              .disc_speed = setup_.drive.speed.speed(t)};
   const std::size_t memories = friction_.state_count();
   const std::span<const double> state(y.data() + 2, memories);
   if (dy != nullptr && memories > 0) friction_.rates(at, state, std::span<double>(dy->data() + 2, memories));

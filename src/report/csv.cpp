@@ -8,8 +8,10 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "measures.hpp"
@@ -41,8 +43,12 @@ class WholeFolder {
   WholeFile& add(const std::string& name) {
     return *files_.emplace_back(std::make_unique<WholeFile>(path_ + "/" + name));
   }
-  void commit() {
+  /// Everything is on the disc when this returns, under temporary names.
+  void finish() {
     for (const auto& file : files_) file->finish();
+  }
+  void commit() {
+    finish();
     for (const auto& file : files_) file->commit();
   }
 
@@ -135,12 +141,12 @@ void write_cycles(WholeFile& file, const Identification& result, const Membershi
   }
 }
 
-void write_curves(WholeFile& file, const Identification& result) {
+void write_curves(WholeFile& file, std::span<const Fit> fits) {
   constexpr std::size_t kPoints = 201;
   constexpr double kReach = 1.25;  // of the fastest slip, so that the extrapolation is seen as such
   file.write("law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data\n");
   Row row(file);
-  for (const Fit& fit : result.fits) {
+  for (const Fit& fit : fits) {
     std::vector<double> velocity(kPoints);
     for (std::size_t i = 0; i < kPoints; ++i) {
       velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(kPoints - 1);
@@ -171,18 +177,62 @@ void write_errors(WholeFile& file, const Identification& result, const std::vect
   }
 }
 
+/// Adds the files of one trace; `best` is the fit they show, `before` the cycles of the traces it holds before this
+/// one.
+void add_files(WholeFolder& files, const Identification& trace, std::span<const Fit> fits, const Fit* best,
+               std::size_t before) {
+  const Membership member = membership(trace, best, before);
+  std::vector<double> model;
+  if (best != nullptr) model = predict(*best, trace.motion, trace.segmentation);
+  write_samples(files.add("samples.csv"), trace, model, member);
+  write_cycles(files.add("cycles.csv"), trace, member);
+  write_curves(files.add("curves.csv"), fits);
+  write_errors(files.add("errors.csv"), trace, model, member);
+}
+
+const Fit* best_of(std::span<const Fit> fits, std::size_t best) {
+  return fits.empty() ? nullptr : &fits[best];
+}
+
+/// A name for each trace: that of its file without ending, numbered where several share it.
+std::vector<std::string> folder_names(const std::vector<Identification>& traces) {
+  std::vector<std::string> names;
+  for (const Identification& trace : traces) {
+    const std::string stem = std::filesystem::path(trace.path).stem().string();
+    std::string name = stem;
+    for (int n = 2; std::find(names.begin(), names.end(), name) != names.end(); ++n)
+      name = fmt::format("{}-{}", stem, n);
+    names.push_back(name);
+  }
+  return names;
+}
+
 }  // namespace
 
 void write_csv_folder(const std::string& folder, const Identification& result) {
   WholeFolder files(folder);
-  const Membership member = membership(result);
-  std::vector<double> model;
-  if (!result.fits.empty()) model = predict(result.fits[result.best], result.motion, result.segmentation);
-  write_samples(files.add("samples.csv"), result, model, member);
-  write_cycles(files.add("cycles.csv"), result, member);
-  write_curves(files.add("curves.csv"), result);
-  write_errors(files.add("errors.csv"), result, model, member);
+  add_files(files, result, result.fits, best_of(result.fits, result.best), 0);
   files.commit();
+}
+
+void write_csv_folder(const std::string& folder, const DiagnosedTraces& result) {
+  const Fit* best = best_of(result.fits, result.best);
+  WholeFolder outer(folder);
+  if (result.traces.size() == 1) {
+    add_files(outer, result.traces.front(), result.fits, best, 0);
+    outer.commit();
+    return;
+  }
+  const std::vector<std::string> names = folder_names(result.traces);
+  std::vector<std::unique_ptr<WholeFolder>> folders;
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < result.traces.size(); ++k) {
+    folders.push_back(std::make_unique<WholeFolder>(folder + "/" + names[k]));
+    add_files(*folders.back(), result.traces[k], result.fits, best, before);
+    folders.back()->finish();  // closes its files
+    before += evidence_of(result.traces[k]);
+  }
+  for (const auto& one : folders) one->commit();
 }
 
 }  // namespace tribofit

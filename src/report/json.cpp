@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <utility>
 
+#include "json_parts.hpp"
 #include "measures.hpp"
 #include "numbers.hpp"
 #include "tribofit/pipeline.hpp"
@@ -13,19 +14,8 @@
 namespace tribofit {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// A number, or null for what is not known.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json interval(double lower, double upper) {
   return Json::array({number(lower), number(upper)});
-}
-
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
 }
 
 std::string_view name_of(HealthItem::Status status) {
@@ -38,6 +28,44 @@ std::string_view name_of(HealthItem::Status status) {
       break;
   }
   return "problem";
+}
+
+Json conditions_json(const Conditions& conditions) {
+  return {{"radius_mm", number(conditions.radius.value / kMillimetre)},
+          {"speed_rpm", number(conditions.speed.value / kRpm)},
+          {"speed_source", text_or_null(conditions.speed.source)},
+          {"load_N", number(conditions.load.value)},
+          {"radius_source", text_or_null(conditions.radius.source)},
+          {"load_source", text_or_null(conditions.load.source)}};
+}
+
+Json measure_json(const Measure& measure, double unit) {
+  const Interval ci = interval_of(measure);
+  return {{"value", number(measure.value / unit)},
+          {"std_error", number(measure.std_error / unit)},
+          {"ci95", interval(ci.lower / unit, ci.upper / unit)}};
+}
+
+std::string_view name_of(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::stick_slip:
+      return "stick-slip";
+    case MotionKind::always_slipping:
+      return "always-slipping";
+    case MotionKind::always_sticking:
+      break;
+  }
+  return "always-sticking";
+}
+
+}  // namespace
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
 }
 
 Json tool_json(const JsonOptions& options) {
@@ -53,15 +81,6 @@ Json trace_json(const Identification& result) {
           {"friction_unit", friction_unit(result.motion)},
           {"trimmed_s", number(static_cast<double>(result.motion.trimmed) * result.motion.step)},
           {"notes", result.notes}};
-}
-
-Json conditions_json(const Conditions& conditions) {
-  return {{"radius_mm", number(conditions.radius.value / kMillimetre)},
-          {"speed_rpm", number(conditions.speed.value / kRpm)},
-          {"speed_source", text_or_null(conditions.speed.source)},
-          {"load_N", number(conditions.load.value)},
-          {"radius_source", text_or_null(conditions.radius.source)},
-          {"load_source", text_or_null(conditions.load.source)}};
 }
 
 Json conditions_of(const Motion& motion) {
@@ -83,25 +102,6 @@ Json health_json(const Motion& motion) {
     items.push_back({{"check", item.check}, {"status", name_of(item.status)}, {"message", item.message}});
   }
   return items;
-}
-
-Json measure_json(const Measure& measure, double unit) {
-  const Interval ci = interval_of(measure);
-  return {{"value", number(measure.value / unit)},
-          {"std_error", number(measure.std_error / unit)},
-          {"ci95", interval(ci.lower / unit, ci.upper / unit)}};
-}
-
-std::string_view name_of(MotionKind kind) {
-  switch (kind) {
-    case MotionKind::stick_slip:
-      return "stick-slip";
-    case MotionKind::always_slipping:
-      return "always-slipping";
-    case MotionKind::always_sticking:
-      break;
-  }
-  return "always-sticking";
 }
 
 Json stick_slip_json(const Identification& result) {
@@ -138,12 +138,14 @@ Json parameter_json(const FitParameter& p, const Motion& motion) {
           {"ci95", Json::array({in_unit(p.lower95), in_unit(p.upper95)})},
           {"unit", shown_unit(p, motion)},
           {"effect", text_or_null(p.effect)},
-          {"systematic_error", in_unit(p.systematic)},
+          {"systematic_error", p.systematic > 0 ? in_unit(p.systematic) : Json(nullptr)},  // none: not declared
           {"profile_ci95", Json::array({in_unit(p.profile_lower95), in_unit(p.profile_upper95)})},
           {"start", in_unit(p.start)},
           {"bounds", Json::array({number(p.parameter.lower), number(p.parameter.upper)})},
           {"at_bound", p.at_bound}};
 }
+
+namespace {
 
 Json fit_json(const Fit& fit, const Motion& motion) {
   Json parameters = Json::array();
@@ -187,23 +189,34 @@ Json comparison_json(const LawComparison& c) {
 
 }  // namespace
 
-std::string to_json(const Identification& result, const JsonOptions& options) {
-  Json json = {{"tool", tool_json(options)},
-               {"trace", trace_json(result)},
-               {"conditions", conditions_of(result.motion)},
-               {"health", health_json(result.motion)},
-               {"stick_slip", stick_slip_json(result)}};
-  Json fits = Json::array();
-  for (const Fit& fit : result.fits) fits.push_back(fit_json(fit, result.motion));
-  json["fits"] = std::move(fits);
-  json["best"] = result.fits.empty() ? Json(nullptr) : Json(result.best);
-  Json comparisons = Json::array();
-  for (const LawComparison& c : compare_laws(result)) comparisons.push_back(comparison_json(c));
-  json["law_comparison"] = std::move(comparisons);
-  json["analysed"] = result.analysed;
-  json["warnings"] = result.warnings;
+Json fits_json(std::span<const Fit> fits, const Motion& motion) {
+  Json list = Json::array();
+  for (const Fit& fit : fits) list.push_back(fit_json(fit, motion));
+  return list;
+}
+
+Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
+  Json list = Json::array();
+  for (const LawComparison& c : compare_laws(fits, best)) list.push_back(comparison_json(c));
+  return list;
+}
+
+std::string text_of(const Json& json) {
   // File names and headers need not be valid UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_json(const Identification& result, const JsonOptions& options) {
+  return text_of({{"tool", tool_json(options)},
+                  {"trace", trace_json(result)},
+                  {"conditions", conditions_of(result.motion)},
+                  {"health", health_json(result.motion)},
+                  {"stick_slip", stick_slip_json(result)},
+                  {"fits", fits_json(result.fits, result.motion)},
+                  {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)},
+                  {"law_comparison", comparisons_json(result.fits, result.best)},
+                  {"analysed", result.analysed},
+                  {"warnings", result.warnings}});
 }
 
 }  // namespace tribofit

@@ -31,36 +31,38 @@ std::size_t count_of_cycles(const Segmentation& segmentation) {
                     [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
 }
 
-std::vector<LawComparison> compare_laws(const Identification& result) {
+std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t chosen) {
   std::vector<LawComparison> comparisons;
-  if (result.fits.empty()) return comparisons;
-  const Fit& best = result.fits[result.best];
-  for (std::size_t k = 0; k < result.fits.size(); ++k) {
-    const Fit& other = result.fits[k];
-    const bool comparable = k != result.best && other.protocol == best.protocol && other.converged &&
+  if (fits.empty()) return comparisons;
+  const Fit& best = fits[chosen];
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const Fit& other = fits[k];
+    const bool comparable = k != chosen && other.protocol == best.protocol && other.converged &&
                             other.cycle_squares.size() == best.cycle_squares.size() && !best.cycle_squares.empty();
-    if (comparable) comparisons.push_back({result.best, k, compare_held_out(best, other)});
+    if (comparable) comparisons.push_back({chosen, k, compare_held_out(best, other)});
   }
   return comparisons;
 }
 
-Membership membership(const Identification& result) {
-  const std::vector<Cycle>& cycles = result.segmentation.cycles;
+std::size_t evidence_of(const Identification& trace) {
+  return observe(trace.motion, trace.segmentation, {}, 1).cycles;
+}
+
+Membership membership(const Identification& trace, const Fit* fit, std::size_t before) {
+  const std::vector<Cycle>& cycles = trace.segmentation.cycles;
   Membership out;
-  out.cycle.assign(result.motion.size(), Membership::none);
-  out.fold.assign(result.motion.size(), Membership::none);
+  out.cycle.assign(trace.motion.size(), Membership::none);
+  out.fold.assign(trace.motion.size(), Membership::none);
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     for (const Span& span : {cycles[c].stick, cycles[c].slip}) {
       const std::size_t end = std::min(span.end, out.cycle.size());
       for (std::size_t i = span.begin; i < end; ++i) out.cycle[i] = c;
     }
   }
-  if (result.fits.empty()) return out;
-  const Fit& best = result.fits[result.best];
-  if (best.cycles == 0) return out;
+  if (fit == nullptr || fit->cycles == 0) return out;
   // The unit of evidence is a slip, or a piece of one where nothing sticks; stick goes with the slip after it.
-  for (const Observations::Range& range : observe(result.motion, result.segmentation, {}, 1).slips) {
-    const std::size_t fold = best.fold_of(range.cycle);
+  for (const Observations::Range& range : observe(trace.motion, trace.segmentation, {}, 1).slips) {
+    const std::size_t fold = fit->fold_of(before + range.cycle);
     std::size_t begin = range.samples.begin;
     const std::size_t c = out.cycle[begin];
     if (c != Membership::none && cycles[c].slip.begin == begin && cycles[c].stick.size() > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,14 +38,18 @@ struct LawComparison {
 };
 
 /// The best fit against each other fit of the same protocol; empty where there is nothing to compare.
-std::vector<LawComparison> compare_laws(const Identification& result);
+std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t best);
 
 /// Cycle and held-out fold of every sample.
 struct Membership {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> cycle;  ///< index in Segmentation::cycles; none outside
-  std::vector<std::size_t> fold;   ///< in which the best fit held the sample's cycle out; none where it was not fitted
+  std::vector<std::size_t> fold;   ///< in which the fit held the sample's cycle out; none where it was not fitted
 };
-Membership membership(const Identification& result);
+/// `before`: cycles of the traces that the fit holds before this one.
+Membership membership(const Identification& trace, const Fit* fit, std::size_t before = 0);
+
+/// Units of evidence that a trace gives to a fit: slips, or pieces of one where nothing sticks.
+std::size_t evidence_of(const Identification& trace);
 
 }  // namespace tribofit

@@ -93,8 +93,11 @@ std::string friction_unit(const Motion& motion) {
 }
 
 std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
-  const bool level = parameter.effect.empty() && parameter.parameter.unit == "1";
-  return level ? friction_unit(motion) : parameter.parameter.unit;
+  const std::string& unit = parameter.parameter.unit;
+  const bool level = parameter.parameter.of_friction || (parameter.effect.empty() && unit == "1");
+  if (!level || motion.friction_kind != FrictionKind::force) return unit;
+  if (unit == "1") return "N";
+  return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
 }
 
 double shown(const FitParameter& parameter, double si_value) {
@@ -112,11 +115,22 @@ void Table::add(std::vector<std::string> row) {
   rows_.push_back(std::move(row));
 }
 
-std::string Table::text(std::size_t indent, std::string_view header_on, std::string_view header_off) const {
+std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> width(rows_.front().size(), 0);
   for (const auto& row : rows_) {
     for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], columns_of(row[k]));
   }
+  return width;
+}
+
+std::size_t Table::width() const {
+  std::size_t sum = 0;
+  for (const std::size_t column : widths()) sum += column + 2;
+  return sum - 2;
+}
+
+std::string Table::text(std::size_t indent, std::string_view header_on, std::string_view header_off) const {
+  const std::vector<std::size_t> width = widths();
   std::string result;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     std::string line(indent, ' ');

@@ -48,8 +48,8 @@ std::string rate_text(double hertz);
 /// Unit of friction levels: "1", or "N" where friction is a force.
 std::string friction_unit(const Motion& motion);
 
-/// Unit in which a parameter is shown: its own, except that levels of friction are in newtons where friction is a
-/// force.
+/// Unit in which a parameter is shown: its own, except that what scales with friction has newtons in its unit where
+/// friction is a force ("N", "N s/mm", "N/mm").
 std::string shown_unit(const FitParameter& parameter, const Motion& motion);
 
 /// A SI quantity of this parameter in the unit people read.
@@ -61,10 +61,14 @@ class Table {
   explicit Table(std::vector<std::string> header, std::vector<bool> left = {});
   void add(std::vector<std::string> row);
   bool empty() const { return rows_.size() < 2; }
+  /// Columns of a terminal that its lines take, without indentation.
+  std::size_t width() const;
   /// Lines with `indent` blanks before each; the header line is passed through `emphasise` codes when given.
   std::string text(std::size_t indent, std::string_view header_on = "", std::string_view header_off = "") const;
 
  private:
+  std::vector<std::size_t> widths() const;
+
   std::vector<std::vector<std::string>> rows_;
   std::vector<bool> left_;
 };

@@ -9,7 +9,7 @@ namespace tribofit {
 
 /// Escape sequences of a terminal, all empty without colour, and the width sentences are broken to.
 struct Style {
-  explicit Style(bool colour, std::size_t columns) : width(std::clamp<std::size_t>(columns, 60, 120)) {
+  explicit Style(bool colour, std::size_t columns) : width(std::clamp<std::size_t>(columns, 40, 120)) {
     if (!colour) return;
     bold = "\033[1m";
     dim = "\033[2m";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "measures.hpp"
@@ -51,32 +52,56 @@ int places_of(const FitParameter& p) {
   return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
 }
 
-std::string parameter_table(const Fit& fit, const Motion& motion, const TerminalOptions& options, const Style& style) {
+/// How much of each parameter a table shows, from everything to what a narrow terminal can hold.
+enum class Detail { all, no_start, no_share, interval_only };
+
+Table parameter_table(const Fit& fit, const Motion& motion, const TerminalOptions& options, Detail detail) {
   const bool profile = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const FitParameter& p) {
     return std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
   });
-  std::vector<std::string> header = {"parameter", "value", "std error", "", "95 % interval"};
-  if (profile) header.push_back("by profile");
-  if (options.instruments_declared) header.push_back("systematic");
-  header.insert(header.end(), {"unit", "start", "remarks"});
+  const bool start = detail == Detail::all, share = detail <= Detail::no_start, error = detail <= Detail::no_share;
+  std::vector<std::string> header = {"parameter", "value"};
+  const auto column = [](std::vector<std::string>& row, bool wanted, std::string cell) {
+    if (wanted) row.push_back(std::move(cell));
+  };
+  column(header, error, "std error");
+  column(header, share, "");
+  header.push_back("95 % interval");
+  column(header, profile, "by profile");
+  column(header, options.instruments_declared, "systematic");
+  header.push_back("unit");
+  column(header, start, "start");
+  header.push_back("remarks");
   std::vector<bool> left(header.size(), false);
-  left[header.size() - 1] = left[header.size() - 3] = true;
+  left[header.size() - 1] = left[header.size() - (start ? 3 : 2)] = true;
   Table table(header, left);
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
     const int places = places_of(p);
-    const std::string name = p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
     const bool has_error = std::isfinite(p.std_error) && p.std_error > 0;
-    std::vector<std::string> row = {
-        name, fixed(shown(p, p.value), places), has_error ? fixed(shown(p, p.std_error), places) : "-",
-        has_error && p.value != 0 ? "(" + percent(p.std_error / std::abs(p.value)) + ")" : "",
-        has_error ? bracket(shown(p, p.lower95), shown(p, p.upper95), places) : "-"};
-    if (profile) row.push_back(bracket(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places));
-    if (options.instruments_declared) row.push_back(fixed(shown(p, p.systematic), places));
-    row.insert(row.end(), {shown_unit(p, motion), significant(shown(p, p.start), 3), flags_of(fit, k)});
+    std::vector<std::string> row = {p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name,
+                                    fixed(shown(p, p.value), places)};
+    column(row, error, has_error ? fixed(shown(p, p.std_error), places) : "-");
+    column(row, share, has_error && p.value != 0 ? "(" + percent(p.std_error / std::abs(p.value)) + ")" : "");
+    row.push_back(has_error ? bracket(shown(p, p.lower95), shown(p, p.upper95), places) : "-");
+    column(row, profile, bracket(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places));
+    // Nothing declared that bears on it is not the same as no uncertainty.
+    column(row, options.instruments_declared, p.systematic > 0 ? fixed(shown(p, p.systematic), places) : "-");
+    row.push_back(shown_unit(p, motion));
+    column(row, start, significant(shown(p, p.start), 3));
+    row.push_back(flags_of(fit, k));
     table.add(row);
   }
-  return table.text(2, style.dim, style.off);
+  return table;
+}
+
+std::string parameter_lines(const Fit& fit, const Motion& motion, const TerminalOptions& options, const Style& style) {
+  constexpr std::size_t kIndent = 2;
+  for (const Detail detail : {Detail::all, Detail::no_start, Detail::no_share}) {
+    const Table table = parameter_table(fit, motion, options, detail);
+    if (kIndent + table.width() <= style.width) return table.text(kIndent, style.dim, style.off);
+  }
+  return parameter_table(fit, motion, options, Detail::interval_only).text(kIndent, style.dim, style.off);
 }
 
 std::string error_lines(const Fit& fit, const Motion& motion, const Style& style) {
@@ -108,7 +133,7 @@ std::string one_fit(const Identification& r, const Fit& fit, const TerminalOptio
   if (!fit.converged)
     text += fmt::format("  {}did not converge{}: this is not a fit to rely on\n", style.red, style.off);
   if (!fit.parameters.empty()) {
-    text += parameter_table(fit, r.motion, options, style);
+    text += parameter_lines(fit, r.motion, options, style);
     text += error_lines(fit, r.motion, style);
   }
   for (const std::string& message : fit.messages) text += "  note: " + wrapped(message, style.width, 8) + "\n";
@@ -170,7 +195,7 @@ std::string protocol_lines(const Identification& r, const Style& style) {
 
 std::string comparison_lines(const Identification& r, const Style& style) {
   std::string text;
-  for (const LawComparison& c : compare_laws(r)) {
+  for (const LawComparison& c : compare_laws(r.fits, r.best)) {
     const std::string first = r.fits[c.first].model.name(), second = r.fits[c.second].model.name();
     const std::string figures =
         fmt::format("held-out RMSE {} against {}, p {}", significant(r.fits[c.first].error.held_out_rmse, 3),

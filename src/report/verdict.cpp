@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
-#include "measures.hpp"
 #include "numbers.hpp"
 #include "tribofit/pipeline.hpp"
 
@@ -107,13 +105,20 @@ std::string command_line(const TerminalOptions& options, const std::string& more
   return text + " " + shell_quoted(path.rfind('-', 0) == 0 ? "./" + path : path);
 }
 
-/// An effect that what was measured speaks for, not in the fit yet: a memory where the branches differ.
-std::optional<std::string> indicated_effect(const Identification& r, const Fit& fit) {
-  const std::vector<std::string> used = fit.model.effect_keys();
-  const Interval branches = interval_of(r.segmentation.branch_difference);
-  const bool loop = branches.lower > 0 || branches.upper < 0;
-  if (!loop || std::find(used.begin(), used.end(), "rate-state") != used.end()) return std::nullopt;
-  return "rate-state";
+/// `identify diagnose` with the user's own options, as far as it knows them.
+std::string diagnose_command(const TerminalOptions& options, const std::string& path) {
+  TerminalOptions known = options;
+  known.arguments = {"diagnose"};
+  for (std::size_t k = 0; k < options.arguments.size(); ++k) {
+    const std::string& name = options.arguments[k];
+    if (name == "--profile") continue;
+    if (name == "--protocol") {
+      ++k;  // its value
+      continue;
+    }
+    known.arguments.push_back(name);
+  }
+  return command_line(known, "", path);
 }
 
 }  // namespace
@@ -140,12 +145,8 @@ Suggestion next_command(const Identification& result, const TerminalOptions& opt
     return {"to see which options there are", "identify --help"};
   }
   const Fit& best = result.fits[result.best];
-  if (!(over_floor(best) <= kAtTheFloor)) {
-    if (const auto key = indicated_effect(result, best)) {
-      return {
-          "to test a memory of sliding distance, as the branches differ (`identify effects " + *key + "` explains it)",
-          command_line(options, "--effect " + *key, result.path)};
-    }
+  if (over_floor(best) > kAtTheFloor) {
+    return {"to see where the law fails and which effect is missing", diagnose_command(options, result.path)};
   }
   if (!options.csv_written) {
     return {"to plot the curve, the residuals and the cycles", command_line(options, "--csv " + folder, result.path)};

@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +18,25 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t kBufferSize = 1 << 18;
+
+/// Temporary names in use, for the handler of a signal: no lock and no memory may be taken there. More files at a time
+/// than there are places are written all the same, only not removed by an interruption.
+std::array<std::atomic<const char*>, 256> unfinished_files{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+void enlist(const char* name) {
+  for (auto& place : unfinished_files) {
+    const char* free = nullptr;
+    if (place.compare_exchange_strong(free, name)) return;
+  }
+}
+
+void strike_off(const char* name) {
+  for (auto& place : unfinished_files) {
+    const char* expected = name;
+    if (place.compare_exchange_strong(expected, nullptr)) return;
+  }
+}
 
 std::string advice_for(int error) {
   switch (error) {
@@ -62,11 +83,14 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) 
     temporary_.clear();
     fail(error);
   }
+  enlist(temporary_.c_str());
 }
 
 WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  strike_off(temporary_.c_str());
 }
 
 void WholeFile::fail(int error) {
@@ -104,7 +128,15 @@ void WholeFile::commit() {
   finish();
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  strike_off(temporary_.c_str());
   temporary_.clear();
+}
+
+void remove_unfinished_files() noexcept {
+  for (const auto& place : unfinished_files) {
+    const char* name = place.load();
+    if (name != nullptr) ::unlink(name);
+  }
 }
 
 void write_whole(const std::string& path, std::string_view content) {

@@ -116,7 +116,6 @@ TEST_F(Identify, OneOfSeveralFailing) {
 TEST_F(Identify, AFolderIsEveryTraceInIt) {
   std::filesystem::create_directory(shop_ / "runs");
   for (const char* name : {"runs/b.csv", "runs/a.csv"}) shop_.write(name, good_trace());
-  shop_.write("runs/manifest.csv", "file,radius\n");
   shop_.write("runs/notes.txt", "x\n");
   const Outcome outcome = shop_.identify("--radius 15mm runs");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -42,6 +42,19 @@ INSTANTIATE_TEST_SUITE_P(Usages, WrongUsage,
                                            Wrong{"JsonOfTwo", "--json r.json a.csv b.csv", "one trace"},
                                            Wrong{"CsvOfTwo", "--csv out a.csv b.csv", "one trace"},
                                            Wrong{"JsonOntoTheTrace", "--json a.csv a.csv", "overwrite"},
+                                           Wrong{"EmptyRadius", "--radius '' a.csv", "--radius is given an empty"},
+                                           Wrong{"EmptyJson", "--json '' a.csv", "--json is given an empty"},
+                                           Wrong{"EmptyTrace", "--radius 15mm ''", "a trace is given an empty"},
+                                           Wrong{"NegativeSeed", "--seed -1 a.csv", "--seed"},
+                                           Wrong{"SeedTooLarge", "--seed 18446744073709551616 a.csv", "--seed"},
+                                           Wrong{"DiagnoseNothing", "diagnose", "no trace given"},
+                                           Wrong{"DiagnoseEmptyLoad", "diagnose --load '' a.csv", "--load"},
+                                           Wrong{"DiagnoseSeed", "diagnose --seed 1.5 a.csv", "--seed"},
+                                           Wrong{"DiagnoseMisspelt", "diagnose --confrim a.csv b.csv", "--confirm"},
+                                           Wrong{"AllKept", "diagnose --confirm a.csv a.csv", "leave one"},
+                                           Wrong{"GivenTwice", "diagnose a.csv ./a.csv", "given twice"},
+                                           Wrong{"WithOfTwo", "diagnose --with c.csv a.csv b.csv", "one trace"},
+                                           Wrong{"DiagnoseOverwrites", "diagnose --json a.csv a.csv", "overwrite"},
                                            Wrong{"OptionsBeforeTheVerb", "--radius 15mm effects", "effects"}),
                          [](const auto& param_info) { return param_info.param.name; });
 
@@ -50,16 +63,27 @@ TEST(Usage, HelpAndVersion) {
   const Outcome help = shop.identify("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :
-       {"--radius",  "--speed",    "--load",    "--instruments", "--json",  "--csv",      "--columns",
-        "--units",   "--rate",     "--threads", "--seed",        "--quiet", "--law",      "--effect",
-        "--formula", "--protocol", "--loss",    "--starts",      "--folds", "--profile",  "--no-trim",
-        "--with",    "--continue", "--version", "simulate",      "effects", "Exit status"}) {
+       {"--radius",  "--speed",    "--load",    "--instruments", "--json",  "--csv",     "--columns",
+        "--units",   "--rate",     "--threads", "--seed",        "--quiet", "--law",     "--effect",
+        "--formula", "--protocol", "--loss",    "--starts",      "--folds", "--profile", "--no-trim",
+        "--with",    "--continue", "--version", "simulate",      "effects", "diagnose",  "Exit status"}) {
     EXPECT_THAT(help.out, HasSubstr(option));
   }
   EXPECT_THAT(help.err, IsEmpty());
   const Outcome version = shop.identify("--version");
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, StartsWith("identify "));
+}
+
+TEST(Usage, DiagnoseHasTheOptionsOfIdentify) {
+  const Workshop shop;
+  const Outcome help = shop.identify("diagnose --help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* option :
+       {"--radius", "--speed", "--load", "--instruments", "--json", "--csv", "--columns", "--units", "--rate",
+        "--threads", "--seed", "--quiet", "--law", "--effect", "--formula", "--confirm", "--with", "manifest.csv"}) {
+    EXPECT_THAT(help.out, HasSubstr(option));
+  }
 }
 
 TEST(Usage, EffectsListsAndExplains) {

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samples.hpp"
@@ -53,12 +56,6 @@ TEST(Laws, ReadmeNumberOfThePublishedMinimum) {
   EXPECT_NEAR(run(FrictionModel(BaseLaw::exponential), {0.521, 0.388, 32.37}, at.slip)[0], 0.409, 5e-4);
 }
 
-TEST(Viscous, AddsSigmaTimesSpeed) {
-  const Steady at(0.050, 1e-3, 1);
-  const FrictionModel model(BaseLaw::coulomb, {make_effect("viscous")});
-  EXPECT_NEAR(run(model, {0.5, 0.3, 1.0}, at.slip)[0], 0.3 + 0.001 * 50, 1e-12);  // 0.001 s/mm at 50 mm/s
-}
-
 TEST(RateState, RelaxesOverItsLength) {
   // From break-away at mu_s to the steady value at constant speed: exp(-distance/D_c).
   const double speed = 0.01, length = 50e-6, step = 1e-4;
@@ -106,6 +103,208 @@ TEST(Bristle, CreepInStickFollowsTheRampOfTheSpring) {
   const double p[] = {36.7e3, 0};
   EXPECT_NEAR(bristle.creep(p, 0.5, 0.0, 2.0), 2.0 / 36.7e3, 1e-12);
   EXPECT_NEAR(bristle.creep(p, 0.5, 0.25, 2.0), 4.0 / 36.7e3, 1e-12);
+}
+
+/// One instant of sliding, with every channel.
+struct OneInstant {
+  double time = 2, velocity = 0.05, acceleration = 0, angle = 0, distance = 0, load = 50, temperature = 20;
+  double stick_time = 0, since_break_away = -1, disc_speed = 0.4;
+};
+
+double read_at(const FrictionModel& model, const std::vector<double>& p, const OneInstant& x) {
+  const auto one = [](const double& value) { return std::span<const double>(&value, 1); };
+  Slip slip;
+  slip.time = one(x.time);
+  slip.velocity = one(x.velocity);
+  slip.acceleration = one(x.acceleration);
+  slip.angle = one(x.angle);
+  slip.distance = one(x.distance);
+  slip.load = one(x.load);
+  slip.temperature = one(x.temperature);
+  slip.stick_time = x.stick_time;
+  slip.from_stick = x.since_break_away >= 0;
+  slip.break_away_time = x.time - x.since_break_away;
+  slip.direction = x.velocity < 0 ? -1 : 1;
+  slip.mean_load = 50;
+  slip.mean_temperature = 20;
+  slip.disc_speed = x.disc_speed;
+  return run(model, p, slip)[0];
+}
+
+/// What an effect makes of friction 0.3 (coulomb) at one instant, parameters in SI.
+struct Point {
+  const char* key;
+  std::vector<double> p;
+  OneInstant at;
+  double expected;
+};
+
+TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
+  const double mu = 0.3, turn = 2 * std::numbers::pi;
+  const std::vector<Point> points = {
+      {"viscous", {1.0}, {.velocity = 0.05}, mu + 0.05},
+      {"viscous", {1.0}, {.velocity = 1e-12}, mu},
+      {"asymmetry", {0.8}, {.velocity = -0.05}, -0.8 * mu},
+      {"asymmetry", {0.8}, {.velocity = 0.05}, mu},
+      {"heating", {0.1, 20}, {.time = 0}, mu},
+      {"heating", {0.1, 20}, {.time = 20}, mu * (1 - 0.1 * (1 - std::exp(-1)))},
+      {"heating", {0.1, 20}, {.time = 1e6}, mu * 0.9},
+      {"run-in", {0.2, 0.3}, {.distance = 0}, mu * 1.2},
+      {"run-in", {0.2, 0.3}, {.distance = 0.3}, mu * (1 + 0.2 * std::exp(-1))},
+      {"run-in", {0.2, 0.3}, {.distance = 1e3}, mu},
+      {"drift", {0.002}, {.time = 10}, mu * 1.02},
+      {"drift", {0.002}, {.time = 10, .velocity = -0.05}, -mu * 1.02},
+      {"step", {0.04, 10}, {.time = 9.9}, mu},
+      {"step", {0.04, 10}, {.time = 10.1}, mu + 0.04},
+      {"step", {0.04, 10}, {.time = 10.1, .velocity = -0.05}, -mu - 0.04},
+      {"load-dependence", {0.2}, {.load = 100}, mu * std::pow(2, -0.2)},
+      {"load-dependence", {0.2}, {.load = 50}, mu},
+      {"temperature-dependence", {0.005}, {.temperature = 40}, mu * 1.1},
+      {"runout", {0.05, 1}, {.angle = -1}, mu * 1.05},
+      {"runout", {0.05, 1}, {.angle = turn / 2 - 1}, mu * 0.95},
+      {"disc-pattern", {0.05, 0, 0, 0}, {.angle = turn / 4}, mu * 0.95},
+      {"disc-pattern", {0, 0, 0.05, 0}, {.angle = turn / 3}, mu * 1.05},
+      {"load-coupling", {0.1}, {}, mu / (1 - 0.1 * mu)},
+      {"load-coupling", {0.1}, {.velocity = -0.05}, -mu / (1 + 0.1 * mu)},
+      {"ringing", {0.01, 200, 0.02, 0}, {.since_break_away = 0.005}, mu + 0.01 * std::exp(-turn * 0.02)},
+      {"ringing", {0.01, 200, 0.02, 0}, {.since_break_away = 0.0075}, mu - 0.01 * std::exp(-1.5 * turn * 0.02)},
+      {"ringing", {0.01, 200, 0.02, 0}, {}, mu},  // no break-away was recorded
+      {"sensor-inertia", {0.5}, {.acceleration = 2}, mu - 0.02},
+      {"sensor-offset", {0.01}, {.velocity = -0.05}, -mu + 0.01},
+      {"crosstalk", {0.02}, {.velocity = -0.05, .load = 75}, -mu + 0.03},
+      {"interference", {0.01, 50, 1}, {.time = 0.02}, mu + 0.01 * std::cos(1)},
+      {"interference", {0.01, 50, 0}, {.time = 0.03, .velocity = -0.05}, -mu - 0.01},
+      {"speed-ripple", {0.1, 2, 0}, {}, mu},  // of the motion: no term in mu
+      {"radius-offset", {1.05}, {}, mu},
+      {"velocity-gain", {0.95}, {}, mu},
+      {"velocity-highpass", {0.1}, {}, mu},
+  };
+  for (const Point& point : points) {
+    const FrictionModel model(BaseLaw::coulomb, {make_effect(point.key)});
+    std::vector<double> p = {0.5, mu};
+    p.insert(p.end(), point.p.begin(), point.p.end());
+    EXPECT_NEAR(read_at(model, p, point.at), point.expected, 1e-8) << point.key << " " << &point - points.data();
+  }
+}
+
+TEST(StribeckExponent, BendsTheFallAndKeepsItsEnds) {
+  const double drop = 0.191, level = 0.318;
+  const FrictionModel exponential(BaseLaw::exponential, {make_effect("stribeck-exponent")});
+  const FrictionModel fractional(BaseLaw::fractional, {make_effect("stribeck-exponent")});
+  const std::vector<double> p = {level + drop, level, 50, 2};  // decay in s/m
+  EXPECT_NEAR(read_at(exponential, p, {.velocity = 0.01}), level + drop * std::exp(-0.25), 1e-12);
+  EXPECT_NEAR(read_at(fractional, p, {.velocity = 0.01}), level + drop / 1.25, 1e-12);
+  EXPECT_NEAR(read_at(exponential, p, {.velocity = 1e-9}), level + drop, 1e-9);
+  EXPECT_NEAR(read_at(exponential, p, {.velocity = 10}), level, 1e-9);
+}
+
+TEST(Ageing, RaisesBreakAwayWithTheLogarithmOfStick) {
+  const FrictionModel model(BaseLaw::coulomb, {make_effect("ageing")});
+  const std::vector<double> p = {0.5, 0.3, 0.01, 0.1};
+  Steady at(0.05, 1e-3, 3);
+  at.slip.from_stick = true;
+  for (const double stick : {0.0, 0.1, 10.0}) {
+    at.slip.stick_time = stick;
+    EXPECT_NEAR(break_away_level(model, p.data(), at.slip), 0.5 + 0.01 * std::log(1 + stick / 0.1), 1e-12);
+  }
+  at.slip.stick_time = std::nan("");  // not recorded
+  EXPECT_NEAR(break_away_level(model, p.data(), at.slip), 0.5, 1e-12);
+}
+
+TEST(FrictionalLag, ForgetsBreakAwayInItsTime) {
+  const double tau = 2e-3, step = 1e-4;
+  const FrictionModel model(BaseLaw::coulomb, {make_effect("frictional-lag")});
+  Steady at(0.05, step, 200);
+  at.slip.from_stick = true;
+  // The steady value falls from mu_s at rest to mu_k at the first sample; after that phi decays exactly.
+  const std::vector<double> mu = run(model, {0.5, 0.3, tau}, at.slip);
+  EXPECT_GT(mu[0], 0.48);
+  for (std::size_t i = 0; i + 1 < 100; i += 9) {
+    EXPECT_NEAR((mu[i + 1] - 0.3) / (mu[i] - 0.3), std::exp(-step / tau), 1e-9);
+  }
+  EXPECT_NEAR(mu[199], 0.3, 0.2 * std::exp(-9.5));
+}
+
+TEST(ChannelDelay, ShiftsTheChannel) {
+  // mu falls along 0.5 - 2 t from break-away at t = 0, after a rise along 0.5 + 3 t.
+  std::vector<double> time, velocity, late, early;
+  for (int i = 1; i <= 100; ++i) time.push_back(1e-3 * i);
+  velocity.assign(time.size(), 0.05);
+  for (const double t : time) late.push_back(0.5 - 2 * t);
+  early = late;
+  Slip slip;
+  slip.time = time;
+  slip.velocity = velocity;
+  slip.from_stick = true;
+  slip.stick_slope = 3;
+  const double delay = 10.3e-3, back = -2.2e-3;
+  ChannelDelay{}.sense(&delay, slip, 0.5, std::span<double>(late));
+  ChannelDelay{}.sense(&back, slip, 0.5, std::span<double>(early));
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double then = time[i] - delay;
+    EXPECT_NEAR(late[i], then < 0 ? 0.5 + 3 * then : 0.5 - 2 * then, 1e-12);
+    EXPECT_NEAR(early[i], 0.5 - 2 * (time[i] - back), 1e-12);
+  }
+  EXPECT_NEAR(ChannelDelay{}.sense_break_away(&delay, slip, 0.5), 0.5 - 3 * delay, 1e-12);
+}
+
+TEST(ForceBandwidth, FollowsARampLateAndAnswersAStepInClosedForm) {
+  const double corner = 200, zeta = 0.6, w = 2 * std::numbers::pi * corner, wd = w * std::sqrt(1 - zeta * zeta);
+  const double p[] = {corner, zeta};
+  const auto answer = [&](double before, double step, double slope) {
+    std::vector<double> time, mu;
+    for (int i = 0; i < 2000; ++i) time.push_back(1e-5 * i);
+    for (const double t : time) mu.push_back(before + (t > 0 ? step : 0) + slope * t);
+    Slip slip;
+    slip.time = time;
+    ForceBandwidth{}.sense(p, slip, 0.0, std::span<double>(mu));
+    return mu;
+  };
+  const std::vector<double> step = answer(0.5, -0.2, 0), ramp = answer(0.5, 0, 2);
+  for (std::size_t i = 10; i < 2000; i += 50) {
+    const double t = 1e-5 * static_cast<double>(i) - 0.5e-5;  // the step takes one interval
+    const double rest = std::exp(-zeta * w * t) * (std::cos(wd * t) + zeta * w / wd * std::sin(wd * t));
+    EXPECT_NEAR(step[i], 0.5 - 0.2 * (1 - rest), 2e-5);
+  }
+  EXPECT_NEAR(ramp[1999], 0.5 + 2 * (1999e-5 - 2 * zeta / w), 1e-6);
+}
+
+/// Mean of f(|v|) v_t/|v| over a pad of radius R_c by quadrature on rings.
+double pad_mean(double v, double rim, double alpha) {
+  constexpr int kRings = 400, kAngles = 800;
+  double sum = 0, area = 0;
+  for (int i = 0; i < kRings; ++i) {
+    const double rho = (i + 0.5) / kRings;
+    for (int j = 0; j < kAngles; ++j) {
+      const double angle = (j + 0.5) * std::numbers::pi / kAngles;
+      const double along = v + rim * rho * std::cos(angle), across = rim * rho * std::sin(angle);
+      const double speed = std::hypot(along, across);
+      sum += rho * (0.318 + 0.191 * std::exp(-alpha * speed)) * along / speed;
+      area += rho;
+    }
+  }
+  return sum / area;
+}
+
+TEST(ContactSpin, IsTheMeanOverThePad) {
+  const double omega = 0.4, pad = 5e-3, rim = omega * pad;
+  const FrictionModel model(BaseLaw::exponential, {make_effect("contact-spin")});
+  for (const auto& [alpha, tolerance] : {std::pair(0.0, 2e-4), std::pair(50.0, 4e-4), std::pair(125.0, 1.2e-3)}) {
+    for (const double u : {0.05, 0.3, 0.7, 0.98, 1.02, 1.5, 3.0, 10.0}) {
+      EXPECT_NEAR(read_at(model, {0.509, 0.318, alpha, pad}, {.velocity = u * rim, .disc_speed = omega}),
+                  pad_mean(u * rim, rim, alpha), tolerance)
+          << "alpha " << alpha << " u " << u;
+    }
+  }
+  const std::vector<double> p = {0.509, 0.318, 50, pad};
+  EXPECT_NEAR(read_at(model, p, {.velocity = 0, .disc_speed = omega}), 0, 1e-12);
+  EXPECT_NEAR(read_at(model, p, {.velocity = 10, .disc_speed = omega}), 0.318, 1e-6);
+  EXPECT_NEAR(read_at(model, {0.509, 0.318, 50, 0}, {.velocity = 0.02, .disc_speed = omega}),
+              0.318 + 0.191 * std::exp(-1), 1e-6);
+  for (const double u : {0.1, 0.5, 0.85}) {  // creep undoes it: mu_s g(u) -> u omega R_c
+    const double mu = read_at(model, {0.5, 0.5, 50, pad}, {.velocity = u * rim, .disc_speed = omega});
+    EXPECT_NEAR(ContactSpin{}.creep(&pad, 0.5, mu, 1.0, omega), u * rim, 2e-3 * rim);
+  }
 }
 
 TEST(Formula, FollowsItsExpressionInTheUnitsOfThePage) {

@@ -36,8 +36,9 @@ struct ExampleSlip {
     slip.from_stick = true;
     slip.break_away_time = 3;
     slip.stick_time = 0.1;
-    slip.stick_slope = 2;
+    slip.stick_slope = 2 * direction;
     slip.direction = direction;
+    slip.disc_speed = 0.42;
     slip.mean_load = 50;
     slip.mean_temperature = 25;
   }

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -118,6 +122,33 @@ TEST(Health, BandwidthOfAFilteredChannel) {
   EXPECT_EQ(found.status, Status::warning);
   EXPECT_THAT(found.message, ::testing::HasSubstr("velocity falls"));
   EXPECT_THAT(found.message, ::testing::HasSubstr("friction stands"));
+  EXPECT_THAT(found.message, ::testing::HasSubstr("the channels have different filters"));
+}
+
+TEST(Health, BandwidthOfTheDrillStringsChannels) {
+  const char* given = std::getenv("TRIBOFIT_SHARED_DIR");
+  const std::filesystem::path shared =
+      given ? std::filesystem::path(given) : std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared";
+  const auto path = shared / "measured/drill-string/drillstring_175.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  Trace trace;
+  trace.velocity_kind = VelocityKind::relative;
+  while (std::getline(file, line)) {
+    double time = 0, bit = 0, top = 0, torque = 0, weight = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &time, &bit, &top, &torque, &weight), 5);
+    trace.time.push_back(time);
+    trace.velocity.push_back(bit * 2 * std::numbers::pi / 60 * 0.05);
+    trace.friction.push_back(torque / 0.05 / weight);
+  }
+  trace.steps = {{0, trace.size(), "", {}}};
+  // Torque falls by four decades between 20 and 80 Hz, the speed of the bit does not.
+  const HealthItem found = item(compute_motion(std::move(trace)), "bandwidth");
+  EXPECT_EQ(found.status, Status::warning);
+  EXPECT_THAT(found.message, ::testing::HasSubstr("friction falls from about"));
+  EXPECT_THAT(found.message, ::testing::HasSubstr("the channels have different filters"));
 }
 
 TEST(Health, HalfTheSamplesClipped) {

@@ -73,6 +73,9 @@ TEST(Json, WhatIsNotKnownIsNull) {
   EXPECT_TRUE(j["conditions"]["load_N"].is_null());
   EXPECT_TRUE(j["fits"][0]["error"]["held_out_rmse"].is_null());
   EXPECT_TRUE(j["fits"][0]["parameters"][0]["profile_ci95"][0].is_null());
+  EXPECT_TRUE(j["fits"][0]["parameters"][0]["systematic_error"].is_null());  // nothing declared
+  result.fits[0].parameters[0].systematic = 0.005;
+  EXPECT_EQ(parsed(result)["fits"][0]["parameters"][0]["systematic_error"], 0.005);
 }
 
 TEST(Json, HoldsBothProtocolsAndPointsAtTheBest) {

@@ -106,4 +106,36 @@ inline Identification made_up_result() {
   return r;
 }
 
+/// A runout found in that trace, and what became of the other effects.
+inline DiagnosedTraces made_up_diagnosis() {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  DiagnosedTraces out;
+  out.traces = {made_up_result()};
+  out.traces[0].fits.clear();
+  out.traces[0].motion.conditions.load = {50, "command line"};
+  Fit fit = made_up_fit(BaseLaw::exponential, 52.14);
+  out.fits = {fit};
+  out.fits[0].error.held_out_rmse = 0.0088;
+  fit.model = FrictionModel(BaseLaw::exponential, {make_effect("runout")});
+  fit.parameters.push_back(made_up_parameter(fit.model, 3, 0.048, 0.001));
+  fit.parameters.push_back(made_up_parameter(fit.model, 4, 0.3, 0.02));
+  fit.covariance.assign(25, 0.0);
+  fit.fold_parameters = {fit.values(), fit.values()};
+  out.fits.push_back(fit);
+  out.best = 1;
+  Diagnosis& d = out.diagnosis;
+  d.verdict = Verdict::effect_found;
+  d.where = {{"angle", 0.82, 1e-6}, {"time", 0.07, 0.01}, {"velocity", 0.02, 0.4}};
+  d.remaining = {{"velocity", 0.03, 0.5}};
+  d.ladder = {{"", 0.0088, 0.0002, 0.0086, {}}, {"runout", 0.0032, 0.0001, 0.0031, {}}};
+  d.floor_rmse = 0.0031;
+  d.effects = {
+      {"runout", EffectStatus::missing, 0.0032, 0.99, 1e-6, {fit.parameters[3], fit.parameters[4]}, "it is periodic"},
+      {"drift", EffectStatus::unsupported, 0.0088, 0, 0.7, {}, "takes nothing away"},
+      {"heating", EffectStatus::superseded, 0.008, 0.1, 0.01, {}, "helps alone only"},
+      {"load-dependence", EffectStatus::untestable, unknown, unknown, unknown, {}, "there is no load channel"},
+      {"crosstalk", EffectStatus::untestable, unknown, unknown, unknown, {}, "there is no load channel"}};
+  return out;
+}
+
 }  // namespace tribofit

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "made_up.hpp"
 
 namespace tribofit {
@@ -62,6 +64,29 @@ TEST(Terminal, TheSystematicPartStandsApart) {
               AllOf(HasSubstr("systematic"), HasSubstr("0.0051"), Not(HasSubstr("no instrument uncertainties"))));
 }
 
+TEST(Terminal, ParametersFitANarrowTerminal) {
+  Identification result = made_up_result();
+  result.fits[0].parameters[2].at_bound = true;
+  for (const std::size_t width : {60u, 80u}) {
+    TerminalOptions options = with_radius();
+    options.width = width;
+    const std::string text = render_terminal(result, options);
+    const std::string_view begin = "\n  parameter ";
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+      for (std::size_t row = at + 1; text[row] == ' '; row = text.find('\n', row) + 1) {
+        EXPECT_LE(text.find('\n', row) - row, width) << text.substr(row, 120);
+      }
+    }
+    EXPECT_THAT(text, ContainsRegex("mu_s +0\\.5090 .*\\[0\\.5066, 0\\.5114\\]"));
+  }
+}
+
+TEST(Terminal, WhatIsNotDeclaredIsNoZero) {
+  TerminalOptions options = with_radius();
+  options.instruments_declared = true;
+  EXPECT_THAT(render_terminal(made_up_result(), options), ContainsRegex("mu_s .*\\]  +-  "));
+}
+
 TEST(Terminal, FlagsStandInTheRowTheyAreAbout) {
   Identification result = made_up_result();
   result.fits[0].parameters[2].at_bound = true;
@@ -105,9 +130,10 @@ TEST(Terminal, EndsWithTheNextCommandInTheUsersOwnWords) {
   Identification result = made_up_result();
   EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
   result.fits[0].error.held_out_rmse = 0.0075;
-  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
-  result.segmentation.branch_difference = {0.01, 0.001, 10};
-  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --effect rate-state runs/r15.csv\n"));
+  EXPECT_THAT(rendered(result), EndsWith("\n  identify diagnose --radius 15mm runs/r15.csv\n"));
+  TerminalOptions options = with_radius();
+  options.arguments = {"--profile", "--radius", "15mm", "--protocol", "joint"};
+  EXPECT_THAT(render_terminal(result, options), EndsWith("\n  identify diagnose --radius 15mm runs/r15.csv\n"));
   result.path = "my runs/r 15.csv";
   EXPECT_THAT(rendered(result), EndsWith(" 'my runs/r 15.csv'\n"));
 }

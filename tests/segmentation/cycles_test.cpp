@@ -281,6 +281,23 @@ TEST(Cycles, AFewSamplesAreNoError) {
   }
 }
 
+TEST(Cycles, AreFoundAtTwoToFourSamplesASlip) {
+  for (double rate : {75.0, 100.0, 130.0}) {
+    for (unsigned seed : {1u, 2u, 3u}) {
+      truth::Rig rig;
+      rig.rate = rate;
+      rig.duration = 20;
+      rig.scatter = 0.004;
+      rig.seed = seed;
+      const truth::Run run = truth::simulate(rig);
+      const Segmentation segmentation = find_cycles(compute_motion(run.trace));
+      EXPECT_EQ(segmentation.kind, MotionKind::stick_slip) << rate << " Hz, seed " << seed;
+      EXPECT_NEAR(static_cast<double>(segmentation.cycles.size()), static_cast<double>(run.break_away_time.size()), 1)
+          << rate << " Hz, seed " << seed;
+    }
+  }
+}
+
 TEST(Cycles, TooFewSamplesASlipAreSaid) {
   const auto notes_at = [](double rate) {
     truth::Rig rig;

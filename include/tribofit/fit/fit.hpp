@@ -30,6 +30,7 @@ struct FitOptions {
   std::uint64_t seed = 1;
   int folds = 5;         ///< contiguous blocks of cycles held out in turn
   bool profile = false;  ///< profile likelihood intervals beside the others
+  std::vector<double> start;  ///< values (SI) to begin with, instead of several starts; empty: from the data
 };
 
 /// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
@@ -95,6 +96,12 @@ struct Fit {
   std::size_t fold_of(std::size_t cycle) const;
 };
 
+/// One record of several that are fitted together.
+struct Record {
+  const Motion* motion;
+  const Segmentation* segmentation;
+};
+
 /// Fits a model to the observations of a trace.
 ///
 /// Statistical errors come from the cycles: the influence of each cycle on each parameter (jackknife, one Newton step)
@@ -105,12 +112,23 @@ struct Fit {
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
+/// The same for several records with all parameters shared; `observations` are theirs, joined in the same order. The
+/// floor is the mean of theirs. The published protocol and systematic errors are for one record.
+Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
+              const Instruments& instruments = {}, const FitOptions& options = {});
+
 /// Sensor noise and break-away scatter. Noise is taken about a smooth ramp in stick (or about local fits in slip where
 /// nothing sticks), from the spread itself and not from differences, so that coloured noise is not underestimated.
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 
 /// Sets the floor of a fit and the share of the error above it that the model explains.
 void set_floor(const Floor& floor, Fit& fit);
+
+/// A fit tried on another record with every parameter frozen: its errors there, all of them held out.
+Fit frozen_on(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
+
+/// Standard error of the held-out RMSE, from cycle to cycle [1 or N].
+double held_out_std_error(const Fit& fit);
 
 /// Which of two fits predicts held-out cycles better.
 struct Comparison {

@@ -27,11 +27,13 @@ struct Observations {
     Span samples;                    ///< the same in samples of the Motion
     std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
     std::size_t segment = 0;         ///< index in Segmentation::cycles
+    std::size_t record = 0;          ///< which of several records
     bool from_stick = false;
     double break_away_time = 0;  ///< [s]
     double stick_time = 0;       ///< [s], NaN when not recorded
     double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
     double direction = 1;
+    double disc_speed = 0;                     ///< omega [rad/s]; 0 where it is not known
     double break_away_friction = 0;            ///< |mu| at break-away; NaN when there is none
     std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
     double lead_friction = 0;                  ///< signed, at the first of them
@@ -60,5 +62,13 @@ struct Observations {
 /// values_per_slip: means are taken so that the median slip has about this many; 0 keeps every sample.
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs = {},
                      std::size_t values_per_slip = 80);
+
+/// The observations of several records as one; channels that not all of them have are dropped, and N0 and T0 are the
+/// means of all.
+Observations join(std::vector<Observations> records);
+
+/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, 21 samples) whose window stops
+/// at re-stick, where the acceleration jumps.
+std::vector<double> slip_acceleration(const Motion& motion, const Span& samples);
 
 }  // namespace tribofit

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tribofit/friction/law.hpp"
@@ -22,6 +23,9 @@ namespace tribofit {
 ///
 ///   void adjust(p, const Slip&, LawParameters<T>&)        levels of the base law for a whole slip
 ///   T    reduce(p, const T& x)                            reduced speed x = decay v of the base law
+///   LocalSliding<T> spread(p, const Instant<T>&)                local speeds within the contact: f is taken at
+///   `speed`, and
+///        `share` of it acts along v_r
 ///   T    steady(p, const Instant<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
 ///   Relaxation<T> relaxation(p, const Instant<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
 ///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
@@ -30,14 +34,35 @@ namespace tribofit {
 ///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick
 ///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
 ///   void modulate_all(p, const Slip&, std::span<const T> velocity, std::span<T> mu)   the same, a whole slip at a time
-///   void sense(p, const Slip&, std::span<T> mu)           what the sensor reads of it, a whole slip at a time
+///   T    read(p, const Instant<T>&, const T& mu)          what the sensor adds to it
+///   void sense(p, const Slip&, const T& level, std::span<T> mu)   what the sensor makes of a whole slip; `level`:
+///        signed friction at break-away, up to which the spring pulled at slip.stick_slope
+///   T    sense_break_away(p, const Slip&, const T& level)  and of that level (default: level)
 ///
 /// All memories of the catalogue are linear in their state, which makes a step over any interval exact and stable.
 
 /// Channels that an effect needs to see.
 struct Channels {
   bool acceleration = false, angle = false, distance = false, load = false, temperature = false, stick_time = false;
-  bool lead = false;  ///< the last samples of the stick before each slip
+  bool lead = false;     ///< the last samples of the stick before each slip
+  bool force = false;    ///< the normal force, or friction as a force
+  bool plateau = false;  ///< v_b on the plateau of stick, with a stated speed
+};
+
+/// Where an effect has its place.
+enum class EffectGroup {
+  friction,     ///< what the contact does
+  rig,          ///< what the machine does to the contact
+  measurement,  ///< what the instruments make of it
+  user,         ///< the user's own formula
+};
+/// "friction", "rig", "measurement", "your own".
+std::string_view to_string(EffectGroup group);
+
+/// An effect that looks the same in most records, and the experiment that tells the two apart.
+struct LookAlike {
+  std::string key;
+  std::string test;
 };
 
 /// What an effect says about itself.
@@ -49,6 +74,16 @@ struct EffectInfo {
   std::string experiment;  ///< which test shows it best
   std::vector<Parameter> parameters;
   Channels needs = {};
+  EffectGroup group = EffectGroup::friction;
+  bool of_motion = false;             ///< see is_of_motion(); filled in by describe()
+  std::vector<LookAlike> pairs = {};  ///< filled in by describe(), see effect_pairs.hpp
+};
+
+/// How friction of a contact is put together from points that slide at different velocities.
+template <class T>
+struct LocalSliding {
+  T share;  ///< of the local friction that acts along v_r [1], 0 to 1
+  T speed;  ///< at which local friction is taken [m/s]
 };
 
 /// A first-order memory: d phi/dt = rate (target - phi).

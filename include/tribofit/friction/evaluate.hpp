@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <variant>
 #include <vector>
@@ -20,6 +21,10 @@ concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T
 template <class E, class T>
 concept Reduces = requires(const E e, const T* p, const T& x) {
   e.reduce(p, x);
+};
+template <class E, class T>
+concept Spreads = requires(const E e, const T* p, const Instant<T>& x) {
+  e.spread(p, x);
 };
 template <class E, class T>
 concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
@@ -42,8 +47,23 @@ concept ModulatesAll = requires(const E e, const T* p, const Slip& s, std::span<
   e.modulate_all(p, s, v, mu);
 };
 template <class E, class T>
-concept Senses = requires(const E e, const T* p, const Slip& s, std::span<T> mu) {
-  e.sense(p, s, mu);
+concept Reads = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+  e.read(p, x, mu);
+};
+template <class E, class T>
+concept Senses = requires(const E e, const T* p, const Slip& s, const T& level, std::span<T> mu) {
+  e.sense(p, s, level, mu);
+};
+template <class E, class T>
+concept SensesBreakAway = requires(const E e, const T* p, const Slip& s, const T& level) {
+  e.sense_break_away(p, s, level);
+};
+/// Only the sensor sees it: the interface does not feel it.
+template <class E>
+concept OfSensor = Reads<E, double> || Senses<E, double>;
+template <class E>
+concept OfMotion = requires {
+  requires E::of_motion;
 };
 template <class E>
 concept ActsInStick = requires {
@@ -73,8 +93,16 @@ LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& sli
 
 /// Steady friction f(v) [1] at one instant, >= 0, before any memory.
 template <class T>
-T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Instant<T>& at) {
+T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at) {
   using std::abs;
+  T share = T(1.0);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Spreads<E, T>) {
+      const LocalSliding<T> local = effect.spread(q, at);
+      share = local.share;
+      at.velocity = at.direction * local.speed;
+    }
+  });
   T x = law.decay * abs(at.velocity);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Reduces<E, T>) x = effect.reduce(q, x);
@@ -83,10 +111,34 @@ T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Steadies<E, T>) mu = effect.steady(q, at, mu);
   });
-  return mu;
+  return share * mu;
 }
 
 namespace detail {
+
+template <class T>
+bool has_spread(const FrictionModel& model, const T* p) {
+  bool found = false;
+  for_each_effect(model, p, [&]<class E>(const E&, const T*) { found |= hooks::Spreads<E, T>; });
+  return found;
+}
+
+/// The highest steady friction from rest on [1]: mu_s, or less where a contact never sticks as a whole.
+template <class T>
+T peak_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at) {
+  T scale = T(0.0);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Spreads<E, T>) scale = effect.spread(q, at).speed;
+  });
+  if (!(scalar_part(scale) > 0)) return law.mu_s;
+  T peak = T(0.0);
+  for (double v = 0.8; v < 40; v *= 1.15) {
+    at.velocity = at.direction * v * scale;
+    const T mu = steady_friction(model, p, law, at);
+    if (scalar_part(mu) > scalar_part(peak)) peak = mu;
+  }
+  return peak;
+}
 
 /// Carries one memory through a slip, in place: steady[i] becomes the friction after the memory.
 ///
@@ -152,14 +204,20 @@ template <class T>
 void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
   const std::size_t n = slip.size();
+  if (detail::has_spread<T>(model, p)) {
+    for (std::size_t i = 0; i < n; ++i) mu[i] = steady_friction(model, p, law, slip.at(i, velocity[i]));
+    return;
+  }
   for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * slip.speed(velocity[i]);
+  bool bent = false;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Reduces<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.reduce(q, mu[i]);
+      bent = true;
     }
   });
   const T drop = law.mu_s - law.mu_k;
-  if (slip.velocity_variance.empty()) {
+  if (slip.velocity_variance.empty() || bent) {
     for (std::size_t i = 0; i < n; ++i) mu[i] = law.mu_k + drop * stribeck_shape(model.law(), mu[i]);
   } else {
     const T decay_squared = law.decay * law.decay;
@@ -174,9 +232,11 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
   });
 }
 
-/// |mu| that the model expects at the break-away which begins `slip` [1]: mu_s after every effect on the level.
+namespace detail {
+
+/// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
 template <class T>
-T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
+T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
   Slip first = slip;
   for (auto* channel :
        {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.load, &first.temperature}) {
@@ -185,14 +245,28 @@ T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
   first.time = {&slip.break_away_time, 1};
   Instant<T> at = first.at(0, T(0.0 * p[0]));
   at.acceleration = 0;
-  T mu = slip.direction * law_for(model, p, slip).mu_s;
+  T mu = slip.direction * peak_friction(model, p, law_for(model, p, slip), at);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, T>) {
       effect.modulate_all(q, first, std::span<const T>(&at.velocity, 1), std::span<T>(&mu, 1));
     }
+    if (!sensed) return;
+    // The line through the stick before break-away knows nothing of what break-away strikes.
+    at.since_break_away = std::numeric_limits<double>::quiet_NaN();
+    if constexpr (hooks::Reads<E, T>) mu = effect.read(q, at, mu);
+    if constexpr (hooks::SensesBreakAway<E, T>) mu = effect.sense_break_away(q, slip, mu);
   });
-  return slip.direction * mu;
+  return mu;
+}
+
+}  // namespace detail
+
+/// |mu| that the model expects to be read at the break-away which begins `slip` [1]: mu_s after every effect on the
+/// level.
+template <class T>
+T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
+  return slip.direction * detail::break_away(model, p, slip, true);
 }
 
 /// Friction of the model at every sample of a slip, signed as v_r is.
@@ -223,7 +297,12 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.modulate(q, slip.at(i, velocity[i]), mu[i]);
     }
     if constexpr (hooks::ModulatesAll<E, T>) effect.modulate_all(q, slip, velocity, mu);
-    if constexpr (hooks::Senses<E, T>) effect.sense(q, slip, mu);
+    if constexpr (hooks::Reads<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.read(q, slip.at(i, velocity[i]), mu[i]);
+    }
+    if constexpr (hooks::Senses<E, T>) {
+      effect.sense(q, slip, slip.from_stick ? detail::break_away(model, p, slip, false) : T(0.0 * p[0]), mu);
+    }
   });
 }
 

@@ -5,6 +5,9 @@
 
 namespace tribofit {
 
+/// For parameters that are never neutral by themselves.
+inline constexpr double kUnused = std::numeric_limits<double>::quiet_NaN();
+
 /// One parameter of a law or of an effect as a person sees it.
 /// Values inside the library are SI; `lower`, `upper` and `start` are in `unit`.
 struct Parameter {
@@ -16,6 +19,8 @@ struct Parameter {
   /// Where the effect says nothing, or as little as its bounds allow [unit]; NaN: at `start`.
   double neutral = std::numeric_limits<double>::quiet_NaN();
   bool of_friction = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
+  bool of_force = false;     ///< its bounds grow with the force where friction is one, its unit does not
+  int grid = 1;              ///< values over its bounds from which a search must begin so that it ends at the best one
 };
 
 }  // namespace tribofit

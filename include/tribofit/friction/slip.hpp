@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <type_traits>
 
@@ -31,6 +32,8 @@ struct Instant {
   double mean_load = 1;         ///< N0 [N]
   double temperature = 0;       ///< [degC]
   double mean_temperature = 0;  ///< T0 [degC]
+  double since_break_away = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: no break-away was recorded
+  double disc_speed = 0;                                               ///< omega [rad/s]
 };
 
 /// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
@@ -49,6 +52,7 @@ struct Slip {
   double direction = 1;         ///< sign of v_r
   double mean_load = 1;         ///< N0 [N]
   double mean_temperature = 0;  ///< T0 [degC]
+  double disc_speed = 0;        ///< omega [rad/s]
 
   std::size_t size() const { return time.size(); }
 
@@ -75,7 +79,9 @@ struct Slip {
             value(load, mean_load),
             mean_load,
             value(temperature, mean_temperature),
-            mean_temperature};
+            mean_temperature,
+            from_stick ? time[i] - break_away_time : std::numeric_limits<double>::quiet_NaN(),
+            disc_speed};
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,23 @@
 #include "tribofit/kinematics/health.hpp"
 
 namespace tribofit {
+
+/// A disc whose speed follows its angle: omega (1 + amplitude cos(order theta + phase)), omega the stated speed, theta
+/// either omega t or the angle turned (their integral), whichever fits the plateaus better; theta = 0 at the trace's
+/// first sample.
+struct DiscRipple {
+  double amplitude = 0;  ///< [1]; 0: none
+  int order = 0;         ///< periods in a revolution
+  double phase = 0;      ///< [rad] in (-pi, pi]
+  double amplitude_std_error = 0, phase_std_error = 0;
+};
+
+/// What is made of a plateau of v_b that is not omega r.
+enum class PlateauCorrection {
+  none,    ///< left as it is
+  radius,  ///< the radius (or the speed) is another: omega r times the ratio
+  gain,    ///< the vibrometer reads too much or too little: v_b over the ratio
+};
 
 /// A trace turned into relative motion: instruments corrected, run-up trimmed, v_r computed.
 ///
@@ -19,10 +37,12 @@ struct Motion {
   std::vector<double> friction;           ///< mu [1], or force [N] (see friction_kind); positive when v_r is
   std::vector<double> relative_velocity;  ///< v_r [m/s]
   std::vector<double> disc_velocity;      ///< omega r [m/s]; empty when it is constant
-  double constant_disc_velocity =
-      0;  ///< omega r [m/s] where disc_velocity is empty; 0 when v_r was measured without a speed
+  /// omega r [m/s] where disc_velocity is empty, or without its ripple where one was undone; 0 when v_r was measured
+  /// without a speed.
+  double constant_disc_velocity = 0;
 
-  std::vector<double> load, temperature, disc_speed, disc_angle;  ///< as in Trace
+  /// As in Trace; where a ripple of the speed was undone, disc_speed holds it and disc_angle its integral.
+  std::vector<double> load, temperature, disc_speed, disc_angle;
 
   FrictionKind friction_kind = FrictionKind::coefficient;
   VelocityKind velocity_kind = VelocityKind::block;
@@ -35,6 +55,15 @@ struct Motion {
   double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
   double high_pass_std_error = 0;  ///< [Hz]
   bool sticks = false;             ///< the trace has a plateau of stick
+  DiscRipple speed_ripple;         ///< found on the plateaus and undone
+
+  /// Plateau of v_b over the stated omega r, creep of the contact taken off, and its standard error from stick to
+  /// stick. Radius (or speed) and gain of the vibrometer show in it alike. NaN where no radius and speed were stated,
+  /// where v_r was measured, or where too little sticks.
+  double plateau_ratio = std::numeric_limits<double>::quiet_NaN();
+  double plateau_ratio_std_error = std::numeric_limits<double>::quiet_NaN();
+  PlateauCorrection plateau_correction = PlateauCorrection::none;  ///< what was done about it
+  double corrected_ratio = 1;                                      ///< the ratio that was corrected; 1: none
 
   std::vector<HealthItem> health;  ///< in a fixed order, one per check
   std::vector<std::string> notes;  ///< corrections made and conventions settled, for the report
@@ -47,8 +76,10 @@ struct Motion {
 };
 
 struct MotionOptions {
-  bool trim = true;            ///< cut the run-up where the plateau is not within 2 % of its final value
-  bool undo_high_pass = true;  ///< undo a first-order high-pass found on the velocity
+  bool trim = true;               ///< cut the run-up where the plateau is not within 2 % of its final value
+  bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
+  bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
+  PlateauCorrection plateau = PlateauCorrection::none;
 };
 
 /// Computes the motion: declared instrument corrections first, then run-up, high-pass, speed, v_r, health.
@@ -57,6 +88,14 @@ struct MotionOptions {
 /// where nobody said it, the noise of v_r, the direction of the vibrometer and, by its sag dv_m/dt = -2 pi f_c v_m, an
 /// undeclared high-pass. A high-pass is undone by v_b = v_m + 2 pi f_c integral(v_m) dt; the integration constant comes
 /// from omega r, or from no net displacement of the block, and a straight drift from the levels of the plateaus.
+///
+/// Where the speed of the disc is stated and not recorded, and two revolutions are, the levels of the plateaus over the
+/// angle omega t show a ripple of the speed (kinematics/ripple.hpp says when it counts); omega r, the disc's speed and
+/// angle then follow it. The plateau against the stated omega r is reported as plateau_ratio: a wrong radius and a
+/// wrong gain of the vibrometer look alike in it, so that it is only corrected when asked (options.plateau). Order:
+/// sign, high-pass, ripple, run-up, plateau. Behind a high-pass the level of the plateau is not in the record; the
+/// ratio then follows from no net displacement of the block.
+///
 /// `trace` is consumed so that no channel is held twice. Throws InputError when v_r cannot be made: channels missing,
 /// or neither speed and radius nor a plateau. Cost: about six passes over the samples.
 Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});

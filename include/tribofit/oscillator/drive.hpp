@@ -28,6 +28,21 @@ SpeedProfile piecewise_linear_speed(std::vector<double> times, std::vector<doubl
 /// From standstill to omega [rad/s] in `duration` [s], then constant.
 SpeedProfile run_up_speed(double omega, double duration);
 
+/// `base` with a swing of the speed over the angle theta of the disc: omega (1 + A cos(n theta + phase)), theta = 0 at
+/// t = 0. Throws InputError unless 0 <= amplitude < 1 and order > 0.
+SpeedProfile rippled_speed(SpeedProfile base, double amplitude, double order, double phase);
+
+/// A time in which the disc stands still.
+struct Pause {
+  double begin = 0, duration = 0;  ///< [s]
+};
+
+/// Constant speeds [rad/s] from the times given [s] on (the first holds before, too), and standstill in the pauses; the
+/// speed changes along lines of kSpeedChangeTime. Throws InputError where changes follow one another faster than that.
+SpeedProfile stepped_speed(std::vector<double> times, std::vector<double> speeds,
+                           const std::vector<Pause>& pauses = {});
+inline constexpr double kSpeedChangeTime = 0.05;  ///< [s]
+
 /// What is imposed on the block.
 struct Drive {
   SpeedProfile speed;

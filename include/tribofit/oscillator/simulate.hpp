@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -45,12 +46,14 @@ struct SimulatedMotion {
   std::vector<double> time, displacement, velocity, acceleration;  ///< of the block [s, m, m/s, m/s^2]
   std::vector<double> relative_velocity;                           ///< v_r [m/s]; exactly 0 in rigid stick
   std::vector<double> friction;  ///< signed mu at the interface [1]; in rigid stick what the spring asks for
-  std::vector<double> disc_speed, disc_angle;              ///< [rad/s, rad]
-  std::vector<double> distance;                            ///< slid since the first sample [m]
-  std::vector<double> load, temperature;                   ///< [N, degC]; empty where constant
-  std::vector<std::uint8_t> sticks;                        ///< 1 in stick
-  std::vector<SimulatedSlip> slips;                        ///< in order of time
-  double radius = 0, mean_load = 0, mean_temperature = 0;  ///< of the drive
+  std::vector<double> disc_speed, disc_angle;                      ///< [rad/s, rad]
+  std::vector<double> distance;                                    ///< slid since the first sample [m]
+  std::vector<double> load, temperature;                           ///< [N, degC]; empty where constant
+  std::vector<std::uint8_t> sticks;                                ///< 1 in stick
+  std::vector<SimulatedSlip> slips;                                ///< in order of time
+  double radius = 0, mean_load = 0, mean_temperature = 0;          ///< as the drive states them
+  double stated_speed = std::numeric_limits<double>::quiet_NaN();  ///< omega as the drive states it, where that is
+                                                                   ///< constant [rad/s]; else NaN
 
   std::size_t size() const { return time.size(); }
   /// Break-aways within the record.
@@ -64,7 +67,11 @@ struct SimulatedMotion {
 /// is within the static limit and reverses otherwise. Slips are integrated by Dormand-Prince 5(4) with dense output;
 /// the last step of a slip ends at v_r = 0, so event times converge with the fifth order. Models that act in stick
 /// (bristle) have no rigid stick: their direction reverses at v_r = 0, and a slip counts as one when it covers
-/// a tenth of the static deflection N mu_s/k between two reversals.
+/// a tenth of the static deflection N mu_s/k between two reversals; without a memory (contact-spin) it begins and ends
+/// where |v_r| crosses half the speed of the disc.
+///
+/// Effects of the motion that the model holds are imposed on the drive (see hide.hpp): the block then feels a disc that
+/// is not the one stated.
 ///
 /// Validity: one degree of freedom, no loss of contact; the load does not depend on the motion.
 /// p: parameters in SI in the order of model.parameters().

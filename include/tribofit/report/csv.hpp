@@ -4,7 +4,8 @@
 
 namespace tribofit {
 
-struct Identification;  // pipeline.hpp
+struct DiagnosedTraces;  // pipeline.hpp
+struct Identification;
 
 /// Writes a result as CSV files for plotting, all of them or none; the folder is made when it is missing.
 ///
@@ -18,5 +19,9 @@ struct Identification;  // pipeline.hpp
 /// their unit in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in
 /// samples.
 void write_csv_folder(const std::string& folder, const Identification& result);
+
+/// The same for the final model of a diagnosis. Of several traces each has a folder of its own in `folder`, named like
+/// its file (with -2, -3 behind the name where files of several folders share it).
+void write_csv_folder(const std::string& folder, const DiagnosedTraces& result);
 
 }  // namespace tribofit

@@ -5,7 +5,8 @@
 
 namespace tribofit {
 
-struct Identification;  // pipeline.hpp
+struct DiagnosedTraces;  // pipeline.hpp
+struct Identification;
 
 struct JsonOptions {
   std::vector<std::string> arguments;  ///< of the command line, echoed under tool.arguments
@@ -17,5 +18,11 @@ struct JsonOptions {
 /// name or its "unit" says. What is not known is null. Both protocols are in "fits". Keys may be added in later
 /// versions, none changes. Conditions that differ between the steps of a trace are null there and listed under "steps".
 std::string to_json(const Identification& result, const JsonOptions& options = {});
+
+/// As above with "diagnosis"; the fits are those of the diagnosis: the bare laws, then the final model.
+///
+/// Of several traces diagnosed together "trace" becomes "traces", a list as "conditions" and "stick_slip" are, items of
+/// "health" carry the index of their trace, and parameters, all shared, carry "trace": null.
+std::string to_json(const DiagnosedTraces& result, const JsonOptions& options = {});
 
 }  // namespace tribofit

@@ -13,10 +13,12 @@ struct Identification;  // pipeline.hpp
 
 struct TerminalOptions {
   bool colour = false;
-  std::size_t width = 100;             ///< columns; sentences are broken there, tables are not
+  bool unicode = false;                ///< bars and plus-minus signs beyond ASCII can be shown
+  std::size_t width = 100;             ///< columns; sentences are broken there
   bool instruments_declared = false;   ///< an instruments file was given
   bool csv_written = false;            ///< the CSV folder of this result exists already
   std::vector<std::string> arguments;  ///< the user's own options without traces and outputs, for the next command
+  std::vector<std::string> inputs;     ///< traces and folders as the user named them; empty: the path of the trace
 };
 
 /// What a person reads after a run: trace and conditions, health, stick-slip, one table of parameters per fit with

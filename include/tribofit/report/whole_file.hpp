@@ -32,6 +32,10 @@ class WholeFile {
   int descriptor_ = -1;
 };
 
+/// Removes what every WholeFile has written so far under a temporary name; for a handler of a signal that ends the
+/// program (it is async-signal-safe), after which no WholeFile may be used.
+void remove_unfinished_files() noexcept;
+
 /// Writes `content` to `path`, whole or not at all (see WholeFile).
 void write_whole(const std::string& path, std::string_view content);
 

@@ -5,21 +5,51 @@
 #include <variant>
 #include <vector>
 
+#include "tribofit/friction/effects/ageing.hpp"
+#include "tribofit/friction/effects/asymmetry.hpp"
 #include "tribofit/friction/effects/bristle.hpp"
+#include "tribofit/friction/effects/channel_delay.hpp"
+#include "tribofit/friction/effects/contact_spin.hpp"
+#include "tribofit/friction/effects/crosstalk.hpp"
+#include "tribofit/friction/effects/disc_pattern.hpp"
+#include "tribofit/friction/effects/drift.hpp"
+#include "tribofit/friction/effects/force_bandwidth.hpp"
+#include "tribofit/friction/effects/frictional_lag.hpp"
+#include "tribofit/friction/effects/heating.hpp"
+#include "tribofit/friction/effects/interference.hpp"
+#include "tribofit/friction/effects/load_coupling.hpp"
+#include "tribofit/friction/effects/load_dependence.hpp"
+#include "tribofit/friction/effects/motion_effects.hpp"
 #include "tribofit/friction/effects/rate_state.hpp"
+#include "tribofit/friction/effects/ringing.hpp"
+#include "tribofit/friction/effects/run_in.hpp"
+#include "tribofit/friction/effects/runout.hpp"
+#include "tribofit/friction/effects/sensor_inertia.hpp"
+#include "tribofit/friction/effects/sensor_offset.hpp"
+#include "tribofit/friction/effects/step.hpp"
+#include "tribofit/friction/effects/stribeck_exponent.hpp"
+#include "tribofit/friction/effects/temperature_dependence.hpp"
 #include "tribofit/friction/effects/viscous.hpp"
 #include "tribofit/friction/formula.hpp"
 
 namespace tribofit {
 
-/// The one list of effects. Formula, last, is the user's own (see formula.hpp) and is not part of the catalogue.
-using Effect = std::variant<Viscous, RateState, Bristle, Formula>;
+/// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
+/// memories. Formula, last, is the user's own (see formula.hpp) and is not part of the catalogue.
+using Effect =
+    std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry, Heating,
+                 RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout, DiscPattern, SpeedRipple,
+                 LoadCoupling, Ringing, SensorInertia, SensorOffset, Crosstalk, ForceBandwidth, ChannelDelay,
+                 RadiusOffset, VelocityGain, VelocityHighPass, Interference, Formula>;
 
 /// Every effect of the catalogue, in its order.
 std::span<const Effect> effect_catalogue();
 
 /// What `effect` says about itself.
 EffectInfo describe(const Effect& effect);
+
+/// It changes v_r and not mu: found and undone by kinematics/, without a term in a friction model.
+bool is_of_motion(const Effect& effect);
 
 /// The effect of that key. Throws InputError that offers the nearest known key.
 Effect make_effect(std::string_view key);

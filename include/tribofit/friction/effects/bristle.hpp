@@ -12,18 +12,18 @@ struct Bristle {
   static constexpr bool acts_in_stick = true;
 
   static EffectInfo info() {
-    return {
-        .key = "bristle",
-        .statement =
-            "the contacts bend like bristles before they slide, so the block creeps in stick and "
-            "friction is rounded at break-away",
-        .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
-        .source =
-            "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
-            "(1995) 419, doi:10.1109/9.376053",
-        .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
-        .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100, 2000, true}, {"sigma1", "s/mm", 1e3, 0, 0.1, 0, 0, true}},
-        .needs = {.lead = true}};
+    return {.key = "bristle",
+            .statement =
+                "the contacts bend like bristles before they slide, so the block creeps in stick and "
+                "friction is rounded at break-away",
+            .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
+            .source =
+                "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
+                "(1995) 419, doi:10.1109/9.376053",
+            .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
+            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100, 2000, true, false, 4},
+                           {"sigma1", "s/mm", 1e3, 0, 0.1, 0, 0, true}},
+            .needs = {.lead = true}};
   }
 
   template <class T>

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/fit/fit.hpp"
+
+namespace tribofit {
+
+struct DiagnosisOptions {
+  int threads = 0;  ///< 0: as many as there are; the result does not depend on it
+  int most_effects = 4;  ///< rungs beyond the base law
+  /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
+  std::function<void(std::string_view, double)> progress;
+};
+
+/// What the diagnosis says in one word.
+enum class Verdict {
+  sufficient,       ///< nothing is missing that these data could show
+  effect_found,     ///< effects were added and what remains is at the floor
+  unexplained,      ///< structure remains that no effect explains
+  not_enough_data,  ///< too few cycles to hold any out
+};
+/// "sufficient", "effect-found", "unexplained", "not-enough-data".
+std::string_view to_string(Verdict verdict);
+
+/// What became of one effect of the catalogue.
+enum class EffectStatus {
+  missing,      ///< it was added
+  equivalent,   ///< it fits as well as one that was added; these data cannot tell them apart
+  superseded,   ///< it would help alone, but not beside what was added
+  unsupported,  ///< the data do not ask for it
+  untestable,   ///< the data cannot show it; `reason` says why
+};
+/// "missing", "equivalent", "superseded", "unsupported", "untestable".
+std::string_view to_string(EffectStatus status);
+
+/// A share of the error above the floor that goes with one variable.
+struct Share {
+  std::string variable;  ///< velocity, branch, time, angle, stick-time, load, frequency, stick
+  double share = 0;      ///< of the held-out squares above the floor that a free function of the variable takes away
+  double p_value = 1;    ///< of that fall, over held-out blocks of cycles, corrected for the number of variables
+};
+
+/// What the diagnosis found out about one effect.
+struct EffectFinding {
+  std::string key;
+  EffectStatus status = EffectStatus::unsupported;
+  double held_out_rmse = 0;    ///< with the effect, at the rung where it was judged last [1 or N]; NaN: not fitted
+  double error_reduction = 0;  ///< share of the squares above the floor that it takes away there; NaN: not fitted
+  double p_value = 1;          ///< that it takes away nothing, corrected for the number of candidates; NaN: not fitted
+  std::vector<FitParameter> parameters;  ///< of the last model that held it; empty where not fitted
+  std::string reason;                    ///< one sentence
+};
+
+/// One rung of the ladder: the model after an effect was added.
+struct Rung {
+  std::string added;           ///< key; empty for the base law
+  double held_out_rmse = 0;    ///< [1 or N]
+  double held_out_std_error = 0;
+  double rmse = 0;             ///< on all data [1 or N]
+  std::vector<std::string> equivalent;  ///< effects that fit as well, without `added`
+};
+
+/// A finding tried on a run that took no part, with every parameter frozen.
+struct Confirmation {
+  std::string path;
+  double base_rmse = 0;   ///< what the base law leaves there [1 or N]
+  double final_rmse = 0;  ///< what the last rung leaves there
+  double p_value = 1;     ///< that the last rung is no better
+};
+
+/// Where a law fails, which effect is missing, and whether it is enough.
+///
+/// Method: every effect of the catalogue that the data can excite is added to the model, fitted within its plausible
+/// bounds and judged by the squares it leaves on held-out contiguous blocks of cycles, with the scatter of break-away as
+/// a random effect (likelihood). It counts when the fall is not chance (F test whose noise is that between cycles,
+/// corrected for the number of candidates and of places looked at), is at least 2 % of what sensor noise leaves, and no
+/// telling parameter sits on a bound. The best one is added, with those that do as well as its group, until none is
+/// left; effects that became redundant are dropped; both base laws climb a ladder of their own and the better or
+/// shorter one is told. Free functions of each variable say where the error is, before and after.
+struct Diagnosis {
+  Verdict verdict = Verdict::sufficient;
+  BaseLaw law = BaseLaw::exponential;
+  std::vector<Share> where;      ///< of the base law, largest first
+  std::vector<Share> remaining;  ///< of the last rung, largest first
+  std::vector<EffectFinding> effects;  ///< every effect of the catalogue, in its order, then the user's own
+  std::vector<Rung> ladder;            ///< base law first
+  double floor_rmse = 0;               ///< [1 or N]
+  std::vector<Confirmation> confirmations;
+  std::string next_experiment;  ///< one or two sentences
+  std::string formula;          ///< a closed form of what remains, as --formula takes it; empty: none
+  std::vector<std::string> messages;
+};
+
+/// A diagnosis with the fits of its rungs, the base law first.
+struct Diagnosed {
+  Diagnosis diagnosis;
+  std::vector<Fit> fits;
+};
+
+/// Diagnoses one record, or several together with all parameters shared.
+/// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.
+/// Cost: about 1 s for 100 slips, on two threads.
+Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws, const std::vector<Effect>& own = {},
+                   const Instruments& instruments = {}, const FitOptions& fit = {},
+                   const DiagnosisOptions& options = {});
+
+}  // namespace tribofit

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// Friction is recorded later than velocity (positive) or earlier: reading(t) = mu(t - delay).
+struct ChannelDelay {
+  static EffectInfo info() {
+    return {.key = "channel-delay",
+            .statement = "the friction channel is recorded later (positive) or earlier than the velocity channel",
+            .equation = "reading(t) = mu(t - delay)",
+            .source = "latency of acquisition chains",
+            .experiment =
+                "tap the block and align the edges; at twice the speed a delay stays the same in ms, also at re-stick",
+            .parameters = {{"delay", "ms", 1e-3, -5, 5, 0}},
+            .group = EffectGroup::measurement};
+  }
+
+  /// Before break-away friction is the spring's straight line; beyond the ends of the slip its last line goes on.
+  template <class T>
+  void sense(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
+    const std::size_t n = mu.size();
+    if (n < 2) return;
+    const std::vector<T> true_mu(mu.begin(), mu.end());
+    const double delay = scalar_part(p[0]);
+    std::size_t k = 0;  // true_mu[k] is the last at or before the time looked for
+    for (std::size_t i = 0; i < n; ++i) {
+      const double at = slip.time[i] - delay;
+      while (k + 1 < n && slip.time[k + 1] <= at) ++k;
+      while (k > 0 && slip.time[k] > at) --k;
+      const T late = slip.time[i] - p[0];
+      if (at >= slip.time[0]) {
+        const std::size_t low = std::min(k, n - 2);
+        const T slope = (true_mu[low + 1] - true_mu[low]) / (slip.time[low + 1] - slip.time[low]);
+        mu[i] = true_mu[low] + slope * (late - slip.time[low]);
+      } else if (!slip.from_stick) {
+        mu[i] = true_mu[0];
+      } else if (at > slip.break_away_time) {
+        const T slope = (true_mu[0] - level) / (slip.time[0] - slip.break_away_time);
+        mu[i] = level + slope * (late - slip.break_away_time);
+      } else {
+        mu[i] = level + slip.stick_slope * (late - slip.break_away_time);
+      }
+    }
+  }
+
+  template <class T>
+  T sense_break_away(const T* p, const Slip& slip, const T& level) const {
+    return scalar_part(p[0]) > 0 ? T(level - p[0] * slip.stick_slope) : level;
+  }
+};
+
+}  // namespace tribofit

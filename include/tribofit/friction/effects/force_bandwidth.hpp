@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// The force channel is a second-order low-pass: y'' + 2 zeta w y' + w^2 y = w^2 mu, w = 2 pi f_0.
+struct ForceBandwidth {
+  static EffectInfo info() {
+    return {.key = "force-bandwidth",
+            .statement = "the force sensor or its amplifier is too slow to follow friction",
+            .equation = "y'' + 2 zeta w y' + w^2 y = w^2 mu, w = 2 pi f_0",
+            .source = "second-order response of any seismic or filtered sensor",
+            .experiment = "tap the block: a slower edge is a filter, a shifted edge a delay",
+            .parameters = {{"f_0", "Hz", 1, 20, 2000, 300, 2000}, {"zeta", "1", 1, 0.3, 1, 0.7}},
+            .group = EffectGroup::measurement};
+  }
+
+  /// Exact for straight lines between samples: what is left of the ramp response of the filter, its state (y, y'/w),
+  /// turns and shrinks by e^(-zeta w dt) over every interval.
+  template <class T>
+  void sense(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
+    using std::cos;
+    using std::exp;
+    using std::sin;
+    using std::sqrt;
+    if (mu.empty()) return;
+    const T w = 2 * std::numbers::pi * p[0];
+    const T zeta = scalar_part(p[1]) < 0.9999 ? p[1] : T(p[1] - (scalar_part(p[1]) - 0.9999));
+    const T root = sqrt(1.0 - zeta * zeta);
+    // Deviation of the filter from its answer to the present straight line u + s t: y = u + s (t - 2 zeta/w) + e.
+    T e = T(0.0 * w), rate = T(0.0 * w);  // e and e'/w
+    T slope = slip.from_stick ? T(slip.stick_slope + 0.0 * w) : T(0.0 * w), before = mu[0];
+    double previous = slip.time[0];
+    if (slip.from_stick) {
+      before = level;
+      previous = slip.break_away_time;
+    }
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const double dt = slip.time[i] - previous;
+      if (dt > 0) {
+        const T now = (mu[i] - before) / dt;
+        // The line bends: e jumps by what its lag changes, e' by its slope.
+        e += 2.0 * zeta / w * (now - slope);
+        rate -= (now - slope) / w;
+        slope = now;
+        const T a = exp(-zeta * w * dt), c = a * cos(root * w * dt), s = a * sin(root * w * dt) / root;
+        const T next = c * e + s * (rate + zeta * e);
+        rate = c * rate - s * (e + zeta * rate);
+        e = next;
+        previous = slip.time[i];
+        before = mu[i];
+      }
+      mu[i] = before - 2.0 * zeta / w * slope + e;
+    }
+  }
+
+  /// A ramp comes out 2 zeta/w late.
+  template <class T>
+  T sense_break_away(const T* p, const Slip& slip, const T& level) const {
+    return level - 2.0 * p[1] / (2 * std::numbers::pi * p[0]) * slip.stick_slope;
+  }
+};
+
+}  // namespace tribofit

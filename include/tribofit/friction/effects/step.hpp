@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// Friction steps at one time (debris, a transfer film that breaks).
+struct StepChange {
+  static EffectInfo info() {
+    return {.key = "step",
+            .statement = "friction steps once, as when debris enters the contact or a transfer film breaks",
+            .equation = "mu = f(v) + delta for t >= t_c",
+            .source = "change point, cf. E. S. Page, Biometrika 41 (1954) 100, doi:10.1093/biomet/41.1-2.100",
+            .experiment = "repeat the run on fresh surfaces: a step does not come back at the same time",
+            .parameters = {{"delta", "1", 1, -0.1, 0.1, 0.01, 0, true},
+                           {"t_c", "s", 1, 0, 1e4, 10, kUnused, false, false}}};
+  }
+
+  /// The change takes 20 ms, shorter than a cycle, so that its time has a derivative.
+  template <class T>
+  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+    using std::tanh;
+    return mu + x.direction * p[0] * (0.5 + 0.5 * tanh((x.time - p[1]) / 0.01));
+  }
+};
+
+}  // namespace tribofit

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cmath>
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// The fall of friction is steeper or gentler than the base law: x = decay v becomes x^delta.
+struct StribeckExponent {
+  static EffectInfo info() {
+    return {
+        .key = "stribeck-exponent",
+        .statement = "friction falls with speed over a sharper or wider range than the base law",
+        .equation = "exp(-(alpha v)^delta), or 1/(1 + (beta v)^delta) = fall of the base law",
+        .source =
+            "L. C. Bo, D. Pavelescu, Wear 82 (1982) 277; B. Armstrong-Helouvry, P. "
+            "Dupont, "
+            "C. Canudas de Wit, Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7",
+        .experiment = "four times the disc speed, or slips faster than 3/alpha: the end of the fall shows its shape",
+        .parameters = {{"delta", "1", 1, 0.5, 2, 1}}};
+  }
+
+  template <class T>
+  T reduce(const T* p, const T& x) const {
+    using std::exp;
+    using std::log;
+    // x^delta through the logarithm; at rest there is nothing to bend, and log(0) has no derivative.
+    return scalar_part(x) > 1e-12 ? T(exp(p[0] * log(x))) : x;
+  }
+};
+
+}  // namespace tribofit

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "tribofit/friction/effect.hpp"
+
+namespace tribofit {
+
+/// Friction coefficient depends on temperature: mu (1 + k_T (T - T0)).
+struct TemperatureDependence {
+  static EffectInfo info() {
+    return {
+        .key = "temperature-dependence",
+        .statement = "friction coefficient changes with the temperature of the contact",
+        .equation = "mu = f(v) (1 + k_T (T - T0)), T0 the mean temperature of the record",
+        .source =
+            "linear term of any smooth dependence; for brake materials cf. A. E. Anderson, ASM Handbook 18 (1992) 569",
+        .experiment = "the same run with the disc heated from outside",
+        .parameters = {{"k_T", "1/K", 1, -0.01, 0.01, 0}},
+        .needs = {.temperature = true}};
+  }
+
+  template <class T>
+  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+    return mu * (1.0 + p[0] * (x.temperature - x.mean_temperature));
+  }
+};
+
+}  // namespace tribofit

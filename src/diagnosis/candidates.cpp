@@ -1,0 +1,231 @@
+#include "candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fit/starts.hpp"
+#include "lines.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// What the data can excite, found once.
+struct Excitation {
+  bool both_directions = false;
+  double revolutions = 0;       ///< of the record that turns most
+  double load_spread = 0;       ///< (95 % - 5 %) / median
+  double temperature_spread = 0;  ///< 95 % - 5 % [K]
+  double stick_time_ratio = 1;  ///< 95 % / 5 % over cycles
+  double longest_stick_ratio = 1;  ///< third longest over the median
+  double median_stick_time = 0;
+  bool breaks_away = false;
+  bool force_known = false;  ///< the load is known or friction is a force
+};
+
+double quantile(std::vector<double> x, double part) {
+  if (x.empty()) return 0;
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+
+Excitation excitation_of(std::span<const Record> records, const Observations& observations) {
+  Excitation out;
+  bool forth = false, back = false;
+  std::vector<double> sticks;
+  for (const auto& slip : observations.slips) {
+    (slip.direction > 0 ? forth : back) = true;
+    out.breaks_away |= slip.from_stick;
+    if (std::isfinite(slip.stick_time) && slip.stick_time > 0) sticks.push_back(slip.stick_time);
+  }
+  out.both_directions = forth && back;
+  if (sticks.size() >= 6) {
+    out.median_stick_time = quantile(sticks, 0.5);
+    out.stick_time_ratio = quantile(sticks, 0.95) / quantile(sticks, 0.05);
+    std::sort(sticks.rbegin(), sticks.rend());
+    out.longest_stick_ratio = sticks[2] / out.median_stick_time;
+  }
+  if (!observations.angle.empty()) {
+    std::vector<double> least(records.size(), 1e300), most(records.size(), -1e300);
+    for (const auto& slip : observations.slips) {
+      least[slip.record] = std::min(least[slip.record], observations.angle[slip.begin]);
+      most[slip.record] = std::max(most[slip.record], observations.angle[slip.end - 1]);
+    }
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      out.revolutions = std::max(out.revolutions, (most[r] - least[r]) / (2 * std::numbers::pi));
+    }
+  }
+  if (!observations.load.empty()) {
+    out.load_spread = (quantile(observations.load, 0.95) - quantile(observations.load, 0.05)) /
+                      std::max(1e-300, std::abs(quantile(observations.load, 0.5)));
+  }
+  if (!observations.temperature.empty()) {
+    out.temperature_spread = quantile(observations.temperature, 0.95) - quantile(observations.temperature, 0.05);
+  }
+  out.force_known = std::all_of(records.begin(), records.end(), [](const Record& record) {
+    return record.motion->friction_kind == FrictionKind::force || !record.motion->load.empty() ||
+           record.motion->conditions.load.known();
+  });
+  return out;
+}
+
+/// Why the data cannot show an effect; empty where they can.
+std::string obstacle(const EffectInfo& info, const Observations& observations, const Excitation& seen) {
+  const Channels& needs = info.needs;
+  if (needs.temperature && observations.temperature.empty()) return "there is no temperature channel";
+  if (needs.load && observations.load.empty()) return "there is no load channel";
+  if (needs.angle && observations.angle.empty()) return "the disc angle is not known (give --speed)";
+  if (needs.force && !seen.force_known) return "the normal force is not known (give --load)";
+  if (needs.angle && seen.revolutions < 2) {
+    return fmt::format("the record holds {:.1f} revolutions of the disc; two are needed", seen.revolutions);
+  }
+  constexpr double kLeastLoadSpread = 0.03, kLeastTemperatureSpread = 2, kLeastStickRatio = 2.5;
+  if (needs.load && seen.load_spread < kLeastLoadSpread) {
+    return fmt::format("the load varies by {:.1f} % only", 100 * seen.load_spread);
+  }
+  if (needs.temperature && seen.temperature_spread < kLeastTemperatureSpread) {
+    return fmt::format("the temperature varies by {:.1f} K only", seen.temperature_spread);
+  }
+  if (needs.stick_time && seen.stick_time_ratio < kLeastStickRatio && seen.longest_stick_ratio < kLeastStickRatio) {
+    return seen.median_stick_time > 0
+               ? fmt::format("the stick times are all about {:.2g} s: a longer stick cannot be told from a shorter one",
+                             seen.median_stick_time)
+               : std::string("too few stick times were recorded");
+  }
+  if ((info.key == "asymmetry" || info.key == "sensor-offset") && !seen.both_directions) {
+    return "the block slides in one direction only";
+  }
+  if (info.key == "ringing" && !seen.breaks_away) return "there is no break-away to strike it";
+  return {};
+}
+
+double scale_of(const Parameter& parameter, const Observations& observations) {
+  return parameter.si *
+         (parameter.of_friction || parameter.of_force ? std::max(1.0, observations.largest_friction) : 1.0);
+}
+
+/// Values over the bounds from which a search begins, in SI.
+std::vector<double> grid_of(const Parameter& parameter, double lower, double upper, const Observations& observations) {
+  if (parameter.grid < 2) {
+    const double neutral = std::isnan(parameter.neutral) ? parameter.start : parameter.neutral;
+    const bool inside = neutral > parameter.lower && neutral < parameter.upper;
+    return {std::clamp((inside ? neutral : parameter.start) * scale_of(parameter, observations), lower, upper)};
+  }
+  std::vector<double> values;
+  const auto n = static_cast<double>(parameter.grid);
+  if (parameter.unit == "rad") {
+    for (int k = 0; k < parameter.grid; ++k) values.push_back(2 * std::numbers::pi * (k / n - 0.5 + 0.5 / n));
+    return values;
+  }
+  for (int k = 0; k < parameter.grid; ++k) {
+    const double u = (k + 0.5) / n;
+    const bool wide = lower > 0 && upper > 20 * lower;
+    values.push_back(wide ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower));
+  }
+  return values;
+}
+
+/// Times at which friction may have stepped: about the change point that explains most of the levels of the cycles
+/// (likelihood ratio, E. S. Page, Biometrika 41 (1954) 100), between the two cycles and within either of them.
+std::vector<double> change_points(const Observations& observations, std::span<const double> residual) {
+  const std::size_t n = observations.slips.size();
+  std::vector<double> level(n), weight(n);
+  double total = 0, weights = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& slip = observations.slips[k];
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      level[k] += slip.direction * observations.weight[i] * residual[i];
+      weight[k] += observations.weight[i];
+    }
+    total += level[k];
+    weights += weight[k];
+  }
+  double before = 0, weight_before = 0, best = -1;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    before += level[k];
+    weight_before += weight[k];
+    const double gap = before / weight_before - (total - before) / (weights - weight_before);
+    const double gain = gap * gap * weight_before * (weights - weight_before) / weights;
+    if (gain > best) {
+      best = gain;
+      at = k;
+    }
+  }
+  std::vector<double> times;
+  if (n < 2) return times;
+  const auto& first = observations.slips[at];
+  const auto& second = observations.slips[at + 1];
+  times.push_back(0.5 * (observations.time[first.end - 1] + observations.time[second.begin]));
+  for (const auto* slip : {&first, &second}) {
+    const double begin = observations.time[slip->begin], length = observations.time[slip->end - 1] - begin;
+    for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9}) times.push_back(begin + part * length);
+  }
+  return times;
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
+                                  const std::vector<Effect>& own) {
+  const Excitation seen = excitation_of(records, observations);
+  std::vector<Candidate> out;
+  for (const Effect& effect : effect_catalogue()) {
+    if (is_of_motion(effect)) continue;
+    EffectInfo info = describe(effect);
+    std::string why = obstacle(info, observations, seen);
+    out.push_back({effect, std::move(info), std::move(why)});
+  }
+  for (const Effect& effect : own) out.push_back({effect, describe(effect), {}});
+  return out;
+}
+
+Starts starts_of(const Candidate& candidate, std::span<const Record> records, const Observations& observations,
+                 std::span<const double> residual) {
+  Starts out;
+  out.values.emplace_back();
+  const FrictionModel alone(BaseLaw::coulomb, {candidate.effect});
+  const Bounds bounds = bounds_of(alone, observations);
+  double last = 0;
+  for (const Record& record : records) last = std::max(last, record.motion->time.back());
+  const auto& parameters = candidate.info.parameters;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Parameter& parameter = parameters[k];
+    std::vector<double> values;
+    double places = 1;
+    if (parameter.unit == "Hz" && candidate.info.key == "interference") {
+      const Line line = strongest_line(records[0], observations, residual, parameter.lower, parameter.upper);
+      values = {line.frequency > 0 ? line.frequency : parameter.start};
+      places = line.places;
+    } else if (parameter.unit == "Hz" && candidate.info.key == "ringing") {
+      const Line line = strongest_ringing(observations, residual, std::max(parameter.lower, lowest_ringing(observations)));
+      values = {line.frequency > 0 ? line.frequency : parameter.start};
+      places = line.places;
+    } else if (parameter.name == "t_c") {
+      values = change_points(observations, residual);
+      places = static_cast<double>(observations.slips.size());
+    } else {
+      const double lower = bounds.lower[2 + k];
+      const double upper = parameter.unit == "s" ? std::min(bounds.upper[2 + k], std::max(2 * last, lower * 1.5))
+                                                 : bounds.upper[2 + k];
+      values = grid_of(parameter, lower, upper, observations);
+      if (parameter.unit != "rad") places = static_cast<double>(values.size());
+    }
+    std::vector<std::vector<double>> all;
+    for (const auto& start : out.values) {
+      for (const double value : values) {
+        all.push_back(start);
+        all.back().push_back(value);
+      }
+    }
+    out.values = std::move(all);
+    out.places *= places;
+  }
+  return out;
+}
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/fit.hpp"
+
+namespace tribofit::diagnosis {
+
+/// One effect that may be missing.
+struct Candidate {
+  Effect effect;
+  EffectInfo info;
+  std::string untestable;  ///< why these data cannot show it; empty where they can
+};
+
+/// Every effect of the catalogue and the user's own, each checked for its channels and for what excites it.
+/// Effects of the motion are left out: kinematics/ answers for them.
+std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
+                                  const std::vector<Effect>& own);
+
+/// Where a search for the parameters of an effect must begin [SI], and in how many places independent of one another it
+/// looked before (for the correction of p-values).
+struct Starts {
+  std::vector<std::vector<double>> values;
+  double places = 1;
+};
+
+/// `residual` is what the model so far leaves: one value for each of the observations.
+Starts starts_of(const Candidate& candidate, std::span<const Record> records, const Observations& observations,
+                 std::span<const double> residual);
+
+}  // namespace tribofit::diagnosis

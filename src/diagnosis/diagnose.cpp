@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "findings.hpp"
+#include "lines.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/fit/parallel.hpp"
+
+namespace tribofit {
+
+namespace {
+
+using namespace diagnosis;
+
+constexpr std::size_t kFewestCycles = 12;
+
+/// Says what is being done, one voice at a time.
+class Voice {
+ public:
+  explicit Voice(const DiagnosisOptions& options) : progress_(options.progress) {}
+  void say(std::string_view what, double part) {
+    const std::lock_guard lock(mutex_);
+    if (progress_) progress_(what, part);
+  }
+
+ private:
+  const std::function<void(std::string_view, double)>& progress_;
+  std::mutex mutex_;
+};
+
+/// Everything these data offer to an effect.
+Channels all_channels(std::span<const Record> records) {
+  Channels all;
+  all.acceleration = all.distance = all.stick_time = all.lead = true;
+  const auto each = [&](auto has) { return std::all_of(records.begin(), records.end(), has); };
+  all.angle = each([](const Record& r) {
+    return !r.motion->disc_angle.empty() || !r.motion->disc_speed.empty() || r.motion->conditions.speed.known();
+  });
+  all.load = each([](const Record& r) { return !r.motion->load.empty() || r.motion->conditions.load.known(); });
+  all.temperature = each([](const Record& r) { return !r.motion->temperature.empty(); });
+  return all;
+}
+
+Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip) {
+  std::vector<Observations> parts;
+  for (const Record& record : records) {
+    parts.push_back(observe(*record.motion, *record.segmentation, channels, values_per_slip));
+  }
+  return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
+}
+
+std::size_t count_cycles(std::span<const Record> records) {
+  std::size_t cycles = 0;
+  for (const Record& record : records) {
+    const bool sticks = record.segmentation->kind == MotionKind::stick_slip;
+    cycles += sticks ? record.segmentation->cycles.size() : kFewestCycles;
+  }
+  return cycles;
+}
+
+/// Sensor noise of all records, without a line that runs through it.
+double sensor_noise(std::span<const Record> records) {
+  double squares = 0;
+  for (const Record& record : records) {
+    const Floor floor = estimate_floor(*record.motion, *record.segmentation);
+    squares += std::pow(noise_without_line(record, floor.noise), 2);
+  }
+  return std::sqrt(squares / static_cast<double>(records.size()));
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::sufficient:
+      return "sufficient";
+    case Verdict::effect_found:
+      return "effect-found";
+    case Verdict::unexplained:
+      return "unexplained";
+    case Verdict::not_enough_data:
+      break;
+  }
+  return "not-enough-data";
+}
+
+std::string_view to_string(EffectStatus status) {
+  switch (status) {
+    case EffectStatus::missing:
+      return "missing";
+    case EffectStatus::equivalent:
+      return "equivalent";
+    case EffectStatus::superseded:
+      return "superseded";
+    case EffectStatus::unsupported:
+      return "unsupported";
+    case EffectStatus::untestable:
+      break;
+  }
+  return "untestable";
+}
+
+Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws, const std::vector<Effect>& own,
+                   const Instruments& instruments, const FitOptions& fit, const DiagnosisOptions& options) {
+  Diagnosed out;
+  Diagnosis& diagnosis = out.diagnosis;
+  const std::size_t cycles = count_cycles(records);
+  if (cycles < kFewestCycles) {
+    diagnosis.verdict = Verdict::not_enough_data;
+    diagnosis.messages.push_back(
+        fmt::format("there are {} cycles; {} are needed to hold some of them out", cycles, kFewestCycles));
+    double duration = 0;
+    for (const Record& record : records) duration += record.motion->duration();
+    diagnosis.next_experiment =
+        cycles > 0 ? fmt::format("Record for at least {:.0f} s under the same conditions.",
+                                 std::ceil(1.2 * duration * kFewestCycles / static_cast<double>(cycles)))
+                   : "Record until the block has broken away a dozen times.";
+    return out;
+  }
+  Voice voice(options);
+  voice.say("reading slips", 0.02);
+  const Channels channels = all_channels(records);
+  constexpr std::size_t kFineValues = 20000, kCoarseValues = 5000;
+  const Observations fine = observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400));
+  const Observations coarse = observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40));
+  const Bench bench(records, fine, coarse, sensor_noise(records));
+  const std::vector<Candidate> all = candidates(records, fine, own);
+
+  std::vector<Ladder> ladders(laws.size());
+  run_tasks(laws.size(), options.threads, [&](std::size_t k) {
+    ladders[k] = climb(bench, laws[k], all, Limits(), options.most_effects, [&](std::string_view what, double part) {
+      voice.say(what, 0.05 + 0.75 * part);
+    });
+  });
+  const Ladder& ladder = ladders[better_ladder(bench, ladders)];
+  diagnosis.law = ladder.law;
+  if (!ladder.top().usable) {
+    diagnosis.verdict = Verdict::not_enough_data;
+    diagnosis.messages.push_back("no base law could be fitted");
+    return out;
+  }
+
+  voice.say("where it fails", 0.85);
+  std::vector<std::vector<Probe>> probes(2);
+  out.fits.resize(ladder.steps.size());
+  run_tasks(2 + ladder.steps.size(), options.threads, [&](std::size_t k) {
+    if (k < 2) {
+      const Trial& trial = k == 0 ? ladder.steps[0].trial : ladder.top();
+      probes[k] = probe_all(bench, try_model(bench, bench.coarse, trial.model, trial.p), trial, residual_of(bench, trial));
+      return;
+    }
+    const Trial& trial = ladder.steps[k - 2].trial;
+    FitOptions warm = fit;
+    warm.start = trial.p;
+    out.fits[k - 2] = fit_model(trial.model, records, fine, instruments, warm);
+  });
+  Floor floor = out.fits.back().floor;
+  const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
+  floor.noise = bench.floor_noise;
+  floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
+  for (Fit& rung : out.fits) set_floor(floor, rung);
+  diagnosis.floor_rmse = floor.rmse;
+
+  const std::vector<Probe> structure = remaining_structure(bench, probes[1]);
+  double left = 0;
+  for (const Probe& probe : structure) left = std::max(left, probe.fall);
+  const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;
+  diagnosis.where = shares_of(probes[0], climbed + left);
+  diagnosis.remaining = shares_of(probes[1], left);
+  diagnosis.effects = findings_of(bench, ladder, all, out.fits, floor.rmse);
+  for (std::size_t s = 0; s < ladder.steps.size(); ++s) {
+    const LadderStep& step = ladder.steps[s];
+    Rung rung;
+    if (step.added) rung.added = all[*step.added].info.key;
+    rung.rmse = out.fits[s].error.rmse;
+    rung.held_out_rmse = out.fits[s].error.held_out_rmse;
+    rung.held_out_std_error = held_out_std_error(out.fits[s]);
+    for (const std::size_t k : step.equivalent) rung.equivalent.push_back(all[k].info.key);
+    diagnosis.ladder.push_back(std::move(rung));
+  }
+  diagnosis.verdict = !structure.empty()          ? Verdict::unexplained
+                      : ladder.steps.size() > 1 ? Verdict::effect_found
+                                                : Verdict::sufficient;
+  diagnosis.next_experiment = next_experiment(ladder, all, structure);
+  voice.say("a closed form of the rest", 0.95);
+  if (!structure.empty()) diagnosis.formula = closed_form(bench, ladder.top(), structure.front());
+  voice.say("done", 1);
+  return out;
+}
+
+}  // namespace tribofit

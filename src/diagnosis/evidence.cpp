@@ -1,0 +1,150 @@
+#include "evidence.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+std::vector<Eigen::Index> free_indices(const Linearised& model) {
+  std::vector<Eigen::Index> index;
+  for (std::size_t k = 0; k < model.free.size(); ++k) {
+    if (model.free[k]) index.push_back(static_cast<Eigen::Index>(k));
+  }
+  return index;
+}
+
+/// Normal equations over the free parameters of some cycles.
+struct Normal {
+  Eigen::MatrixXd curvature;
+  Eigen::VectorXd gradient;
+
+  explicit Normal(Eigen::Index n) : curvature(Eigen::MatrixXd::Zero(n, n)), gradient(Eigen::VectorXd::Zero(n)) {}
+};
+
+Normal normal_of(const Linearised& model, const std::vector<Eigen::Index>& index, const std::vector<bool>& kept) {
+  Normal out(static_cast<Eigen::Index>(index.size()));
+  for (std::size_t c = 0; c < model.rows.size(); ++c) {
+    if (!kept.empty() && !kept[c]) continue;
+    const Eigen::MatrixXd& rows = model.rows[c];
+    const Eigen::MatrixXd jacobian = rows(Eigen::all, index);
+    out.curvature += jacobian.transpose() * jacobian;
+    out.gradient += jacobian.transpose() * rows.col(rows.cols() - 1);
+  }
+  return out;
+}
+
+/// Columns that turn the curvature into the identity, without directions the data do not determine.
+Eigen::MatrixXd whitener(const Eigen::MatrixXd& curvature) {
+  const Eigen::Index n = curvature.rows();
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) scale(i) = curvature(i, i) > 0 ? 1 / std::sqrt(curvature(i, i)) : 0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * curvature * scale.asDiagonal());
+  std::vector<Eigen::Index> good;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (eigen.eigenvalues()(i) > 1e-10) good.push_back(i);
+  }
+  Eigen::MatrixXd out(n, static_cast<Eigen::Index>(good.size()));
+  for (std::size_t g = 0; g < good.size(); ++g) {
+    out.col(static_cast<Eigen::Index>(g)) =
+        scale.asDiagonal() * eigen.eigenvectors().col(good[g]) / std::sqrt(eigen.eigenvalues()(good[g]));
+  }
+  return out;
+}
+
+Eigen::VectorXd spread_out(const Eigen::VectorXd& step, const std::vector<Eigen::Index>& index, std::size_t count) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < index.size(); ++i) out(index[i]) = step(static_cast<Eigen::Index>(i));
+  return out;
+}
+
+/// Step from the normal equations of the kept cycles, in the basis in which all cycles know one of everything.
+Eigen::VectorXd step_of(const Normal& kept, const Eigen::MatrixXd& basis) {
+  constexpr double kLeastKnown = 0.1;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(basis.transpose() * kept.curvature * basis);
+  Eigen::VectorXd pull = known.eigenvectors().transpose() * (basis.transpose() * kept.gradient);
+  for (Eigen::Index i = 0; i < pull.size(); ++i) {
+    const double part = known.eigenvalues()(i);
+    pull(i) = part >= kLeastKnown ? pull(i) / part : 0;
+  }
+  return -(basis * (known.eigenvectors() * pull));
+}
+
+}  // namespace
+
+Blocks::Blocks(std::size_t cycles)
+    : cycles_(std::max<std::size_t>(1, cycles)), count_(std::clamp<std::size_t>(cycles / 5, 2, 10)) {}
+
+Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<bool>& kept) {
+  const auto index = free_indices(model);
+  const Normal all = normal_of(model, index, {});
+  const Eigen::MatrixXd basis = whitener(all.curvature);
+  const Normal part = kept.empty() ? all : normal_of(model, index, kept);
+  return spread_out(step_of(part, basis), index, model.free.size());
+}
+
+std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step) {
+  std::vector<double> out;
+  for (const Eigen::MatrixXd& rows : model.rows) {
+    const Eigen::Index n = rows.cols() - 1;
+    out.push_back((rows.col(n) + rows.leftCols(n) * step).squaredNorm());
+  }
+  return out;
+}
+
+std::vector<double> held_out_squares(const Linearised& model, const Blocks& blocks) {
+  const auto index = free_indices(model);
+  const Normal all = normal_of(model, index, {});
+  const Eigen::MatrixXd basis = whitener(all.curvature);
+  std::vector<double> out(model.rows.size());
+  std::vector<bool> held(model.rows.size());
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    for (std::size_t c = 0; c < held.size(); ++c) held[c] = blocks.of(c) == b;
+    const Normal left_out = normal_of(model, index, held);
+    Normal kept = all;
+    kept.curvature -= left_out.curvature;
+    kept.gradient -= left_out.gradient;
+    const Eigen::VectorXd step = spread_out(step_of(kept, basis), index, model.free.size());
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      if (!held[c]) continue;
+      const Eigen::Index n = model.rows[c].cols() - 1;
+      out[c] = (model.rows[c].col(n) + model.rows[c].leftCols(n) * step).squaredNorm();
+    }
+  }
+  return out;
+}
+
+double design_effect(const Linearised& model, std::size_t k, double noise) {
+  if (!model.free[k] || !(noise > 0)) return 1;
+  const auto index = free_indices(model);
+  const auto at = std::find(index.begin(), index.end(), static_cast<Eigen::Index>(k)) - index.begin();
+  const Normal all = normal_of(model, index, {});
+  const Eigen::MatrixXd basis = whitener(all.curvature);
+  const Eigen::RowVectorXd direction = basis.row(at) * basis.transpose();  // row of the inverse curvature
+  const double independent = noise * direction(at);
+  if (!(independent > 0)) return 1;
+  std::vector<double> influences;
+  for (const Eigen::MatrixXd& rows : model.rows) {
+    const Eigen::MatrixXd jacobian = rows(Eigen::all, index);
+    influences.push_back(static_cast<double>(model.rows.size()) *
+                         (direction * (jacobian.transpose() * rows.col(rows.cols() - 1)))(0));
+  }
+  const double error = mean_error(influences).std_error;
+  return std::max(1.0, error * error / independent);
+}
+
+double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom) {
+  if (!(fall > 0) || !(noise > 0)) return 1;
+  const auto k = static_cast<double>(parameters);
+  const boost::math::fisher_f distribution(k, std::max(1.0, freedom));
+  return boost::math::cdf(boost::math::complement(distribution, fall / (k * noise * design_effect)));
+}
+
+double sum(const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include "fit/model_residuals.hpp"
+#include "tribofit/fit/observations.hpp"
+
+namespace tribofit::diagnosis {
+
+/// Contiguous blocks of cycles that are held out in turn.
+///
+/// Neighbouring cycles share slow scatter, so a block is at least five of them; about ten blocks.
+class Blocks {
+ public:
+  explicit Blocks(std::size_t cycles);
+  std::size_t count() const { return count_; }
+  std::size_t of(std::size_t cycle) const { return cycle * count_ / cycles_; }
+
+ private:
+  std::size_t cycles_, count_;
+};
+
+/// A model as the data see it near one point: whitened rows [J r] of every cycle, compressed.
+struct Linearised {
+  std::vector<Eigen::MatrixXd> rows;  ///< of each cycle
+  std::vector<bool> free;             ///< parameters that may move
+
+  bool finite() const { return !rows.empty(); }
+  std::size_t parameters() const { return free.size(); }
+};
+
+/// Step of the parameters that minimises the squares of the cycles that are kept, but only along directions about which
+/// they know at least a tenth of what all cycles know; the rest stays as it is.
+/// kept: one flag a cycle; empty: all of them.
+Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<bool>& kept = {});
+
+/// Whitened squares of each cycle after a step of the parameters.
+std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step);
+
+/// Whitened squares of each cycle, with the parameters that the other blocks suggest.
+std::vector<double> held_out_squares(const Linearised& model, const Blocks& blocks);
+
+/// How much larger the variance of parameter k is than independent residuals of one variance would make it: what
+/// correlation within and between cycles does. At least 1. `noise`: variance of a residual.
+double design_effect(const Linearised& model, std::size_t k, double noise);
+
+/// p-value of a fall of the squares by `fall` for `parameters` more parameters, when independent residuals of variance
+/// `noise` count for 1/design_effect each and the variance is known with `freedom` degrees of freedom (F test).
+double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom);
+
+double sum(const std::vector<double>& x);
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ladder.hpp"
+#include "probes.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
+
+namespace tribofit::diagnosis {
+
+/// What became of every candidate, from the ladder and the fits of its rungs.
+/// fits: one a step of the ladder.
+std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder, const std::vector<Candidate>& all,
+                                       const std::vector<Fit>& fits, double floor);
+
+/// Shares of the probes, largest first; those that chance would make too are left out.
+/// above: the squares above the floor.
+std::vector<Share> shares_of(const std::vector<Probe>& probes, double above);
+
+/// The probes that no chance makes, largest first.
+std::vector<Probe> remaining_structure(const Bench& bench, const std::vector<Probe>& probes);
+
+/// What to do next: the test that splits the groups of the ladder, or what remains to be looked at.
+std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& all,
+                            const std::vector<Probe>& structure);
+
+/// A closed form of what a probe found, as --formula takes it; empty where none fits.
+std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe);
+
+}  // namespace tribofit::diagnosis

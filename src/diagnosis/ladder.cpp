@@ -1,0 +1,237 @@
+#include "ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lines.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// Two models are told apart when their squares differ by more than chance would make them: with the right one known
+/// the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond three
+/// standard deviations, with some room for the models themselves being approximations.
+constexpr double kToldApart = 40;
+constexpr double kToldApartSize = 0.003;  ///< and by this part of the squares of the noise
+
+double noise_of(const Level& level, const Trial& trial) { return trial.squares / level.values; }
+
+std::size_t offset_of(const FrictionModel& model, const std::string& key) {
+  for (std::size_t k = 0; k < model.effects().size(); ++k) {
+    if (describe(model.effects()[k]).key == key) return model.offset(k);
+  }
+  return model.parameters().size();
+}
+
+/// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
+/// the effect says.
+bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info) {
+  const std::size_t offset = offset_of(trial.model, info.key);
+  for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+    const Parameter& q = info.parameters[k];
+    const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
+    if (telling && trial.at_bound[offset + k]) return false;
+    if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations)) return false;
+  }
+  return true;
+}
+
+/// How much better `richer` is than `poorer`, from which it differs by one effect.
+Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const EffectInfo& info,
+               double tests, const Limits& limits) {
+  Judged out;
+  out.trial = std::move(richer);
+  const Trial& trial = out.trial;
+  if (!trial.usable) return out;
+  const std::size_t offset = offset_of(trial.model, info.key);
+  const double noise = noise_of(level, trial);
+  std::size_t free = 0;
+  for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+    if (!trial.linear.free[offset + k]) continue;
+    ++free;
+    out.design_effect = std::max(out.design_effect, design_effect(trial.linear, offset + k, noise));
+  }
+  const double freedom = std::max(3.0, 0.4 * std::pow(static_cast<double>(trial.held_out.size()), 2.0 / 3));
+  out.p_value = std::min(1.0, tests * fall_p_value(poorer.squares - trial.squares, std::max<std::size_t>(1, free),
+                                                   noise, out.design_effect, freedom));
+  out.fall = poorer.held_out_squares - trial.held_out_squares;
+  out.size = out.fall / bench.floor_squares();
+  out.plausible = is_plausible(bench, trial, info);
+  out.passes = out.plausible && out.p_value < limits.p_value && out.size > limits.least_size;
+  return out;
+}
+
+bool told_apart(const Bench& bench, const Judged& better, const Judged& worse) {
+  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
+  return difference > kToldApart * noise_of(bench.fine, better.trial) * better.design_effect &&
+         difference > kToldApartSize * bench.floor_squares();
+}
+
+/// The leader among those that pass, with those that cannot be told from it.
+struct Choice {
+  std::optional<std::size_t> leader;  ///< index in `judged`
+  std::vector<std::size_t> group;     ///< candidates
+};
+
+Choice choose(const Bench& bench, const std::vector<Judged>& judged) {
+  Choice choice;
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes) continue;
+    if (!best || judged[k].trial.held_out_squares < judged[*best].trial.held_out_squares) best = k;
+  }
+  if (!best) return choice;
+  choice.leader = best;
+  // The simplest of those that do as well leads.
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    const std::size_t now = judged[*choice.leader].trial.p.size(), other = judged[k].trial.p.size();
+    const bool lower = judged[k].trial.held_out_squares < judged[*choice.leader].trial.held_out_squares;
+    if (other < now || (other == now && lower)) choice.leader = k;
+  }
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (k == *choice.leader || !judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    choice.group.push_back(judged[k].candidate);
+  }
+  return choice;
+}
+
+/// A line is seen only at full resolution.
+bool is_narrow(const EffectInfo& info) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
+}
+
+/// Every testable candidate beside the top of the ladder: searched and judged at low resolution, and those that may lead
+/// or be in the leader's group again at full resolution.
+std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::vector<Candidate>& candidates,
+                              const Limits& limits) {
+  const std::vector<std::string> present = top.model.effect_keys();
+  const std::vector<double> residual = residual_of(bench, top);
+  const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
+  const double least = 0.5 * limits.least_size * bench.floor_squares();
+  const auto tests = static_cast<double>(candidates.size());
+  std::vector<Judged> out;
+  std::vector<double> places;
+  double best = coarse_top.held_out_squares;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Candidate& candidate = candidates[k];
+    if (!candidate.untestable.empty()) continue;
+    if (std::find(present.begin(), present.end(), candidate.info.key) != present.end()) continue;
+    const bool in_stick = FrictionModel(top.model.law(), {candidate.effect}).acts_in_stick();
+    if (in_stick && top.model.acts_in_stick()) continue;
+    const bool narrow = is_narrow(candidate.info);
+    const Level& level = narrow ? bench.fine : bench.coarse;
+    const Trial& beside = narrow ? top : coarse_top;
+    const Opening opening = opening_of(bench, level, beside, candidate, residual, least);
+    Trial trial;
+    const FrictionModel model = with_effect(top.model, candidate.effect);
+    if (opening.start.empty()) {
+      trial.model = model;
+    } else {
+      trial = try_model(bench, level, model, opening.start);
+    }
+    Judged judged = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
+    judged.candidate = k;
+    if (judged.trial.usable && !narrow) best = std::min(best, judged.trial.held_out_squares);
+    out.push_back(std::move(judged));
+    places.push_back(opening.places);
+  }
+  const double fallen = coarse_top.held_out_squares - best;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    Judged& judged = out[k];
+    const Candidate& candidate = candidates[judged.candidate];
+    if (!judged.trial.usable || is_narrow(candidate.info)) continue;
+    const double behind = judged.trial.held_out_squares - best;
+    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.floor_squares() || judged.fall < 0;
+    if (judged.hopeless) {
+      judged.passes = false;
+      continue;
+    }
+    const std::size_t which = judged.candidate;
+    Trial trial = try_model(bench, bench.fine, judged.trial.model, judged.trial.p);
+    judged = compare(bench, bench.fine, top, std::move(trial), candidate.info, places[k] * tests, limits);
+    judged.candidate = which;
+  }
+  return out;
+}
+
+/// Drops effects that the ones added after them made redundant.
+void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+  for (std::size_t s = 1; s + 1 < ladder.steps.size();) {
+    const Candidate& candidate = candidates[*ladder.steps[s].added];
+    const Trial& full = ladder.top();
+    const std::vector<std::string> keys = full.model.effect_keys();
+    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), candidate.info.key) - keys.begin());
+    Trial without = try_without(bench, bench.fine, full, at);
+    const Judged needed = compare(bench, bench.fine, without, full, candidate.info, 1, limits);
+    if (!without.usable || needed.passes) {
+      ++s;
+      continue;
+    }
+    // The rungs above are rebuilt without it.
+    std::vector<LadderStep> rebuilt(ladder.steps.begin(), ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
+    for (std::size_t later = s + 1; later < ladder.steps.size(); ++later) {
+      LadderStep step = ladder.steps[later];
+      const std::vector<std::string> held = step.trial.model.effect_keys();
+      const auto gone = static_cast<std::size_t>(std::find(held.begin(), held.end(), candidate.info.key) - held.begin());
+      if (gone < held.size()) step.trial = try_without(bench, bench.fine, step.trial, gone);
+      rebuilt.push_back(std::move(step));
+    }
+    ladder.steps = std::move(rebuilt);
+    s = 1;
+  }
+}
+
+}  // namespace
+
+Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& candidates, const Limits& limits,
+             int most_effects, const std::function<void(std::string_view, double)>& progress) {
+  Ladder ladder;
+  ladder.law = law;
+  LadderStep base;
+  base.trial = try_base(bench, bench.fine, FrictionModel(law));
+  ladder.steps.push_back(std::move(base));
+  if (!ladder.top().usable) return ladder;
+  while (true) {
+    if (progress) {
+      const double part = static_cast<double>(ladder.steps.size()) / (most_effects + 2.0);
+      progress(ladder.top().model.name(), part);
+    }
+    ladder.last = judge_all(bench, ladder.top(), candidates, limits);
+    if (static_cast<int>(ladder.steps.size()) > most_effects) break;
+    const Choice choice = choose(bench, ladder.last);
+    if (!choice.leader) break;
+    LadderStep step;
+    step.judged = std::move(ladder.last);
+    step.added = step.judged[*choice.leader].candidate;
+    step.trial = step.judged[*choice.leader].trial;
+    step.equivalent = choice.group;
+    ladder.steps.push_back(std::move(step));
+  }
+  prune(bench, ladder, candidates, limits);
+  return ladder;
+}
+
+std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < ladders.size(); ++k) {
+    const Trial &first = ladders[best].top(), &second = ladders[k].top();
+    if (!second.usable) continue;
+    if (!first.usable) {
+      best = k;
+      continue;
+    }
+    const double difference = first.held_out_squares - second.held_out_squares;
+    const double noise = std::min(first.squares, second.squares) / bench.fine.values;
+    // A longer ladder must earn every rung that the other does without.
+    const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
+    const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.floor_squares();
+    const bool apart = std::abs(difference) > std::max(kToldApart * noise, least);
+    if (apart || more == 0 ? difference > 0 : second.p.size() < first.p.size()) best = k;
+  }
+  return best;
+}
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/diagnosis/diagnosis.hpp"
+#include "trial.hpp"
+
+namespace tribofit::diagnosis {
+
+/// A candidate judged beside the model so far.
+struct Judged {
+  std::size_t candidate = 0;
+  Trial trial;
+  double fall = 0;           ///< of the whitened squares on held-out cycles
+  double size = 0;           ///< that fall over the squares that sensor noise leaves
+  double p_value = 1;        ///< corrected for the number of candidates and of places looked at
+  double design_effect = 1;
+  bool hopeless = false;     ///< far behind the best already at low resolution, and judged there only
+  bool plausible = true;     ///< no telling parameter on its bound
+  bool passes = false;
+};
+
+struct LadderStep {
+  std::optional<std::size_t> added;    ///< candidate; none for the base law
+  Trial trial;                          ///< at full resolution
+  std::vector<std::size_t> equivalent;  ///< candidates that do as well
+  std::vector<Judged> judged;           ///< every candidate tried beside the step before
+};
+
+/// The rungs from one base law up.
+struct Ladder {
+  BaseLaw law = BaseLaw::exponential;
+  std::vector<LadderStep> steps;  ///< the base law first
+  std::vector<Judged> last;  ///< candidates judged beside the last rung: none of them passes
+  const Trial& top() const { return steps.back().trial; }
+};
+
+/// What must be passed for a name.
+struct Limits {
+  double p_value = 0.01;
+  double least_size = 0.02;  ///< of the squares that sensor noise leaves
+};
+
+/// Adds effects to a base law, the best one at a time, until nothing passes; then drops what became redundant.
+/// progress: may be empty.
+Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& candidates, const Limits& limits,
+             int most_effects, const std::function<void(std::string_view, double)>& progress = {});
+
+/// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.
+std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders);
+
+}  // namespace tribofit::diagnosis

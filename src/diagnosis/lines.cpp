@@ -1,0 +1,200 @@
+#include "lines.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "tribofit/kinematics/spectrum.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Frequency of the highest value of a spectrum between two frequencies, interpolated by a parabola.
+double peak_frequency(const Spectrum& spectrum, double lowest, double highest) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k + 1 < spectrum.amplitude.size(); ++k) {
+    const double f = spectrum.bin_width * static_cast<double>(k);
+    if (f < lowest || f > highest) continue;
+    if (best == 0 || spectrum.amplitude[k] > spectrum.amplitude[best]) best = k;
+  }
+  if (best == 0) return 0;
+  const double a = spectrum.amplitude[best - 1], b = spectrum.amplitude[best], c = spectrum.amplitude[best + 1];
+  const double bend = a - 2 * b + c;
+  const double shift = bend < 0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0;
+  return spectrum.bin_width * (static_cast<double>(best) + shift);
+}
+
+/// Amplitude of a line of that frequency in the residual, slips one after the other: |sum r e^(-i w t)|.
+double strength(const Observations& observations, std::span<const double> residual, double frequency) {
+  std::complex<double> total = 0;
+  for (const auto& slip : observations.slips) {
+    if (slip.record != 0 || slip.end == slip.begin) continue;
+    // Equal steps within a slip: one rotation a value.
+    const double step = (observations.time[slip.end - 1] - observations.time[slip.begin]) /
+                        static_cast<double>(std::max<std::size_t>(1, slip.end - slip.begin - 1));
+    std::complex<double> phasor = std::polar(1.0, -kTurn * frequency * observations.time[slip.begin]);
+    const std::complex<double> turn = std::polar(1.0, -kTurn * frequency * step);
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      total += observations.weight[i] * residual[i] * phasor;
+      phasor *= turn;
+    }
+  }
+  return std::abs(total);
+}
+
+}  // namespace
+
+double observation_rate(const Observations& observations) {
+  double slowest = 0;
+  for (const auto& slip : observations.slips) {
+    const std::size_t n = slip.end - slip.begin;
+    if (n < 3) continue;
+    const double rate = static_cast<double>(n - 2) / (observations.time[slip.end - 2] - observations.time[slip.begin]);
+    slowest = slowest > 0 ? std::min(slowest, rate) : rate;
+  }
+  return slowest;
+}
+
+double lowest_ringing(const Observations& observations) {
+  constexpr double kPeriods = 8;
+  std::vector<double> lengths;
+  for (const auto& slip : observations.slips) {
+    if (slip.from_stick && slip.end > slip.begin) {
+      lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
+    }
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle > 0 ? kPeriods / *middle : 0;
+}
+
+namespace {
+
+/// Adds to `series`, sampled at `rate` from time 0, what is left of a stick about a parabola.
+void add_stick(const Motion& motion, const Span& stick, double rate, std::vector<double>& series) {
+  const auto n = static_cast<Eigen::Index>(stick.size());
+  if (n < 20) return;
+  Eigen::MatrixXd design(n, 3);
+  Eigen::VectorXd mu(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double u = 2 * static_cast<double>(i) / static_cast<double>(n - 1) - 1;
+    design.row(i) << 1, u, u * u;
+    mu(i) = motion.friction[stick.begin + static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd left = mu - design * (design.transpose() * design).ldlt().solve(design.transpose() * mu);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>((motion.time[stick.begin + static_cast<std::size_t>(i)] - motion.time[0]) * rate);
+    if (at < series.size()) series[at] = left(i);
+  }
+}
+
+}  // namespace
+
+double noise_without_line(const Record& record, double noise) {
+  const Motion& motion = *record.motion;
+  if (motion.size() < 64 || !(motion.step > 0)) return noise;
+  constexpr std::size_t kMostSamples = 1 << 17;
+  std::vector<double> series(std::min(motion.size(), kMostSamples), 0.0);
+  double squares = 0;
+  std::size_t count = 0;
+  for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, 1 / motion.step, series);
+  for (const double x : series) {
+    squares += x * x;
+    count += x != 0 ? 1 : 0;
+  }
+  if (count < 1000) return noise;
+  const Spectrum spectrum = amplitude_spectrum(series, motion.step);
+  double peak = 0;
+  for (const double a : spectrum.amplitude) peak = std::max(peak, a);
+  // The line fills only the sticks.
+  const double amplitude = peak * static_cast<double>(series.size()) / static_cast<double>(count);
+  const double variance = squares / static_cast<double>(count), line = 0.5 * amplitude * amplitude;
+  if (line < 0.3 * variance) return noise;
+  return std::sqrt(std::max(noise * noise - line, 0.05 * noise * noise));
+}
+
+Line strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
+                    double lowest, double highest) {
+  Line line;
+  const Motion& motion = *record.motion;
+  const double rate = observation_rate(observations);
+  if (!(rate > 0) || observations.slips.empty()) return line;
+  highest = std::min(highest, 0.4 * rate);
+  constexpr double kMostSamples = 1 << 18;
+  const double length = std::min(motion.duration(), kMostSamples / rate);
+  const auto n = static_cast<std::size_t>(length * rate);
+  if (n < 64 || highest <= lowest) return line;
+  std::vector<double> series(n, 0.0);
+  for (const auto& slip : observations.slips) {
+    if (slip.record != 0) continue;
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      const auto at = static_cast<std::size_t>((observations.time[i] - motion.time[0]) * rate);
+      if (at < n) series[at] = residual[i];
+    }
+  }
+  for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, rate, series);
+  const double coarse = peak_frequency(amplitude_spectrum(series, 1 / rate), lowest, highest);
+  if (!(coarse > 0)) return line;
+  // The whole record resolves more finely than the stretch that was transformed.
+  const double width = 1.5 / length, fine = 0.1 / motion.duration();
+  double best = -1;
+  for (double f = coarse - width; f <= coarse + width; f += fine) {
+    const double s = strength(observations, residual, f);
+    if (s > best) {
+      best = s;
+      line.frequency = f;
+    }
+  }
+  line.places = std::max(1.0, (highest - lowest) * motion.duration());
+  return line;
+}
+
+Line strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
+  Line line;
+  const double rate = observation_rate(observations);
+  std::vector<double> lengths;
+  for (const auto& slip : observations.slips) {
+    if (slip.from_stick && slip.end > slip.begin) {
+      lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
+    }
+  }
+  if (!(rate > 0) || lengths.size() < 3) return line;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  const auto n = static_cast<std::size_t>(0.6 * *middle * rate);
+  if (n < 32) return line;
+  std::vector<double> total(n, 0.0), count(n, 0.0);
+  for (const auto& slip : observations.slips) {
+    if (!slip.from_stick) continue;
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      const auto at = static_cast<std::size_t>((observations.time[i] - slip.break_away_time) * rate);
+      if (at >= n) break;
+      total[at] += slip.direction * residual[i];
+      count[at] += 1;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) total[i] = count[i] > 0 ? total[i] / count[i] : 0;
+  // What is slower than the lowest frequency is the law's: take it out by a moving mean over one period.
+  const auto half = static_cast<std::size_t>(0.5 * rate / lowest);
+  std::vector<double> fast(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t begin = i - std::min(i, half), end = std::min(n, i + half + 1);
+    double mean = 0;
+    for (std::size_t k = begin; k < end; ++k) mean += total[k] / static_cast<double>(end - begin);
+    fast[i] = total[i] - mean;
+  }
+  // Padded, so that a short ring is resolved between bins.
+  fast.resize(8 * n, 0.0);
+  line.frequency = peak_frequency(amplitude_spectrum(std::span(fast).first(n), 1 / rate), lowest, 0.45 * rate);
+  line.places = static_cast<double>(n) / 2;
+  return line;
+}
+
+}  // namespace tribofit::diagnosis

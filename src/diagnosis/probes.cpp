@@ -1,0 +1,344 @@
+#include "probes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "lines.hpp"
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Straight lines between knots: the weights of x on them.
+class Hats {
+ public:
+  Hats(std::vector<double> knots) : knots_(std::move(knots)) {}
+  Eigen::Index count() const { return static_cast<Eigen::Index>(knots_.size()); }
+  const std::vector<double>& knots() const { return knots_; }
+
+  Eigen::RowVectorXd operator()(double x) const {
+    Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(count());
+    const auto next = std::upper_bound(knots_.begin(), knots_.end(), x);
+    if (next == knots_.begin()) {
+      out(0) = 1;
+    } else if (next == knots_.end()) {
+      out(count() - 1) = 1;
+    } else {
+      const auto k = static_cast<Eigen::Index>(next - knots_.begin());
+      const double u = (x - *(next - 1)) / (*next - *(next - 1));
+      out(k - 1) = 1 - u;
+      out(k) = u;
+    }
+    return out;
+  }
+
+ private:
+  std::vector<double> knots_;
+};
+
+std::vector<double> even_knots(double first, double last, int count) {
+  std::vector<double> knots;
+  for (int k = 0; k < count; ++k) knots.push_back(first + (last - first) * k / (count - 1));
+  return knots;
+}
+
+double middle_time(const Observations& observations, const Observations::Range& slip) {
+  return 0.5 * (observations.time[slip.begin] + observations.time[slip.end - 1]);
+}
+
+/// Columns of a probe for slip k: one row a value and one for the break-away.
+using Columns = ModelResiduals::FurtherColumns;
+
+/// A design in preparation: what all builders need of the coarse trial.
+struct Ground {
+  const Observations& observations;
+  std::vector<std::vector<double>> mu;  ///< |model| at every value of each slip
+  std::vector<double> level;            ///< |model| at break-away
+};
+
+Ground ground_of(const Observations& observations, const Trial& trial) {
+  Ground out{observations, {}, {}};
+  for (const auto& range : observations.slips) {
+    const Slip slip = observations.slip(range);
+    std::vector<double> mu(slip.size());
+    evaluate<double>(trial.model, trial.p.data(), slip, slip.velocity, mu);
+    for (double& x : mu) x *= range.direction;
+    out.mu.push_back(std::move(mu));
+    out.level.push_back(range.from_stick ? break_away_level(trial.model, trial.p.data(), slip) : 0);
+  }
+  return out;
+}
+
+/// Columns from a function of (slip, value) that returns what each coefficient adds to |mu|; value == size of the slip
+/// asks for the break-away. The residual falls by it.
+template <class Row>
+Columns columns_of(const Observations& observations, Eigen::Index count, Row row) {
+  return [&observations, count, row](std::size_t k) {
+    const auto& range = observations.slips[k];
+    const std::size_t n = range.end - range.begin;
+    Eigen::MatrixXd out(static_cast<Eigen::Index>(n + (range.from_stick ? 1 : 0)), count);
+    for (std::size_t i = 0; i < n; ++i) out.row(static_cast<Eigen::Index>(i)) = -range.direction * row(k, i);
+    if (range.from_stick) out.row(static_cast<Eigen::Index>(n)) = -row(k, n);
+    return out;
+  };
+}
+
+/// Judges a probe and returns its coefficients.
+Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial& trial, const Columns& columns,
+                            double places, Probe& probe) {
+  const Observations& observations = level.observations;
+  std::vector<std::size_t> all(observations.slips.size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  ModelResiduals residuals(trial.model, observations, all);
+  if (trial.whitening.part > 0) residuals.whiten(trial.whitening);
+  Linearised wide;
+  wide.rows = residuals.white_rows(trial.p.data(), columns);
+  if (!wide.finite()) return {};
+  const auto width = static_cast<std::size_t>(wide.rows[0].cols() - 1), own = trial.p.size();
+  wide.free = trial.linear.free;
+  wide.free.resize(width, true);
+  const Eigen::VectorXd step = gauss_newton_step(wide);
+  const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
+  const double after = sum(squares_after(wide, step));
+  probe.fall = sum(held_out_squares(trial.linear, bench.blocks)) - sum(held_out_squares(wide, bench.blocks));
+  for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
+  const double noise = after / level.values;
+  double design = 1;
+  for (std::size_t k = own; k < width; ++k) design = std::max(design, design_effect(wide, k, noise));
+  const double freedom = std::max(3.0, 0.4 * std::pow(static_cast<double>(wide.rows.size()), 2.0 / 3));
+  probe.p_value = std::min(1.0, places * fall_p_value(before - after, width - own, noise, design, freedom));
+  return step.tail(static_cast<Eigen::Index>(width - own));
+}
+
+Probe over_velocity(const Bench& bench, const Trial& trial) {
+  const Observations& o = bench.coarse.observations;
+  const Hats hats(even_knots(0, o.fastest, 12));
+  Probe probe;
+  probe.variable = "velocity";
+  const auto row = [&o, &hats](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    const bool at_rest = range.begin + i == range.end;
+    return hats(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
+  };
+  const Eigen::VectorXd found =
+      judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  probe.at = hats.knots();
+  probe.value.assign(found.data(), found.data() + found.size());
+  return probe;
+}
+
+Probe over_branch(const Bench& bench, const Trial& trial) {
+  const Observations& o = bench.coarse.observations;
+  const Hats hats(even_knots(0, o.fastest, 6));
+  Probe probe;
+  probe.variable = "branch";
+  std::vector<std::size_t> peak;
+  for (const auto& range : o.slips) {
+    std::size_t best = range.begin;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (std::abs(o.velocity[i]) > std::abs(o.velocity[best])) best = i;
+    }
+    peak.push_back(best);
+  }
+  const auto row = [&](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    const std::size_t at = range.begin + i;
+    if (at == range.end) return hats(0);
+    const double sign = at < peak[k] ? 1 : -1;
+    return Eigen::RowVectorXd(sign * hats(std::abs(o.velocity[at])));
+  };
+  judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  return probe;
+}
+
+/// Columns that scale |mu| of a whole slip by functions of the slip.
+template <class Functions>
+Columns scaling(const Ground& ground, Eigen::Index count, Functions functions) {
+  return columns_of(ground.observations, count, [&ground, functions](std::size_t k, std::size_t i) {
+    const bool at_rest = i == ground.mu[k].size();
+    return Eigen::RowVectorXd((at_rest ? ground.level[k] : ground.mu[k][i]) * functions(k, i));
+  });
+}
+
+/// Period of the strongest swing of the levels of the slips over time, and the number of periods looked at.
+std::pair<double, double> strongest_swing(const Ground& ground) {
+  const Observations& o = ground.observations;
+  std::vector<double> times, levels, weights;
+  double mean = 0, total = 0;
+  for (std::size_t k = 0; k < o.slips.size(); ++k) {
+    const auto& range = o.slips[k];
+    if (range.record != 0 || range.end == range.begin) continue;
+    double up = 0, down = 0;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const double mu = ground.mu[k][i - range.begin];
+      up += o.weight[i] * mu * (range.direction * o.friction[i] - mu);
+      down += o.weight[i] * mu * mu;
+    }
+    if (!(down > 0)) continue;
+    times.push_back(middle_time(o, range));
+    levels.push_back(up / down);
+    weights.push_back(down);
+    mean += up;
+    total += down;
+  }
+  if (times.size() < 12) return {0, 1};
+  mean /= total;
+  const double span = times.back() - times.front();
+  const double highest = 0.35 * static_cast<double>(times.size()) / span;
+  const double step = 0.1 / span;
+  double best = -1, frequency = 0;
+  for (double f = 0.8 / span; f < highest; f += step) {
+    std::complex<double> swing = 0;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      swing += weights[k] * (levels[k] - mean) * std::polar(1.0, -kTurn * f * times[k]);
+    }
+    if (std::abs(swing) > best) {
+      best = std::abs(swing);
+      frequency = f;
+    }
+  }
+  return {frequency > 0 ? 1 / frequency : 0, highest * span};
+}
+
+Probe over_time(const Bench& bench, const Trial& trial, const Ground& ground) {
+  const Observations& o = bench.coarse.observations;
+  Probe probe;
+  probe.variable = "time";
+  const auto [period, places] = strongest_swing(ground);
+  std::vector<double> lasts(bench.records.size(), 0.0);
+  for (const auto& range : o.slips) lasts[range.record] = std::max(lasts[range.record], o.time[range.end - 1]);
+  constexpr int kCosines = 4;
+  const bool swings = period > 0;
+  const double turn = swings ? kTurn / period : 0;
+  const auto functions = [&, swings, turn](std::size_t k, std::size_t /*i*/) {
+    const auto& range = o.slips[k];
+    const double t = middle_time(o, range);
+    Eigen::RowVectorXd out(kCosines + (swings ? 2 : 0));
+    for (int c = 0; c < kCosines; ++c) out(c) = std::cos(std::numbers::pi * (c + 1) * t / lasts[range.record]);
+    if (swings) {
+      out(kCosines) = std::cos(turn * t);
+      out(kCosines + 1) = std::sin(turn * t);
+    }
+    return out;
+  };
+  const Eigen::VectorXd found = judge_probe(bench, bench.coarse, trial,
+                                            scaling(ground, kCosines + (swings ? 2 : 0), functions), places, probe);
+  if (swings && found.size() == kCosines + 2) {
+    probe.period = period;
+    probe.value = {std::hypot(found(kCosines), found(kCosines + 1)), std::atan2(found(kCosines), found(kCosines + 1))};
+  }
+  return probe;
+}
+
+std::optional<Probe> over_angle(const Bench& bench, const Trial& trial, const Ground& ground) {
+  const Observations& o = bench.coarse.observations;
+  if (o.angle.empty()) return std::nullopt;
+  const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
+  if (*most - *least < 2 * kTurn) return std::nullopt;
+  constexpr int kHarmonics = 6;
+  Probe probe;
+  probe.variable = "angle";
+  const auto functions = [&o](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    const double angle = o.angle[std::min(range.begin + i, range.end - 1)];
+    Eigen::RowVectorXd out(2 * kHarmonics);
+    for (int h = 0; h < kHarmonics; ++h) {
+      out(2 * h) = std::cos((h + 1) * angle);
+      out(2 * h + 1) = std::sin((h + 1) * angle);
+    }
+    return out;
+  };
+  judge_probe(bench, bench.coarse, trial, scaling(ground, 2 * kHarmonics, functions), 1, probe);
+  return probe;
+}
+
+std::optional<Probe> over_load(const Bench& bench, const Trial& trial, const Ground& ground) {
+  const Observations& o = bench.coarse.observations;
+  if (o.load.empty()) return std::nullopt;
+  const auto [least, most] = std::minmax_element(o.load.begin(), o.load.end());
+  if (*most - *least < 0.03 * std::abs(o.mean_load)) return std::nullopt;
+  const Hats hats(even_knots(*least, *most, 4));
+  Probe probe;
+  probe.variable = "load";
+  const auto functions = [&](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    return hats(o.load[std::min(range.begin + i, range.end - 1)]);
+  };
+  judge_probe(bench, bench.coarse, trial, scaling(ground, hats.count(), functions), 1, probe);
+  return probe;
+}
+
+/// A slip that breaks away higher was loaded for longer: only stick times that differ for another reason say anything.
+std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
+  const Observations& o = bench.coarse.observations;
+  std::vector<double> sticks;
+  for (const auto& range : o.slips) {
+    if (std::isfinite(range.stick_time) && range.stick_time > 0) sticks.push_back(std::log(range.stick_time));
+  }
+  if (sticks.size() < 12) return std::nullopt;
+  std::sort(sticks.begin(), sticks.end());
+  const double low = sticks[sticks.size() / 20], high = sticks[sticks.size() - 1 - sticks.size() / 20];
+  if (high - low < std::log(2.5)) return std::nullopt;
+  const Hats hats(even_knots(low, high, 4));
+  Probe probe;
+  probe.variable = "stick-time";
+  const auto row = [&](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    const bool known = std::isfinite(range.stick_time) && range.stick_time > 0;
+    const bool at_rest = range.begin + i == range.end;
+    // What a higher break-away does to the slip fades with speed as the law does.
+    const double speed = at_rest ? 0 : std::abs(o.velocity[range.begin + i]);
+    const double fade = trial.model.base_count() == 3 ? std::exp(-trial.p[2] * speed) : (at_rest ? 1 : 0);
+    return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? std::log(range.stick_time) : low));
+  };
+  judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  return probe;
+}
+
+std::optional<Probe> over_frequency(const Bench& bench, const Trial& fine, std::span<const double> residual) {
+  const Observations& o = bench.fine.observations;
+  const Line line = strongest_line(bench.records[0], o, residual, 2, 0.4 * observation_rate(o));
+  if (!(line.frequency > 0)) return std::nullopt;
+  Probe probe;
+  probe.variable = "frequency";
+  probe.period = 1 / line.frequency;
+  const auto columns = [&o, &line](std::size_t k) {
+    const auto& range = o.slips[k];
+    const auto n = static_cast<Eigen::Index>(range.end - range.begin);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + (range.from_stick ? 1 : 0), 2);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double phase = kTurn * line.frequency * o.time[range.begin + static_cast<std::size_t>(i)];
+      out.row(i) << std::cos(phase), std::sin(phase);
+    }
+    return out;
+  };
+  judge_probe(bench, bench.fine, fine, columns, line.places, probe);
+  return probe;
+}
+
+}  // namespace
+
+std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Trial& fine,
+                             std::span<const double> residual) {
+  const Ground ground = ground_of(bench.coarse.observations, coarse);
+  std::vector<Probe> out;
+  const auto add = [&](std::optional<Probe> probe) {
+    if (probe) out.push_back(std::move(*probe));
+  };
+  add(over_velocity(bench, coarse));
+  add(over_branch(bench, coarse));
+  add(over_time(bench, coarse, ground));
+  add(over_angle(bench, coarse, ground));
+  add(over_stick_time(bench, coarse));
+  add(over_load(bench, coarse, ground));
+  add(over_frequency(bench, fine, residual));
+  return out;
+}
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "trial.hpp"
+
+namespace tribofit::diagnosis {
+
+/// A free function of one variable laid on top of a model: what it takes away of the error goes with that variable,
+/// whatever the effect behind it may be.
+struct Probe {
+  std::string variable;
+  double fall = 0;     ///< of the squares on held-out cycles
+  double p_value = 1;  ///< not corrected for the number of variables
+  double period = 0;   ///< of the strongest swing over time [s], or 1/frequency of the strongest line; else 0
+  std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|
+};
+
+/// Every variable that these data can tell apart: velocity, branch, time, angle, stick-time, load, frequency.
+/// trial: at the coarse level of the bench.
+std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Trial& fine,
+                             std::span<const double> residual);
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,184 @@
+#include "trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fit/starts.hpp"
+#include "tribofit/fit/solver.hpp"
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+std::vector<std::size_t> all_slips(const Observations& observations) {
+  std::vector<std::size_t> slips(observations.slips.size());
+  std::iota(slips.begin(), slips.end(), std::size_t{0});
+  return slips;
+}
+
+ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
+                            const ModelResiduals::Whitening& whitening) {
+  ModelResiduals residuals(model, observations, all_slips(observations));
+  if (whitening.part > 0) residuals.whiten(whitening);
+  return residuals;
+}
+
+/// Adds what each cycle pays for the scatter of break-away.
+void pay_for_scatter(const ModelResiduals::Whitening& whitening, std::vector<double>& squares) {
+  for (std::size_t c = 0; c < std::min(squares.size(), whitening.log_spread.size()); ++c) {
+    squares[c] += whitening.noise * whitening.log_spread[c];
+  }
+}
+
+/// Fills what a trial says from its parameters.
+void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
+  trial.linear.rows = residuals.white_rows(trial.p.data());
+  trial.usable = trial.linear.finite();
+  if (!trial.usable) return;
+  const std::size_t n = trial.p.size();
+  trial.at_bound.assign(n, false);
+  trial.linear.free.assign(n, true);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double tolerance = 1e-3 * (bounds.upper[k] - bounds.lower[k]);
+    trial.at_bound[k] = trial.p[k] <= bounds.lower[k] + 1e-3 * tolerance || trial.p[k] >= bounds.upper[k] - tolerance;
+    trial.linear.free[k] = !trial.at_bound[k];
+  }
+  std::vector<double> squares =
+      squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
+  trial.held_out = held_out_squares(trial.linear, blocks);
+  pay_for_scatter(trial.whitening, squares);
+  pay_for_scatter(trial.whitening, trial.held_out);
+  trial.squares = sum(squares);
+  trial.held_out_squares = sum(trial.held_out);
+}
+
+SolverOptions quick_search(int iterations) {
+  SolverOptions options;
+  options.max_iterations = iterations;
+  options.relative_cost = 1e-5;  // far below what a comparison can see
+  options.relative_step = 1e-7;
+  options.careful = false;
+  return options;
+}
+
+/// A full turn more or less is the same phase.
+void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
+  constexpr double kPi = 3.14159265358979323846;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (model.parameters()[k].parameter.unit == "rad") p[k] = std::remainder(p[k], 2 * kPi);
+  }
+}
+
+}  // namespace
+
+Level::Level(const Observations& given)
+    : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
+
+Bench::Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double noise)
+    : records(given), fine(finely), coarse(coarsely), blocks(finely.cycles), floor_noise(noise) {}
+
+Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start) {
+  Trial trial;
+  trial.model = model;
+  const Observations& observations = level.observations;
+  const Bounds bounds = bounds_of(model, observations);
+  trial.whitening = residuals_of(observations, model, {}).whitening_at(start.data());
+  const ModelResiduals residuals = residuals_of(observations, model, trial.whitening);
+  trial.p = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(20)).p;
+  wrap_phases(model, trial.p);
+  judge(bench.blocks, residuals, bounds, trial);
+  return trial;
+}
+
+Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model) {
+  const Bounds bounds = bounds_of(model, level.observations);
+  const ModelResiduals plain = residuals_of(level.observations, model, {});
+  const std::vector<double> start = start_from_data(model, level.observations, bounds);
+  Trial trial = try_model(bench, level, model,
+                          minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
+  // Scatter is known better once it has been taken out.
+  return trial.usable ? try_model(bench, level, model, trial.p) : trial;
+}
+
+std::vector<double> residual_of(const Bench& bench, const Trial& trial) {
+  const Observations& observations = bench.fine.observations;
+  std::vector<double> residual(observations.size()), mu;
+  for (const auto& range : observations.slips) {
+    const Slip slip = observations.slip(range);
+    mu.resize(slip.size());
+    evaluate<double>(trial.model, trial.p.data(), slip, slip.velocity, mu);
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      residual[range.begin + i] = observations.friction[range.begin + i] - mu[i];
+    }
+  }
+  return residual;
+}
+
+FrictionModel with_effect(const FrictionModel& model, const Effect& effect) {
+  std::vector<Effect> effects(model.effects().begin(), model.effects().end());
+  effects.push_back(effect);
+  return FrictionModel(model.law(), std::move(effects));
+}
+
+Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
+                   std::span<const double> residual, double least) {
+  const FrictionModel model = with_effect(base.model, candidate.effect);
+  const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
+  const Bounds bounds = bounds_of(model, level.observations);
+  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
+  const double now = sum(squares_after(base.linear, stay));
+
+  // Parameters of the new effect lie somewhere among the others: the model has an order of its own.
+  std::size_t offset = model.base_count();
+  for (std::size_t k = 0; k < model.effects().size(); ++k) {
+    if (describe(model.effects()[k]).key == candidate.info.key) offset = model.offset(k);
+  }
+  const std::size_t added = candidate.info.parameters.size();
+  const Starts starts = starts_of(candidate, bench.records, bench.fine.observations, residual);
+
+  Opening opening;
+  opening.places = starts.places;
+  double best_score = 0, best_promise = 0;
+  for (const auto& values : starts.values) {
+    std::vector<double> start;
+    std::size_t from_base = 0;
+    for (std::size_t k = 0; k < base.p.size() + added; ++k) {
+      const bool own = k >= offset && k < offset + added;
+      start.push_back(own ? values[k - offset] : base.p[from_base]);
+      if (!own) ++from_base;
+      start.back() = std::clamp(start.back(), bounds.lower[k], bounds.upper[k]);
+    }
+    Linearised linear;
+    linear.rows = residuals.white_rows(start.data());
+    if (!linear.finite()) continue;
+    linear.free.assign(start.size(), true);
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(start.size()));
+    const double here = sum(squares_after(linear, nothing));
+    const double promise = sum(squares_after(linear, gauss_newton_step(linear)));
+    // A linear step promises the same from every phase; the start that is lower now is the nearer one.
+    const double score = promise + 1e-2 * here;
+    if (opening.start.empty() || score < best_score) {
+      best_score = score;
+      best_promise = std::min(promise, here);
+      opening.start = start;
+    }
+  }
+  if (now - best_promise < least) opening.start.clear();
+  return opening;
+}
+
+Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect) {
+  std::vector<Effect> effects;
+  std::vector<double> start(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
+  for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
+    if (k == effect) continue;
+    effects.push_back(full.model.effects()[k]);
+    const std::size_t count = describe(effects.back()).parameters.size();
+    for (std::size_t i = 0; i < count; ++i) start.push_back(full.p[full.model.offset(k) + i]);
+  }
+  return try_model(bench, level, FrictionModel(full.model.law(), effects), std::move(start));
+}
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "candidates.hpp"
+#include "evidence.hpp"
+#include "tribofit/fit/fit.hpp"
+
+namespace tribofit::diagnosis {
+
+/// A model fitted to the observations, with what it leaves.
+///
+/// Squares are whitened against the scatter of break-away as this model sees it, and every cycle pays noise log(1 + s^2
+/// g'g/noise) for that scatter: minus twice the logarithm of the likelihood in units of the noise, so that models that
+/// see less scatter are the better ones.
+struct Trial {
+  FrictionModel model{BaseLaw::exponential};
+  std::vector<double> p;  ///< SI
+  std::vector<bool> at_bound;
+  bool usable = false;            ///< finite
+  ModelResiduals::Whitening whitening;
+  Linearised linear;              ///< at p
+  std::vector<double> held_out;   ///< squares of each cycle, from parameters that the other blocks suggest
+  double squares = 0;             ///< of all cycles, at p
+  double held_out_squares = 0;    ///< sum of held_out
+};
+
+/// The observations at one resolution.
+struct Level {
+  const Observations& observations;
+  double values = 0;   ///< rows of the problem, over which the noise of a row is taken
+  double samples = 0;  ///< behind them
+
+  explicit Level(const Observations& given);
+};
+
+/// What all trials of one diagnosis share.
+struct Bench {
+  std::span<const Record> records;
+  Level fine;    ///< what models are judged by
+  Level coarse;  ///< fewer values a slip: where a search begins, and where the hopeless are found out
+  Blocks blocks;
+  double floor_noise = 0;  ///< sensor noise of a sample [1 or N]
+
+  Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double noise);
+  /// Squares that sensor noise leaves.
+  double floor_squares() const { return fine.samples * floor_noise * floor_noise; }
+};
+
+/// Fits a model from a start, with the scatter of break-away as the model sees it there.
+Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start);
+
+/// Fits a model from the data alone.
+Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model);
+
+/// What the model of a trial leaves at each value of the fine observations [1 or N].
+std::vector<double> residual_of(const Bench& bench, const Trial& trial);
+
+/// Where one effect more begins to lower what a trial leaves.
+struct Opening {
+  std::vector<double> start;  ///< of all parameters [SI]; empty: no start promises a fall of the squares by `least`
+  double places = 1;          ///< independent places that were looked at
+};
+
+/// The best of the starts of an effect beside the model of `base`, a trial at `level`.
+/// residual: see residual_of.
+Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
+                   std::span<const double> residual, double least);
+
+/// The model of a trial with one effect more.
+FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
+
+/// The trial's model without one of its effects.
+Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect);
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,340 @@
+#include "tribofit/ingest/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "column_names.hpp"
+#include "dialect.hpp"
+#include "encoding.hpp"
+#include "input_file.hpp"
+#include "spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Role { file, radius, speed, load, repeat, other };
+
+constexpr std::string_view kColumns = "the columns are file, radius, speed, load, repeat and others of your own";
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Role role_of(const ColumnName& name) {
+  if (is_one_of(name.base, {"file", "filename", "trace", "path", "datei"})) return Role::file;
+  if (is_one_of(name.base, {"radius", "r", "frictionradius", "reibradius"})) return Role::radius;
+  if (is_one_of(name.base, {"repeat", "repetition", "replicate", "rep", "wiederholung"})) return Role::repeat;
+  if (name_rank(name.base, Channel::speed, std::nullopt) != no_rank) return Role::speed;
+  if (name_rank(name.base, Channel::load, std::nullopt) != no_rank) return Role::load;
+  return Role::other;
+}
+
+Quantity quantity_of(Role role) {
+  if (role == Role::radius) return Quantity::length;
+  return role == Role::speed ? Quantity::angular_velocity : Quantity::force;
+}
+
+/// Whether `name` fits a pattern of literal bytes, * (any run of them) and ? (any one).
+bool fits(std::string_view pattern, std::string_view name) {
+  std::size_t p = 0, n = 0, star = std::string_view::npos, behind = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      behind = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++behind;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+/// Names of the files of a folder, sorted; hidden ones and the manifest left out.
+std::vector<std::string> files_of(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.front() != '.' && name != manifest_name && !it->is_directory(error)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& folder) : folder_(folder) { manifest_.path = (folder_ / manifest_name).string(); }
+
+  Manifest read() {
+    const InputFile file(manifest_.path);
+    const std::string text = text_of(file);
+    std::size_t number = 0;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      const std::string_view line = std::string_view(text).substr(at, end - at);
+      at = end + 1;
+      ++number;
+      if (line.find_first_not_of(",;\t \r\"") == std::string_view::npos || trimmed(line).front() == '#') continue;
+      if (columns_.empty()) {
+        read_header(line, number);
+      } else {
+        read_row(line, number);
+      }
+    }
+    if (columns_.empty()) refuse("has no header", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
+    if (manifest_.rows.empty()) refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
+    note_others();
+    return std::move(manifest_);
+  }
+
+ private:
+  struct ManifestColumn {
+    std::string name;  // as the file gives it
+    Role role;
+    std::string unit;  // empty: in the cells
+  };
+
+  [[noreturn]] void refuse(std::string problem, std::string advice, std::size_t line, std::string column = {}) const {
+    throw InputError(std::move(problem), std::move(advice), {manifest_.path, line, std::move(column)});
+  }
+
+  std::string text_of(const InputFile& file) const {
+    constexpr std::uint64_t kLargest = 1 << 24;
+    if (file.size() > kLargest) refuse("is too large for a manifest", "one row a run is meant", 0);
+    std::string bytes(static_cast<std::size_t>(file.size()), '\0');
+    bytes.resize(file.read(0, bytes));
+    if (bytes.empty()) refuse("is empty", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
+    refuse_unless_text(bytes, manifest_.path);
+    return to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
+  }
+
+  void read_header(std::string_view line, std::size_t number) {
+    for (const char candidate : {',', ';', '\t'}) {
+      if (std::count(line.begin(), line.end(), candidate) > std::count(line.begin(), line.end(), separator_)) {
+        separator_ = candidate;
+      }
+    }
+    for (const std::string& cell : split_cells(line, separator_)) add_column(cell, number);
+    if (count(Role::file) == 1) return;
+    std::vector<std::string> names;
+    for (const ManifestColumn& column : columns_) {
+      if (likely_name("file", std::vector{lower_case(column.name)}).empty()) continue;
+      names.push_back(column.name);
+    }
+    refuse("there is no column 'file'" + (names.empty() ? "" : " (is it '" + names.front() + "'?)"),
+           fmt::format("name the column of the traces' names 'file'; {}", kColumns), number);
+  }
+
+  std::size_t count(Role role) const {
+    return static_cast<std::size_t>(
+        std::count_if(columns_.begin(), columns_.end(), [&](const ManifestColumn& c) { return c.role == role; }));
+  }
+
+  void add_column(const std::string& text, std::size_t line) {
+    const ColumnName name = parse_column_name(text);
+    ManifestColumn column{text, role_of(name), ""};
+    const bool measured = column.role == Role::radius || column.role == Role::speed || column.role == Role::load;
+    if (measured) column.unit = name.unit.value_or(names_rpm(name.base) ? "rpm" : "");
+    if (measured && !column.unit.empty()) check_unit(column, line);
+    if (column.role != Role::other && count(column.role) > 0) {
+      refuse(fmt::format("a second column of the same kind as '{}'", named(column.role)), "keep one of them", line,
+             text);
+    }
+    columns_.push_back(std::move(column));
+  }
+
+  const std::string& named(Role role) const {
+    return std::find_if(columns_.begin(), columns_.end(), [&](const ManifestColumn& c) { return c.role == role; })
+        ->name;
+  }
+
+  void check_unit(const ManifestColumn& column, std::size_t line) const {
+    const Quantity quantity = quantity_of(column.role);
+    const std::string example =
+        fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity));
+    const auto unit = find_unit(column.unit);
+    if (!unit) {
+      const std::string nearest = suggest_unit(column.unit);
+      refuse(fmt::format("unknown unit '{}'", column.unit),
+             nearest.empty() ? example : fmt::format("did you mean {}? {}", nearest, example), line, column.name);
+    }
+    if (!find_unit(column.unit, quantity)) {
+      refuse(fmt::format("'{}' is a unit of {}, not of {}", column.unit, with_article(to_string(unit->quantity)),
+                         with_article(to_string(quantity))),
+             example, line, column.name);
+    }
+  }
+
+  void read_row(std::string_view line, std::size_t number) {
+    std::vector<std::string> cells = split_cells(line, separator_);
+    while (cells.size() > columns_.size() && cells.back().empty()) cells.pop_back();
+    if (cells.size() > columns_.size()) {
+      refuse(
+          fmt::format("the row has {} cells where the header has {} columns", cells.size(), columns_.size()),
+          separator_ == ',' ? "remove the extra cells; write numbers with a decimal point" : "remove the extra cells",
+          number);
+    }
+    cells.resize(columns_.size());
+    ManifestRow row;
+    row.line = number;
+    std::string file;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const ManifestColumn& column = columns_[k];
+      if (column.role == Role::file) file = cells[k];
+      if (cells[k].empty()) continue;
+      if (column.role == Role::radius) row.conditions.radius = condition(cells[k], column, number);
+      if (column.role == Role::speed) row.conditions.speed = condition(cells[k], column, number);
+      if (column.role == Role::load) row.conditions.load = condition(cells[k], column, number);
+      if (column.role == Role::repeat) row.repeat = repeat(cells[k], column, number);
+      if (column.role == Role::other) row.others.push_back({column.name, cells[k]});
+    }
+    if (file.empty()) refuse("the row names no file", "fill in the file or remove the row", number, named(Role::file));
+    add_runs(file, row);
+  }
+
+  Condition condition(std::string text, const ManifestColumn& column, std::size_t line) {
+    constexpr double kLargestRadius = 10;  // m; more is a forgotten unit
+    if (separator_ != ',') text = replaced(text, ",", ".");
+    const Quantity quantity = quantity_of(column.role);
+    const bool bare = text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
+    if (bare && column.unit.empty() && column.role != Role::load) {
+      refuse(fmt::format("'{}' has no unit", text),
+             fmt::format("write it as {}, or the unit in the header as '{}'", example_of(quantity),
+                         column.role == Role::radius ? "radius [mm]" : "speed [rpm]"),
+             line, column.name);
+    }
+    if (bare && column.unit.empty()) bare_loads_ = true;
+    double value = 0;
+    try {
+      value = parse_quantity(text, quantity, column.name, column.unit);
+    } catch (const InputError& error) {
+      refuse(error.problem().substr(column.name.size() + 2), error.advice(), line, column.name);
+    }
+    if (!(value > 0) || (column.role == Role::radius && value > kLargestRadius)) {
+      refuse(fmt::format("'{}' {}", text, value > 0 ? "would be more than 10 m" : "is not greater than zero"),
+             fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)), line,
+             column.name);
+    }
+    return {value, "manifest"};
+  }
+
+  int repeat(const std::string& text, const ManifestColumn& column, std::size_t line) const {
+    int value = 0;
+    const char* end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc{} || last != end || value < 0) {
+      refuse(fmt::format("'{}' is not a whole number", text), "number the repeats of a condition 1, 2, 3", line,
+             column.name);
+    }
+    return value;
+  }
+
+  void add_runs(const std::string& file, const ManifestRow& row) {
+    const fs::path path = folder_ / file;  // an absolute name stays as it is
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+      refuse(fmt::format("'{}' is a folder", file), "name a file, or several as in runs/*.csv", row.line,
+             named(Role::file));
+    }
+    if (fs::exists(path, ignored)) return add_run(path.string(), row);
+    const std::vector<std::string> names = files_of(path.parent_path());
+    const std::string last = path.filename().string();
+    if (last.find_first_of("*?") == std::string::npos) {
+      refuse(fmt::format("'{}' does not exist{}", file, did_you_mean(last, names)),
+             "names are relative to the folder of the manifest", row.line, named(Role::file));
+    }
+    std::size_t found = 0;
+    for (const std::string& name : names) {
+      if (!fits(last, name)) continue;
+      if (++found > 1 && row.repeat) {
+        refuse(fmt::format("'{}' fits several files, which cannot all be repeat {}", file, *row.repeat),
+               "leave the repeat empty or list the files one by one", row.line, named(Role::repeat));
+      }
+      add_run((path.parent_path() / name).string(), row);
+    }
+    if (found == 0) {
+      refuse(fmt::format("no file fits '{}'", file), "names are relative to the folder of the manifest", row.line,
+             named(Role::file));
+    }
+  }
+
+  void add_run(std::string path, ManifestRow row) {
+    std::error_code ignored;
+    const fs::path identity = fs::weakly_canonical(path, ignored);
+    for (std::size_t k = 0; k < identities_.size(); ++k) {
+      if (identities_[k] != identity) continue;
+      const ManifestRow& earlier = manifest_.rows[k];
+      const std::string name = fs::path(path).filename().string();
+      if (same_conditions(earlier, row) && earlier.repeat == row.repeat) {
+        refuse(fmt::format("'{}' is listed twice, in line {} and here", name, earlier.line), "remove one of the rows",
+               row.line, named(Role::file));
+      }
+      refuse(fmt::format("'{}' has other conditions here than in line {}", name, earlier.line),
+             "keep the row that is right", row.line, named(Role::file));
+    }
+    identities_.push_back(identity);
+    row.path = std::move(path);
+    manifest_.rows.push_back(std::move(row));
+  }
+
+  void note_others() {
+    std::vector<std::string> others;
+    for (const ManifestColumn& column : columns_) {
+      if (column.role == Role::other && !column.name.empty()) others.push_back(column.name);
+    }
+    if (!others.empty()) {
+      manifest_.notes.push_back(fmt::format("{}: further conditions: {}", manifest_.path, listed(others)));
+    }
+    if (bare_loads_) manifest_.notes.push_back(fmt::format("{}: loads without a unit are in N", manifest_.path));
+  }
+
+  fs::path folder_;
+  Manifest manifest_;
+  char separator_ = ',';
+  std::vector<ManifestColumn> columns_;
+  std::vector<fs::path> identities_;  // of the rows
+  bool bare_loads_ = false;
+};
+
+bool same(const Condition& a, const Condition& b) {
+  if (!a.known() || !b.known()) return a.known() == b.known();
+  constexpr double kRounding = 1e-9;  // 4 rpm and 0.419 rad/s written out
+  return std::abs(a.value - b.value) <= kRounding * std::abs(a.value);
+}
+
+}  // namespace
+
+Manifest read_manifest(const std::string& folder) {
+  return Reader(folder).read();
+}
+
+bool same_conditions(const ManifestRow& a, const ManifestRow& b) {
+  const auto same_text = [](const OtherCondition& x, const OtherCondition& y) {
+    return x.name == y.name && x.value == y.value;
+  };
+  return same(a.conditions.radius, b.conditions.radius) && same(a.conditions.speed, b.conditions.speed) &&
+         same(a.conditions.load, b.conditions.load) &&
+         std::equal(a.others.begin(), a.others.end(), b.others.begin(), b.others.end(), same_text);
+}
+
+}  // namespace tribofit

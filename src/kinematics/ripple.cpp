@@ -1,0 +1,294 @@
+#include "ripple.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "reductions.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+constexpr int largest_order = 6;
+constexpr double least_revolutions = 1.95;  // between the middles of the first and the last rest
+constexpr std::size_t least_rests = 12;
+constexpr double least_amplitude = 0.005, largest_amplitude = 0.25;
+constexpr double significance = 6;       // standard errors
+constexpr double least_explained = 0.5;  // of the variance of the levels
+constexpr double least_per_period = 4;   // rests in a period
+
+struct Level {
+  double begin = 0, end = 0;  // [s]
+  double value = 0;           // [m/s]
+  double fall = 0;            // of the plateau from the first to the second half of its middle [m/s]
+  double mean = 0, last = 0;  // friction in the middle and towards its end
+  bool used = true;
+};
+
+double mean_of(std::span<const double> values) {
+  return sum_of(values, [](double v) { return v; }) / static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
+std::vector<Level> levels_of(const BlockMeans& velocity, const Rests& rests, std::span<const double> time,
+                             std::span<const double> friction) {
+  std::vector<double> sizes;
+  for (const Rest& run : rests.runs) sizes.push_back(static_cast<double>(run.size()));
+  const double least = 0.25 * median(std::move(sizes));
+  std::vector<Level> levels;
+  for (const Rest& run : rests.runs) {
+    const std::size_t begin = run.inner_begin() * velocity.length, end = run.inner_end() * velocity.length;
+    if (static_cast<double>(run.size()) < least || end <= begin || end > time.size()) continue;
+    Level level{time[begin], time[end - 1], run.level};
+    const std::span<const double> v(velocity.mean);
+    const std::size_t half = (run.inner_end() - run.inner_begin()) / 2;
+    level.fall = mean_of(v.subspan(run.inner_begin(), half)) - mean_of(v.subspan(run.inner_end() - half, half));
+    level.mean = mean_of(friction.subspan(begin, end - begin));
+    level.last = mean_of(friction.subspan(end - (end - begin) / 4, (end - begin) / 4));
+    levels.push_back(level);
+  }
+  return levels;
+}
+
+// The plateau of a contact that creeps falls towards break-away, a ripple's rises as often as it falls: the mean fall
+// over the level, 0 where it is not clearly there.
+double creep_of(const std::vector<Level>& levels) {
+  std::vector<double> falls, sizes;
+  for (const Level& level : levels) {
+    falls.push_back(level.value > 0 ? level.fall : -level.fall);
+    sizes.push_back(std::abs(level.value));
+  }
+  const double fall = mean_of(falls), size = median(std::move(sizes));
+  double squares = 0;
+  for (double f : falls) squares += (f - fall) * (f - fall);
+  const auto n = static_cast<double>(falls.size());
+  return fall > 5e-4 * size && fall > 4 * std::sqrt(squares) / n ? fall / size : 0;
+}
+
+// Friction less its mean, over its spread.
+void standardise(std::vector<Level>& levels, double Level::*member) {
+  double sum = 0, squares = 0;
+  for (const Level& level : levels) sum += level.*member;
+  const double mean = sum / static_cast<double>(levels.size());
+  for (const Level& level : levels) squares += std::pow(level.*member - mean, 2);
+  const double spread = std::sqrt(squares / static_cast<double>(levels.size()));
+  for (Level& level : levels) level.*member = spread > 0 ? (level.*member - mean) / spread : 0;
+}
+
+// Means of cos(w t) and sin(w t) over a rest, as exp(i w t).
+std::complex<double> mean_phasor(const Level& level, double w) {
+  const double half = 0.5 * w * (level.end - level.begin);
+  const double part = std::abs(half) > 1e-9 ? std::sin(half) / half : 1;
+  return std::polar(part, 0.5 * w * (level.begin + level.end));
+}
+
+using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using Normal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+/// What is fitted to the levels: 1, time from the middle over half the record, mean cos, mean sin, and where the
+/// contact creeps, friction in the rest and at its end. A creep that follows friction (a runout) then is no ripple.
+struct Design {
+  double w = 0;  // [rad/s]
+  double middle = 0, half = 1;
+  bool creeping = false;
+
+  Row row(const Level& level) const {
+    const std::complex<double> p = mean_phasor(level, w);
+    Row r(creeping ? 6 : 4);
+    r.head<4>() << 1, (0.5 * (level.begin + level.end) - middle) / half, p.real(), p.imag();
+    if (creeping) r.tail<2>() << level.mean, level.last;
+    return r;
+  }
+};
+
+struct LinearFit {
+  Row x;
+  Normal inverse;
+  double rss = HUGE_VAL;
+};
+
+LinearFit fit_order(const std::vector<Level>& levels, const Design& design) {
+  LinearFit fit;
+  const Eigen::Index k = design.creeping ? 6 : 4;
+  Normal normal = Normal::Zero(k, k);
+  Row right = Row::Zero(k);
+  const double origin = levels.front().value;  // keeps the sums small beside a large mean
+  for (const Level& level : levels) {
+    if (!level.used) continue;
+    const Row row = design.row(level);
+    normal += row * row.transpose();
+    right += row * (level.value - origin);
+  }
+  const Eigen::LDLT<Normal> solver(normal);
+  if (solver.info() != Eigen::Success || solver.rcond() < 1e-8) return fit;
+  fit.inverse = solver.solve(Normal::Identity(k, k));
+  fit.x = solver.solve(right);
+  fit.x(0) += origin;
+  fit.rss = 0;
+  for (const Level& level : levels) {
+    if (level.used) fit.rss += std::pow(level.value - design.row(level).dot(fit.x), 2);
+  }
+  return fit;
+}
+
+// Amplitude and phase of half of the record, what else the whole showed taken off but for a constant.
+std::complex<double> half_of(const std::vector<Level>& levels, const Design& design, Row other, bool second) {
+  other(2) = other(3) = 0;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const Level& level : levels) {
+    const Row row = design.row(level);
+    if (!level.used || (row(1) > 0) != second) continue;
+    const Eigen::Vector3d r(1, row(2), row(3));
+    normal += r * r.transpose();
+    right += r * (level.value - other.dot(row));
+  }
+  const Eigen::Vector3d x = normal.ldlt().solve(right);
+  return {x(1), x(2)};
+}
+
+// Eccentric from true anomaly, in an orbit of eccentricity a.
+double eccentric(double a, double u) {
+  const double b = a / (1 + std::sqrt(1 - a * a));
+  return u - 2 * std::atan2(b * std::sin(u), 1 + b * std::cos(u));
+}
+
+// The other reading of the phase: level (1-A^2)/(1 - A cos e), e = e0 + n omega sqrt(1-A^2) t. `left`: what omega t
+// leaves.
+void try_true_angle(std::vector<Level> levels, Design design, double omega, double left, RippleEstimate& estimate) {
+  DiscRipple ripple = estimate.ripple;
+  for (Level& level : levels) level.value = 1 / level.value;
+  LinearFit fit;
+  for (int pass = 0; pass < 4; ++pass) {
+    if (!(ripple.amplitude < 0.5)) return;
+    design.w = ripple.order * omega * std::sqrt(1 - ripple.amplitude * ripple.amplitude);
+    fit = fit_order(levels, design);
+    if (fit.rss == HUGE_VAL || fit.x(0) == 0) return;
+    ripple.amplitude = std::hypot(fit.x(2), fit.x(3)) / std::abs(fit.x(0));
+  }
+  const double mean = 1 / fit.x(0), rss = fit.rss * std::pow(mean, 4);
+  if (!(rss < left)) return;
+  const double e = std::atan2(fit.x(3) * mean, -fit.x(2) * mean);
+  const double a = ripple.amplitude, b = a / (1 + std::sqrt(1 - a * a));
+  ripple.phase = std::remainder(e + 2 * std::atan2(b * std::sin(e), 1 - b * std::cos(e)), 2 * std::numbers::pi);
+  const double smaller = std::sqrt(rss / left);
+  ripple.amplitude_std_error *= smaller, ripple.phase_std_error *= smaller;
+  estimate.ripple = ripple;
+  estimate.level = mean / (1 - a * a);
+  estimate.drift = -estimate.level * fit.x(1) * mean / design.half;
+  estimate.true_angle = true;
+}
+
+}  // namespace
+
+RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, double omega,
+                               std::span<const double> time, std::span<const double> friction) {
+  RippleEstimate estimate;
+  std::vector<Level> levels = levels_of(velocity, rests, time, friction);
+  estimate.plateaus = levels.size();
+  if (levels.size() < least_rests || omega == 0) return estimate;
+  const double first = 0.5 * (levels.front().begin + levels.front().end);
+  const double last = 0.5 * (levels.back().begin + levels.back().end);
+  const double turns = std::abs(omega) * (last - first) / (2 * std::numbers::pi);
+  if (turns < least_revolutions) return estimate;
+  const double middle = 0.5 * (first + last), half = 0.5 * (last - first);
+  estimate.middle = middle;
+
+  standardise(levels, &Level::mean);
+  standardise(levels, &Level::last);
+  const double creep = creep_of(levels);
+  Design design{0, middle, half, creep > 0};
+  LinearFit best;
+  int order = 0;
+  for (int pass = 0; pass < 4; ++pass) {
+    best = {};
+    for (int n = 1; n <= largest_order; ++n) {
+      if (static_cast<double>(levels.size()) < least_per_period * n * turns) break;
+      design.w = n * omega;
+      const LinearFit fit = fit_order(levels, design);
+      if (fit.rss < best.rss) best = fit, order = n;
+    }
+    if (order == 0 || best.rss == HUGE_VAL) return estimate;
+    design.w = order * omega;
+    std::vector<double> deviation;
+    for (const Level& level : levels) deviation.push_back(std::abs(level.value - design.row(level).dot(best.x)));
+    const double limit = std::max(5 * 1.4826 * median(deviation), 1e-12 * std::abs(best.x(0)));
+    for (std::size_t r = 0; r < levels.size(); ++r) levels[r].used = deviation[r] <= limit;
+  }
+  std::vector<double> residual;
+  double total = 0;
+  for (const Level& level : levels) {
+    if (!level.used) continue;
+    const Row row = design.row(level);
+    residual.push_back(level.value - row.dot(best.x));
+    total += std::pow(residual.back() + best.x(2) * row(2) + best.x(3) * row(3), 2);
+  }
+  const auto used = static_cast<double>(residual.size());
+  if (used < std::max(static_cast<double>(least_rests), 0.7 * static_cast<double>(levels.size()))) return estimate;
+  double squares = 0, products = 0;
+  for (std::size_t r = 0; r < residual.size(); ++r) {
+    squares += residual[r] * residual[r];
+    if (r > 0) products += residual[r] * residual[r - 1];
+  }
+  const double rho = squares > 0 ? std::clamp(products / squares, 0.0, 0.95) : 0;
+  const double variance = squares / (used - static_cast<double>(best.x.size())) * (1 + rho) / (1 - rho);
+  const Eigen::Vector2d wave = best.x.segment<2>(2);
+  const double size = wave.norm();
+  estimate.level = best.x(0);
+  estimate.drift = best.x(1) / half;
+  estimate.plateaus = residual.size();
+  if (size == 0 || estimate.level == 0) return estimate;
+  const Eigen::Matrix2d covariance = variance * best.inverse.block<2, 2>(2, 2);
+  const Eigen::Vector2d along = wave / size, across(-along(1), along(0));
+  DiscRipple& ripple = estimate.ripple;
+  const double sign = estimate.level > 0 ? 1 : -1;
+  ripple.order = order;
+  ripple.amplitude = size / std::abs(estimate.level);
+  ripple.phase = std::atan2(-sign * wave(1), sign * wave(0));
+  ripple.amplitude_std_error = std::sqrt(along.dot(covariance * along)) / std::abs(estimate.level);
+  ripple.phase_std_error = std::sqrt(across.dot(covariance * across)) / size;
+  estimate.explained = total > 0 ? 1 - squares / total : 0;
+
+  const std::complex<double> early = half_of(levels, design, best.x, false);
+  const std::complex<double> late = half_of(levels, design, best.x, true);
+  const double error = ripple.amplitude_std_error * std::abs(estimate.level);
+  const bool same = std::abs(early - late) < 0.35 * size + 6 * error;
+  estimate.significant =
+      same && ripple.amplitude >= std::max(least_amplitude, creep) && ripple.amplitude <= largest_amplitude &&
+      ripple.amplitude > significance * ripple.amplitude_std_error && estimate.explained > least_explained;
+  if (estimate.significant) try_true_angle(levels, design, omega, squares, estimate);
+  return estimate;
+}
+
+RippledDisc rippled_disc(const RippleEstimate& estimate, double omega, std::span<const double> time) {
+  const DiscRipple& ripple = estimate.ripple;
+  RippledDisc disc{std::vector<double>(time.size()), std::vector<double>(time.size())};
+  const double n = ripple.order, a = ripple.amplitude, phase = ripple.phase;
+  if (estimate.true_angle) {
+    const double root = std::sqrt(1 - a * a), b = a / (1 + root), begin = eccentric(a, phase);
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      const double e = begin + n * root * omega * time[i], c = std::cos(e), s = std::sin(e);
+      disc.factor[i] = root * root / (1 - a * c);
+      disc.angle[i] = (e + 2 * std::atan2(b * s, 1 - b * c) - phase) / n;
+    }
+    return disc;
+  }
+  const double w = n * omega, start = std::sin(phase);
+  double anchor = 0, cosine = std::cos(phase), sine = start;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    // Sums of angles from the last anchor, small ones by their series: exact to 1e-13.
+    double d = w * (time[i] - anchor);
+    if (std::abs(d) > 0.01) {
+      anchor = time[i], d = 0;
+      cosine = std::cos(w * anchor + phase), sine = std::sin(w * anchor + phase);
+    }
+    const double c = 1 - 0.5 * d * d * (1 - d * d / 12), s = d * (1 - d * d / 6 * (1 - d * d / 20));
+    disc.factor[i] = 1 + a * (cosine * c - sine * s);
+    disc.angle[i] = omega * time[i] + a / n * (sine * c + cosine * s - start);
+  }
+  return disc;
+}
+
+}  // namespace tribofit::kinematics

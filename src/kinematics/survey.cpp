@@ -1,0 +1,186 @@
+#include "survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "reductions.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+Rests evenly_spaced_windows(std::size_t samples) {
+  Rests windows;
+  const std::size_t count = 64, length = std::clamp<std::size_t>(samples / 4, 16, 64);
+  if (samples < length) return windows;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t begin = k * (samples - length) / count;
+    windows.runs.push_back({begin, begin + length, 0});
+  }
+  return windows;
+}
+
+// Noise of a record before it is known where it rests. Where sticks last a dozen samples most windows hold some of a
+// slip; the quiet ones are then far below the median, which no noise does, and they count.
+double roughness_of(std::span<const double> velocity) {
+  constexpr double quiet = 0.1;
+  std::vector<double> spreads = spreads_about_parabolas(velocity, evenly_spaced_windows(velocity.size()).runs, 1);
+  if (spreads.empty()) return 0;
+  const double middle = median(spreads);
+  const auto tenth = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 10);
+  std::nth_element(spreads.begin(), tenth, spreads.end());
+  return *tenth < quiet * middle ? *tenth : middle;
+}
+
+}  // namespace
+
+const Condition& first_known(const Condition& a, const Condition& b) {
+  return a.known() ? a : b;
+}
+
+double largest_of(std::span<const double> values) {
+  if (values.empty()) return 0;
+  const Extremes e = extremes(values);
+  return std::max(std::abs(e.low), std::abs(e.high));
+}
+
+Disc disc_of(const Trace& trace) {
+  Disc disc;
+  const std::size_t n = trace.size();
+  const bool channel = trace.disc_speed.size() == n;
+  std::vector<std::pair<const Step*, double>> parts;  // omega r, or r with a speed channel
+  for (const Step& step : trace.steps) {
+    const Condition& radius = first_known(step.conditions.radius, trace.conditions.radius);
+    const Condition& speed = first_known(step.conditions.speed, trace.conditions.speed);
+    if (!radius.known() || !(channel || speed.known())) return disc;
+    parts.emplace_back(&step, channel ? radius.value : radius.value * speed.value);
+  }
+  if (parts.empty()) return disc;
+  disc.known = true;
+  const bool same = std::all_of(parts.begin(), parts.end(), [&](const auto& p) { return p.second == parts[0].second; });
+  if (same && !channel) {
+    disc.constant = parts[0].second;
+    disc.largest = std::abs(disc.constant);
+    return disc;
+  }
+  disc.varying.resize(n);
+  for (const auto& [step, value] : parts) {
+    for (std::size_t i = step->begin; i < step->end; ++i)
+      disc.varying[i] = channel ? value * trace.disc_speed[i] : value;
+  }
+  for (double v : disc.varying) disc.largest = std::max(disc.largest, std::abs(v));
+  return disc;
+}
+
+Survey survey(const Trace& trace, const Disc& disc, double step) {
+  Survey s;
+  const std::span<const double> velocity(trace.velocity);
+  const std::size_t length = block_length(velocity);
+  s.blocks = block_means(velocity, length, step);
+  std::vector<double> relative = s.blocks.mean;
+  if (!disc.varying.empty()) {
+    s.disc = block_means(disc.varying, length, step);
+    for (std::size_t b = 0; b < relative.size(); ++b) relative[b] -= s.disc.mean[b];
+  }
+  const double roughness = roughness_of(velocity);
+  const bool block = trace.velocity_kind == VelocityKind::block;
+  if (trace.velocity_kind == VelocityKind::fixed_block) {  // a block that is held cannot stick to the disc
+    s.noise = roughness;
+    return s;
+  }
+  const double stated = block && disc.known && disc.varying.empty() ? disc.constant : 0;
+  const double centre = relative.empty() ? 0 : relative[relative.size() / 2];
+  double spread = 0;
+  for (double v : relative) spread = std::max(spread, std::abs(v - centre));
+  if (spread <= 8 * roughness) {  // nothing moves: one rest, or steady sliding
+    const double level = fit_line(relative).value;
+    const bool rests_on_disc = !block || !disc.varying.empty() ? std::abs(level) <= 3 * roughness
+                               : disc.known ? std::abs(std::abs(level) - std::abs(stated)) < 0.5 * std::abs(stated)
+                                            : std::abs(level) > 5 * roughness;
+    s.noise = roughness;
+    s.sticks = rests_on_disc;
+    if (rests_on_disc) s.rests = {{{0, relative.size(), level}}, level, spread};
+    return s;
+  }
+  if (!block) {
+    const double limit = 0.06 * largest_of(relative);  // a rest of v_r is at zero
+    s.rests = find_rests(relative, LevelRange{-limit, limit});
+  } else if (!disc.varying.empty()) {
+    s.rests = find_rests(relative, LevelRange{-0.5 * disc.largest, 0.5 * disc.largest});
+  } else if (disc.known) {
+    // First where it ought to be, then pointing the other way, then anywhere but at rest.
+    const double near = 0.5 * std::abs(stated), far = 1.5 * std::abs(stated);
+    const LevelRange right = stated > 0 ? LevelRange{near, far} : LevelRange{-far, -near};
+    s.rests = find_rests(relative, right);
+    if (s.rests.empty()) s.rests = find_rests(relative, LevelRange{-right.high, -right.low});
+  }
+  if (block && s.rests.empty() && disc.varying.empty()) s.rests = find_rests(relative);
+  s.noise = s.rests.empty() ? roughness : spread_about_parabolas(velocity, s.rests.runs, s.blocks.length);
+  if (s.noise == 0) s.noise = s.rests.empty() ? 0 : std::min(roughness, 1e-3 * s.rests.depth);
+  s.sticks = !s.rests.empty() && (!block || !disc.varying.empty() || std::abs(s.rests.level) > 3 * s.noise);
+  if (!s.sticks) s.rests.runs.clear();
+  return s;
+}
+
+std::vector<double> disc_slopes(const Survey& s) {
+  std::vector<double> slopes;
+  if (s.disc.mean.empty()) return slopes;
+  for (const Rest& run : s.rests.runs) {
+    const auto part =
+        std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
+    slopes.push_back(fit_line(part).slope / s.blocks.step);
+  }
+  return slopes;
+}
+
+double final_level(const Rests& rests) {
+  std::vector<double> levels;
+  for (std::size_t r = rests.runs.size() / 2; r < rests.runs.size(); ++r) levels.push_back(rests.runs[r].level);
+  return median(std::move(levels));
+}
+
+std::size_t run_up_blocks(const Survey& s) {
+  if (s.rests.runs.size() < 3) return 0;
+  const double level = final_level(s.rests);
+  const std::span<const double> v(s.blocks.mean);
+  struct Piece {
+    std::size_t begin;
+    double level;
+  };
+  std::vector<Piece> pieces;
+  for (const Rest& run : s.rests.runs) {
+    // The first rest may be the run-up itself: it is looked at from end to end, and more finely.
+    const bool first = run.begin == 0;
+    const std::size_t begin = first ? 0 : run.inner_begin(), end = first ? run.end - run.size() / 32 : run.inner_end();
+    const std::size_t length = std::max<std::size_t>(1, (end - begin) / (first ? 64 : 16));
+    for (std::size_t b = begin; b + length <= end; b += length) {
+      pieces.push_back({b, fit_line(v.subspan(b, length)).value});
+    }
+  }
+  const double tolerance = std::max(0.02 * std::abs(level), 4 * s.noise);
+  const auto settled = [&](const Piece& p) { return std::abs(p.level - level) <= tolerance; };
+  // A disc that starts from rest begins well below its final speed; a disc that ripples does not settle.
+  const std::size_t head = s.rests.runs.front().begin;
+  std::vector<double> gaps;
+  for (std::size_t r = 1; r < s.rests.runs.size(); ++r) {
+    gaps.push_back(static_cast<double>(s.rests.runs[r].begin - s.rests.runs[r - 1].end));
+  }
+  const bool slow_head =
+      static_cast<double>(head) > 3 * median(std::move(gaps)) && std::abs(v[0]) < 0.5 * std::abs(level);
+  std::size_t k = 0;
+  if (std::abs(pieces.front().level) < 0.9 * std::abs(level)) {
+    while (k < pieces.size() && !settled(pieces[k])) ++k;
+    const auto later =
+        static_cast<double>(std::count_if(pieces.begin() + static_cast<std::ptrdiff_t>(k), pieces.end(), settled));
+    if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
+    // Ringing after a re-stick at the very beginning is no run-up either.
+    std::vector<double> durations;
+    for (const Rest& run : s.rests.runs) durations.push_back(static_cast<double>(run.size()));
+    const double least = 0.25 * median(std::move(durations));
+    return k < pieces.size() && static_cast<double>(pieces[k].begin) > least ? pieces[k].begin : 0;
+  }
+  return slow_head ? head : 0;
+}
+
+}  // namespace tribofit::kinematics

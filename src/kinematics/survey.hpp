@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "plateau.hpp"
+#include "tribofit/ingest/trace.hpp"
+
+namespace tribofit::kinematics {
+
+/// The one that is known, the first before the second.
+const Condition& first_known(const Condition& a, const Condition& b);
+
+/// Largest magnitude; 0 when empty.
+double largest_of(std::span<const double> values);
+
+/// omega r of every sample, or one value for all.
+struct Disc {
+  bool known = false;
+  double constant = 0;
+  std::vector<double> varying;  ///< empty when constant
+  double largest = 0;           ///< |omega r|
+};
+
+/// omega r as stated for the trace or its steps, or from the recorded speed of the disc.
+Disc disc_of(const Trace& trace);
+
+/// The velocity in blocks, where it rests, and what its noise is.
+struct Survey {
+  BlockMeans blocks;  ///< of v_b, or of v_r where that was measured
+  BlockMeans disc;    ///< of omega r, where it varies
+  Rests rests;        ///< of blocks minus disc where that varies, else of blocks
+  double noise = 0;   ///< [m/s]
+  bool sticks = false;
+};
+
+Survey survey(const Trace& trace, const Disc& disc, double step);
+
+/// d(omega r)/dt of every rest [m/s^2]; empty where omega r is constant.
+std::vector<double> disc_slopes(const Survey& s);
+
+/// The level towards which the plateaus tend: median over the second half of the record [m/s].
+double final_level(const Rests& rests);
+
+/// Blocks before the plateau comes within 2 % of its final value and stays there.
+std::size_t run_up_blocks(const Survey& s);
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// A simulated trace of about 58 cycles, with an effect or without.
+std::string trace(const std::string& more, int seed) {
+  const Workshop shop;
+  shop.identify(
+      "simulate --radius 15mm --duration 12s --rate 5kHz --noise-mu 0.003 --noise-v 0.02mm/s --scatter 0.004 " + more +
+      " --seed " + std::to_string(seed) + " --out trace.csv --quiet");
+  return contents(shop / "trace.csv");
+}
+const std::string& empty_trace() {
+  static const std::string text = trace("--speed 4rpm", 3);
+  return text;
+}
+const std::string& viscous_trace() {
+  static const std::string text = trace("--speed 4rpm --effect viscous:sigma=0.0015", 4);
+  return text;
+}
+
+json result_of(const Workshop& shop, const std::string& arguments, int status = 0) {
+  const Outcome outcome = shop.identify("diagnose --quiet --json d.json " + arguments);
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  return json::parse(contents(shop / "d.json"), nullptr, false);
+}
+
+TEST(Diagnose, NothingIsNamedWhereNothingIsHidden) {
+  const Workshop shop;
+  shop.write("trace.csv", empty_trace());
+  const json j = result_of(shop, "--radius 15mm --speed 4rpm --load 50N trace.csv");
+  EXPECT_EQ(j["diagnosis"]["verdict"], "sufficient");
+  EXPECT_EQ(j["diagnosis"]["ladder"].size(), 1u);
+  EXPECT_EQ(j["trace"]["path"], "trace.csv");
+}
+
+TEST(Diagnose, AHiddenEffectIsNamedAndTheNextCommandRuns) {
+  const Workshop shop;
+  shop.write("trace.csv", viscous_trace());
+  Outcome outcome = shop.identify("diagnose --radius 15mm --speed 4rpm --load 50N --json d.json --csv out trace.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());  // no progress where nobody watches
+  const json j = json::parse(contents(shop / "d.json"));
+  const json& ladder = j["diagnosis"]["ladder"];
+  ASSERT_EQ(ladder.size(), 2u);
+  EXPECT_TRUE(ladder[0]["added"].is_null());
+  const auto equivalent = ladder[1]["equivalent"].get<std::vector<std::string>>();
+  EXPECT_TRUE(ladder[1]["added"] == "viscous" ||
+              std::find(equivalent.begin(), equivalent.end(), "viscous") != equivalent.end());
+  EXPECT_EQ(lines_of(contents(shop / "out/samples.csv")).size(), 60001u);
+  const std::size_t at = outcome.out.rfind("  identify ");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  outcome = shop.shell(outcome.out.substr(at));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST(Diagnose, ResultsAreTheSameForAnyNumberOfThreads) {
+  const Workshop shop;
+  shop.write("trace.csv", viscous_trace());
+  json one = result_of(shop, "--radius 15mm --threads 1 trace.csv");
+  json two = result_of(shop, "--radius 15mm --threads 2 trace.csv");
+  one.erase("tool");
+  two.erase("tool");
+  EXPECT_EQ(one.dump(), two.dump());
+}
+
+TEST(Diagnose, AFolderWithAManifestIsDiagnosedTogetherAndRepeatsConfirm) {
+  const Workshop shop;
+  std::filesystem::create_directory(shop / "runs");
+  for (const char* name : {"runs/a1.csv", "runs/a2.csv"}) shop.write(name, viscous_trace());
+  shop.write("runs/b1.csv", trace("--speed 8rpm --effect viscous:sigma=0.0015", 5));
+  shop.write("runs/manifest.csv", "file,radius [mm],speed_rpm,load,repeat\na*.csv,15,4,50N,\nb1.csv,15,8,50N,1\n");
+  const json j = result_of(shop, "runs");
+  ASSERT_EQ(j["traces"].size(), 2u);
+  EXPECT_EQ(j["traces"][0]["path"], "runs/a1.csv");
+  EXPECT_EQ(j["conditions"][1]["speed_source"], "manifest");
+  ASSERT_EQ(j["diagnosis"]["confirmations"].size(), 1u);
+  EXPECT_EQ(j["diagnosis"]["confirmations"][0]["path"], "runs/a2.csv");
+  EXPECT_THAT(j["traces"][0]["notes"].dump(), HasSubstr("takes no part"));
+  EXPECT_TRUE(j["fits"][0]["parameters"][0]["trace"].is_null());
+
+  const json named = result_of(shop, "--load 40N --confirm runs/b1.csv runs");
+  ASSERT_EQ(named["traces"].size(), 2u);  // what is named is kept, and nothing else
+  EXPECT_EQ(named["traces"][1]["path"], "runs/a2.csv");
+  EXPECT_EQ(named["conditions"][0]["load_N"], 40.0);  // the command line beats the manifest, and says so
+  EXPECT_THAT(named["warnings"].dump(), HasSubstr("--load 40 N is used, not the 50 N of runs/manifest.csv:2"));
+}
+
+TEST(Diagnose, IdentifyTakesConditionsFromTheManifestToo) {
+  const Workshop shop;
+  std::filesystem::create_directory(shop / "runs");
+  shop.write("runs/a.csv", good_trace());
+  shop.write("runs/manifest.csv", "file,radius\na.csv,15mm\n");
+  const Outcome outcome = shop.identify("runs");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("15 mm (manifest)"), HasSubstr("--radius 15mm")));
+  shop.write("runs/manifest.csv", "file,radius\na.csv,15mn\n");
+  for (const char* verb : {"", "diagnose "}) {
+    const Outcome bad = shop.identify(std::string(verb) + "runs");
+    EXPECT_EQ(bad.status, 3);
+    EXPECT_THAT(bad.err, HasSubstr("runs/manifest.csv:2: column radius: unknown unit 'mn'"));
+  }
+}
+
+TEST(Diagnose, FormulasComeFromAFile) {
+  const Workshop shop;
+  shop.write("trace.csv", good_trace());
+  shop.write("mine.txt", "# mine\n\nhump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s\n  rise = b*v; b=0.001\n");
+  const Outcome good = shop.identify("--radius 15mm --law exponential --formula @mine.txt --json r.json trace.csv");
+  EXPECT_EQ(good.status, 0) << good.err;
+  EXPECT_EQ(json::parse(contents(shop / "r.json"))["fits"][0]["effects"], json({"hump", "rise"}));
+  shop.write("mine.txt", "rise = b*v; b=0.001\nfall = b*vv; b=0.001\n");
+  for (const char* verb : {"", "diagnose "}) {
+    const Outcome bad = shop.identify(std::string(verb) + "--radius 15mm --formula @mine.txt trace.csv");
+    EXPECT_EQ(bad.status, 3);
+    EXPECT_THAT(bad.err, AllOf(HasSubstr("mine.txt:2"), HasSubstr("'vv'")));
+  }
+  EXPECT_EQ(shop.identify("--radius 15mm --formula @none.txt trace.csv").status, 3);
+}
+
+TEST(Diagnose, TooFewCyclesAreSaidToBeTooFew) {
+  const Workshop shop;
+  std::vector<std::string> lines = lines_of(good_trace());
+  lines.resize(4000);
+  shop.write("trace.csv", joined(lines));
+  const json j = result_of(shop, "--radius 15mm trace.csv", 1);
+  EXPECT_EQ(j["diagnosis"]["verdict"], "not-enough-data");
+}
+
+TEST(Diagnose, NothingIsLeftBehindByAnInterruption) {
+  const Workshop shop;
+  const Outcome outcome =
+      shop.shell("'" TRIBOFIT_IDENTIFY
+                 "' simulate --radius 15mm --duration 600s --out big.csv & P=$!\n"
+                 "for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30; do\n"
+                 "  ls -a | grep -q part && break; sleep 0.1; done\n"
+                 "ls -a | grep part; kill -TERM $P; wait $P");
+  EXPECT_THAT(outcome.out, HasSubstr(".part"));
+  EXPECT_THAT(shop.names(), IsEmpty());
+}
+
+}  // namespace

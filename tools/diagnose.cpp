@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "console.hpp"
+#include "inputs.hpp"
+#include "options.hpp"
+#include "settings.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/csv.hpp"
+#include "tribofit/report/diagnosis.hpp"
+#include "tribofit/report/json.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1;
+
+constexpr const char* kFooter =
+    "Several traces are diagnosed together, with shared parameters; a folder stands for the runs of its\n"
+    "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
+    "each condition is kept for confirming the finding.\n\n"
+    "Examples:\n"
+    "  identify diagnose --radius 15mm trace.csv\n"
+    "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"
+    "  identify diagnose --confirm runs/r4.csv runs/";
+
+void check_usage(const Settings& s, const Split& split) {
+  if (split.diagnosed.empty())
+    throw CLI::ValidationError("every trace is kept for confirmation; leave one to diagnose");
+  if (split.diagnosed.size() > 1 && (!s.second_file.empty() || !s.continued_in.empty())) {
+    throw CLI::ValidationError("--with and --continue go with one trace at a time");
+  }
+  for (std::size_t k = 0; k < split.diagnosed.size(); ++k) {  // the same evidence may not count twice
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      const std::string& path = split.diagnosed[k].trace.path;
+      if (same_file(split.diagnosed[earlier].trace.path, path)) throw CLI::ValidationError(path + " is given twice");
+    }
+  }
+  std::vector<std::string> files = input_files(s);
+  for (const auto* inputs : {&split.diagnosed, &split.kept}) {
+    for (const Input& input : *inputs) files.push_back(input.trace.path);
+  }
+  refuse_overwriting(s, files);
+}
+
+std::vector<TraceInput> traces_of(const std::vector<Input>& inputs) {
+  std::vector<TraceInput> traces;
+  for (const Input& input : inputs) traces.push_back(input.trace);
+  return traces;
+}
+
+/// What is known of the inputs besides the data stands with the trace it is about, or with the first.
+void add_remarks(const Split& split, DiagnosedTraces& result) {
+  for (std::size_t k = 0; k < std::min(result.traces.size(), split.diagnosed.size()); ++k) {
+    Identification& trace = result.traces[k];
+    const Input& input = split.diagnosed[k];
+    if (k == 0) trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
+    trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  }
+  if (result.traces.empty()) return;
+  std::vector<std::string>& notes = result.traces.front().notes;
+  notes.insert(notes.end(), split.notes.begin(), split.notes.end());
+  for (const Input& input : split.kept) {
+    std::vector<std::string>& warnings = result.traces.front().warnings;
+    warnings.insert(warnings.end(), input.warnings.begin(), input.warnings.end());
+  }
+}
+
+/// Both outputs or none: the JSON is on the disc before the CSV gets its names, and gets its own after it.
+void write_results(const Settings& s, const DiagnosedTraces& result, const std::vector<std::string>& arguments) {
+  std::optional<WholeFile> json;
+  if (!s.json.empty()) {
+    json.emplace(s.json == "-" ? "/dev/stdout" : s.json);
+    json->write(to_json(result, {arguments}));
+    json->finish();
+  }
+  if (!s.csv.empty()) write_csv_folder(s.csv, result);
+  if (json) json->commit();
+}
+
+std::string reason_of(const DiagnosedTraces& result) {
+  for (const Identification& trace : result.traces) {
+    if (!trace.analysed && !trace.warnings.empty()) return trace.path + ": " + trace.warnings.back();
+  }
+  if (!result.diagnosis.messages.empty()) return result.diagnosis.messages.front();
+  return "there are too few cycles to hold any out";
+}
+
+int run(const Settings& s, const std::vector<std::string>& arguments) {
+  const IdentifyOptions options = options_from(s);
+  const Split split = keep_for_confirmation(inputs_from(s.traces, options.read), s.confirm, options.read);
+  check_usage(s, split);
+  DiagnoseOptions more;
+  more.diagnosis.threads = s.threads;
+  more.confirm = traces_of(split.kept);
+  DiagnosedTraces result;
+  {
+    ProgressLine line;
+    more.diagnosis.progress = [&line](std::string_view what, double part) { line.show(what, part); };
+    result = diagnose(traces_of(split.diagnosed), options, more);
+  }
+  add_remarks(split, result);
+  write_results(s, result, arguments);
+  if (!s.quiet && s.json != "-") {
+    const bool alone = split.diagnosed.size() == 1;
+    TerminalOptions terminal =
+        terminal_options(s, alone ? arguments_for(split.diagnosed.front(), arguments) : arguments);
+    terminal.inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
+    print(render_diagnosis(result, terminal));
+  }
+  if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return kDone;
+  complain("the diagnosis could not be done: " + reason_of(result));
+  return kFailed;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("diagnose", "Where a law fails, which effect is missing, what to measure next");
+  verb->footer(kFooter);
+  const auto settings = std::make_shared<Settings>();
+  add_input_options(*verb, *settings);
+  verb->add_option("--confirm", settings->confirm,
+                   "A run that takes no part and on which the finding is tried (repeatable)")
+      ->allow_extra_args(false)
+      ->group("Reading");
+  add_model_options(*verb, *settings);
+  add_output_options(*verb, *settings);
+  verb->callback([settings, verb, &status] {
+    refuse_empty_values(*verb);
+    check_seed(*settings);
+    if (settings->traces.empty()) {
+      throw CLI::ValidationError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
+    }
+    status = run(*settings, own_options(*verb));
+  });
+}

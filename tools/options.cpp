@@ -1,0 +1,107 @@
+#include "options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+#include "inputs.hpp"
+
+using namespace tribofit;
+
+void add_input_options(CLI::App& app, Settings& s) {
+  app.add_option("TRACE", s.traces, "Traces (CSV), or folders of them");
+  app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm")->group("Conditions");
+  app.add_option("--speed", s.speed, "Disc speed, 4rpm (else from the file or the stick plateau)")->group("Conditions");
+  app.add_option("--load", s.load, "Normal force, 50N")->group("Conditions");
+  app.add_option("--instruments", s.instruments, "What is known of the instruments (JSON), with uncertainties")
+      ->group("Conditions");
+  const auto input = [&](const char* name, auto& value, const char* help) {
+    return app.add_option(name, value, help)->group("Reading");
+  };
+  input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s")->allow_extra_args(false);
+  input("--units", s.units, "Units or sensitivities: v_b=mm/s")->allow_extra_args(false);
+  input("--rate", s.rate, "Samples per second where there is no time column, 20kHz");
+  input("--with", s.second_file, "Second file of the same run, from the other instrument");
+  input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)")->allow_extra_args(false);
+  app.add_flag("--trim,!--no-trim", s.trim, "Leave out the run-up of the disc (default); --no-trim keeps it")
+      ->group("Reading");
+}
+
+void add_model_options(CLI::App& app, Settings& s) {
+  const auto fit = [&](const char* name, auto& value, const char* help) {
+    return app.add_option(name, value, help)->group("Law and fit");
+  };
+  fit("--law", s.laws, "exponential, fractional or coulomb (repeatable; default the first two)")
+      ->check(CLI::IsMember({"exponential", "fractional", "coulomb"}))
+      ->allow_extra_args(false);
+  fit("--effect", s.effects, "Effect to add to every law (repeatable; see `identify effects`)")
+      ->allow_extra_args(false);
+  fit("--formula", s.formulas,
+      "Effect of your own: 'name = a*exp(-v/w); a=0.02, w=6mm/s', or @FILE with one a line (repeatable)")
+      ->allow_extra_args(false);
+  fit("--loss", s.loss, "squares (default), huber or soft-l1")->check(CLI::IsMember({"squares", "huber", "soft-l1"}));
+  fit("--starts", s.starts, "Starting points of the search (default 5)")->check(CLI::Range(1, 1000));
+  fit("--folds", s.folds, "Blocks of cycles held out in turn (default 5)")->check(CLI::Range(2, 1000));
+  fit("--seed", s.seed_text, "Seed of the random starts (default 1)");
+}
+
+void add_output_options(CLI::App& app, Settings& s) {
+  app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
+      ->group("Output");
+  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder")->group("Output");
+  app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
+      ->check(CLI::Range(0, 1024))
+      ->group("Output");
+  app.add_flag("--quiet", s.quiet, "Do not print the table")->group("Output");
+}
+
+std::vector<std::string> own_options(const CLI::App& app) {
+  std::vector<std::string> arguments;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || option->get_positional()) continue;
+    if (name == "--json" || name == "--csv" || name == "--quiet") continue;
+    if (option->get_items_expected_max() == 0) {
+      const bool negated = option->results().front() == "false";
+      arguments.push_back(negated ? "--no-" + name.substr(2) : name);
+      continue;
+    }
+    for (const std::string& value : option->results()) {
+      arguments.push_back(name);
+      arguments.push_back(value);
+    }
+  }
+  return arguments;
+}
+
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const auto& values = option->results();
+    if (option->get_items_expected_max() == 0 || std::find(values.begin(), values.end(), "") == values.end()) continue;
+    const std::string name = option->get_positional() ? "a trace" : option->get_name();
+    throw CLI::ValidationError(name + " is given an empty value; give one or leave it out");
+  }
+}
+
+void check_seed(Settings& s) {
+  if (s.seed_text.empty()) return;
+  const char* end = s.seed_text.data() + s.seed_text.size();
+  const auto [last, error] = std::from_chars(s.seed_text.data(), end, s.seed);
+  if (error == std::errc{} && last == end) return;
+  throw CLI::ValidationError("--seed: '" + s.seed_text + "' is not a whole number from 0 to 18446744073709551615");
+}
+
+void refuse_overwriting(const Settings& s, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite " + input);
+    if (s.csv.empty()) continue;
+    const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();
+    for (const char* name : {"samples.csv", "cycles.csv", "curves.csv", "errors.csv"}) {
+      if (same_file((s.csv / std::filesystem::path(name)).string(), input) ||
+          same_file((own_folder / name).string(), input)) {
+        throw CLI::ValidationError("--csv would overwrite " + input + " with its own " + name);
+      }
+    }
+  }
+}

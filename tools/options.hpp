@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "settings.hpp"
+#include "verbs.hpp"
+
+/// The options that the verbs share, so that each is spelt and explained once.
+
+void add_input_options(CLI::App& app, Settings& settings);
+/// Laws, effects and how they are fitted.
+void add_model_options(CLI::App& app, Settings& settings);
+void add_output_options(CLI::App& app, Settings& settings);
+
+/// The options as typed that shape the analysis, for the next command.
+std::vector<std::string> own_options(const CLI::App& app);
+
+/// Wrong usage (CLI::ValidationError): an option given an empty value.
+void refuse_empty_values(const CLI::App& app);
+/// Wrong usage: --seed is not a number that fits.
+void check_seed(Settings& settings);
+/// Wrong usage: an output that would overwrite one of the inputs.
+void refuse_overwriting(const Settings& settings, const std::vector<std::string>& inputs);

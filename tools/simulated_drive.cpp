@@ -1,0 +1,93 @@
+#include "simulated_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "a,b" in two parts; throws InputError where there are not two.
+std::pair<std::string, std::string> two_parts(const std::string& text, std::string_view separator, const char* option,
+                                              const char* example) {
+  const auto at = text.find(separator);
+  if (at == std::string::npos) {
+    throw InputError(std::string(option) + " " + text + " does not have two parts",
+                     "write it as e.g. " + std::string(example));
+  }
+  return {text.substr(0, at), text.substr(at + separator.size())};
+}
+
+/// Mean over the record: what a reader of the record would call N0 or T0.
+double mean_over(const std::function<double(double)>& channel, double duration) {
+  constexpr int kParts = 10000;
+  double sum = 0;
+  for (int i = 0; i < kParts; ++i) sum += channel((i + 0.5) / kParts * duration);
+  return sum / kParts;
+}
+
+}  // namespace
+
+SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std::string>& pause_texts, double speed) {
+  std::vector<double> times, speeds;
+  for (std::size_t begin = 0; begin < steps.size();) {
+    const std::size_t end = std::min(steps.find(',', begin), steps.size());
+    const auto [time, value] = two_parts(steps.substr(begin, end - begin), ":", "--speed-steps", "0s:2rpm,10s:4rpm");
+    times.push_back(parse_quantity(time, Quantity::time, "--speed-steps", "s"));
+    speeds.push_back(parse_quantity(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
+    begin = end + 1;
+  }
+  if (times.empty()) {
+    times = {0};
+    speeds = {speed};
+  }
+  std::vector<Pause> pauses;
+  for (const std::string& text : pause_texts) {
+    const auto [begin, duration] = two_parts(text, ",", "--pause", "10s,5s");
+    pauses.push_back({parse_quantity(begin, Quantity::time, "--pause", "s"),
+                      parse_quantity(duration, Quantity::time, "--pause", "s")});
+  }
+  return stepped_speed(std::move(times), std::move(speeds), pauses);
+}
+
+void swing_load(const std::string& text, double duration, Drive& drive) {
+  if (text.empty()) return;
+  const auto [size, time] = two_parts(text, ",", "--load-swing", "10N,7s");
+  const double amplitude = parse_quantity(size, Quantity::force, "--load-swing", "N");
+  const double period = parse_quantity(time, Quantity::time, "--load-swing", "s");
+  if (!(std::abs(amplitude) < drive.mean_load) || !(period > 0)) {
+    throw InputError("--load-swing is not smaller than the load, or has no period", "write it as e.g. 10N,7s");
+  }
+  drive.load = [=, level = drive.mean_load](double t) {
+    return level + amplitude * std::sin(2 * std::numbers::pi * t / period);
+  };
+  drive.mean_load = mean_over(drive.load, duration);
+}
+
+void vary_temperature(const std::string& text, double duration, Drive& drive) {
+  if (text.empty()) return;
+  const auto comma = text.find(',');
+  const char* example = "20degC..60degC or 20degC..60degC,15s";
+  const auto [from, to] = two_parts(text.substr(0, comma), "..", "--temperature", example);
+  const double first = parse_quantity(from, Quantity::temperature, "--temperature", "degC");
+  const double last = parse_quantity(to, Quantity::temperature, "--temperature", "degC");
+  if (comma == std::string::npos) {
+    drive.temperature = [=](double t) { return first + (last - first) * std::clamp(t / duration, 0.0, 1.0); };
+  } else {
+    const double period = parse_quantity(text.substr(comma + 1), Quantity::time, "--temperature", "s");
+    if (!(period > 0))
+      throw InputError("the period of --temperature is not positive", "write it as " + std::string(example));
+    drive.temperature = [=](double t) {
+      return 0.5 * (first + last) - 0.5 * (last - first) * std::cos(2 * std::numbers::pi * t / period);
+    };
+  }
+  drive.mean_temperature = mean_over(drive.temperature, duration);
+}
+
+}  // namespace tribofit
