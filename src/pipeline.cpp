@@ -227,11 +227,10 @@ EffectFinding not_found(const Effect& effect, const std::vector<Identification>&
   finding.status = EffectStatus::unsupported;
   finding.reason = "the plateau of stick does not show it";
   const bool sticks = std::any_of(traces.begin(), traces.end(), [](const auto& t) { return t.motion.sticks; });
-  const bool measured = std::any_of(traces.begin(), traces.end(), [](const auto& t) {
-    return t.motion.velocity_kind == VelocityKind::block;
-  });
-  const bool stated = std::any_of(traces.begin(), traces.end(),
-                                  [](const auto& t) { return std::isfinite(t.motion.plateau_ratio); });
+  const bool measured = std::any_of(traces.begin(), traces.end(),
+                                    [](const auto& t) { return t.motion.velocity_kind == VelocityKind::block; });
+  const bool stated =
+      std::any_of(traces.begin(), traces.end(), [](const auto& t) { return std::isfinite(t.motion.plateau_ratio); });
   if (!sticks || !measured) {
     finding.status = EffectStatus::untestable;
     finding.reason = "there is no plateau of stick in v_b";
@@ -243,7 +242,8 @@ EffectFinding not_found(const Effect& effect, const std::vector<Identification>&
     finding.reason = "the disc speed was recorded: it is used as it is";
   } else if (info.key == "speed-ripple") {
     const Motion& motion = traces[0].motion;
-    const double turns = motion.conditions.speed.known() ? motion.conditions.speed.value * motion.duration() / 6.2831853 : 0;
+    const double turns =
+        motion.conditions.speed.known() ? motion.conditions.speed.value * motion.duration() / 6.2831853 : 0;
     if (turns < 2) {
       finding.status = EffectStatus::untestable;
       finding.reason = fmt::format("the record holds {:.1f} revolutions of the disc; two are needed", turns);
@@ -261,7 +261,8 @@ bool plateau_is_off(const Motion& motion) {
 }
 
 /// Puts what kinematics/ found into a diagnosis: rungs below all others, and a finding each.
-void add_motion(const std::vector<Identification>& traces, const std::optional<Fit>& uncorrected, DiagnosedTraces& out) {
+void add_motion(const std::vector<Identification>& traces, const std::optional<Fit>& uncorrected,
+                DiagnosedTraces& out) {
   Diagnosis& diagnosis = out.diagnosis;
   const std::vector<EffectFinding> found = motion_findings(traces[0].motion);
   std::vector<EffectFinding> findings;
@@ -385,8 +386,8 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   out.diagnosis = std::move(diagnosed.diagnosis);
   std::optional<Fit> uncorrected;
   const Motion& motion = out.traces[0].motion;
-  const bool moved = motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 ||
-                     motion.plateau_correction != PlateauCorrection::none;
+  const bool moved =
+      motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 || motion.plateau_correction != PlateauCorrection::none;
   if (moved && inputs.size() == 1 && !diagnosed.fits.empty()) {
     uncorrected = fit_uncorrected(inputs[0], options, out.diagnosis.law);
   }

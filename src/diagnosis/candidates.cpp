@@ -16,10 +16,10 @@ namespace {
 /// What the data can excite, found once.
 struct Excitation {
   bool both_directions = false;
-  double revolutions = 0;       ///< of the record that turns most
-  double load_spread = 0;       ///< (95 % - 5 %) / median
-  double temperature_spread = 0;  ///< 95 % - 5 % [K]
-  double stick_time_ratio = 1;  ///< 95 % / 5 % over cycles
+  double revolutions = 0;          ///< of the record that turns most
+  double load_spread = 0;          ///< (95 % - 5 %) / median
+  double temperature_spread = 0;   ///< 95 % - 5 % [K]
+  double stick_time_ratio = 1;     ///< 95 % / 5 % over cycles
   double longest_stick_ratio = 1;  ///< third longest over the median
   double median_stick_time = 0;
   bool breaks_away = false;
@@ -202,7 +202,8 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
       values = {line.frequency > 0 ? line.frequency : parameter.start};
       places = line.places;
     } else if (parameter.unit == "Hz" && candidate.info.key == "ringing") {
-      const Line line = strongest_ringing(observations, residual, std::max(parameter.lower, lowest_ringing(observations)));
+      const Line line =
+          strongest_ringing(observations, residual, std::max(parameter.lower, lowest_ringing(observations)));
       values = {line.frequency > 0 ? line.frequency : parameter.start};
       places = line.places;
     } else if (parameter.name == "t_c") {
@@ -210,8 +211,8 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
       places = static_cast<double>(observations.slips.size());
     } else {
       const double lower = bounds.lower[2 + k];
-      const double upper = parameter.unit == "s" ? std::min(bounds.upper[2 + k], std::max(2 * last, lower * 1.5))
-                                                 : bounds.upper[2 + k];
+      const double upper =
+          parameter.unit == "s" ? std::min(bounds.upper[2 + k], std::max(2 * last, lower * 1.5)) : bounds.upper[2 + k];
       values = grid_of(parameter, lower, upper, observations);
       if (parameter.unit != "rad") places = static_cast<double>(values.size());
     }

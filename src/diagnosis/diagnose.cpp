@@ -131,9 +131,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
 
   std::vector<Ladder> ladders(laws.size());
   run_tasks(laws.size(), options.threads, [&](std::size_t k) {
-    ladders[k] = climb(bench, laws[k], all, Limits(), options.most_effects, [&](std::string_view what, double part) {
-      voice.say(what, 0.05 + 0.75 * part);
-    });
+    ladders[k] = climb(bench, laws[k], all, Limits(), options.most_effects,
+                       [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
   });
   const Ladder& ladder = ladders[better_ladder(bench, ladders)];
   diagnosis.law = ladder.law;
@@ -149,7 +148,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   run_tasks(2 + ladder.steps.size(), options.threads, [&](std::size_t k) {
     if (k < 2) {
       const Trial& trial = k == 0 ? ladder.steps[0].trial : ladder.top();
-      probes[k] = probe_all(bench, try_model(bench, bench.coarse, trial.model, trial.p), trial, residual_of(bench, trial));
+      probes[k] =
+          probe_all(bench, try_model(bench, bench.coarse, trial.model, trial.p), trial, residual_of(bench, trial));
       return;
     }
     const Trial& trial = ladder.steps[k - 2].trial;
@@ -181,7 +181,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
     for (const std::size_t k : step.equivalent) rung.equivalent.push_back(all[k].info.key);
     diagnosis.ladder.push_back(std::move(rung));
   }
-  diagnosis.verdict = !structure.empty()          ? Verdict::unexplained
+  diagnosis.verdict = !structure.empty()        ? Verdict::unexplained
                       : ladder.steps.size() > 1 ? Verdict::effect_found
                                                 : Verdict::sufficient;
   diagnosis.next_experiment = next_experiment(ladder, all, structure);

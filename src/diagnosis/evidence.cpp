@@ -145,6 +145,8 @@ double fall_p_value(double fall, std::size_t parameters, double noise, double de
   return boost::math::cdf(boost::math::complement(distribution, fall / (k * noise * design_effect)));
 }
 
-double sum(const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
+double sum(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0);
+}
 
 }  // namespace tribofit::diagnosis

@@ -119,8 +119,7 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       finding.status = EffectStatus::missing;
       finding.held_out_rmse = fits[s].error.held_out_rmse;
       const double before = fits[s - 1].error.held_out_rmse;
-      finding.error_reduction =
-          std::clamp((before * before - std::pow(finding.held_out_rmse, 2)) / above, -1.0, 1.0);
+      finding.error_reduction = std::clamp((before * before - std::pow(finding.held_out_rmse, 2)) / above, -1.0, 1.0);
       finding.parameters = parameters_of(fits.back(), finding.key);
       finding.reason = "with it the error on held-out cycles falls";
       break;
@@ -172,12 +171,12 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
   if (!structure.empty()) {
     const std::string& variable = structure.front().variable;
     say(variable == "velocity" ? "Repeat at another disc speed: what belongs to v_r stays at the same v_r."
-        : variable == "time"   ? "Repeat the run: what belongs to the clock or to the surface comes back at another time."
-        : variable == "angle"  ? "Turn the disc by a quarter on its hub: a pattern of the disc turns with it."
-        : variable == "load"   ? "LadderStep the load up and down: what belongs to it comes back at the same load."
-        : variable == "frequency"
-            ? "Record with the disc at rest: a line that stays is picked up by the instruments."
-            : "Run at 1, 2, 4 and 8 rpm: a loop that is constant in ms is a lag or a delay, one constant in um a memory.");
+        : variable == "time" ? "Repeat the run: what belongs to the clock or to the surface comes back at another time."
+        : variable == "angle"     ? "Turn the disc by a quarter on its hub: a pattern of the disc turns with it."
+        : variable == "load"      ? "LadderStep the load up and down: what belongs to it comes back at the same load."
+        : variable == "frequency" ? "Record with the disc at rest: a line that stays is picked up by the instruments."
+                                  : "Run at 1, 2, 4 and 8 rpm: a loop that is constant in ms is a lag or a delay, one "
+                                    "constant in um a memory.");
   }
   if (text.empty() && ladder.steps.size() > 1) {
     say(fmt::format("To confirm: {}.", all[*ladder.steps.back().added].info.experiment));
@@ -215,9 +214,10 @@ std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe
     }
   } else if (probe.variable == "time" && probe.period > 0 && probe.value.size() == 2) {
     const double size = probe.value[0] * std::abs(top.p[1]);
-    forms.push_back(fmt::format("swing = a*cos(6.283185307*t/T-phi); a={:.4g}[0,1], T={:.6g}s[{:.6g},{:.6g}], "
-                                "phi={:.4g}[-6.3,6.3]",
-                                size, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]));
+    forms.push_back(
+        fmt::format("swing = a*cos(6.283185307*t/T-phi); a={:.4g}[0,1], T={:.6g}s[{:.6g},{:.6g}], "
+                    "phi={:.4g}[-6.3,6.3]",
+                    size, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]));
   }
   // The form is worth offering when the fit takes up most of what the free function does.
   std::string best_form;

@@ -16,7 +16,9 @@ namespace {
 constexpr double kToldApart = 40;
 constexpr double kToldApartSize = 0.003;  ///< and by this part of the squares of the noise
 
-double noise_of(const Level& level, const Trial& trial) { return trial.squares / level.values; }
+double noise_of(const Level& level, const Trial& trial) {
+  return trial.squares / level.values;
+}
 
 std::size_t offset_of(const FrictionModel& model, const std::string& key) {
   for (std::size_t k = 0; k < model.effects().size(); ++k) {
@@ -33,7 +35,8 @@ bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
     if (telling && trial.at_bound[offset + k]) return false;
-    if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations)) return false;
+    if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
+      return false;
   }
   return true;
 }
@@ -103,8 +106,8 @@ bool is_narrow(const EffectInfo& info) {
   return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
 }
 
-/// Every testable candidate beside the top of the ladder: searched and judged at low resolution, and those that may lead
-/// or be in the leader's group again at full resolution.
+/// Every testable candidate beside the top of the ladder: searched and judged at low resolution, and those that may
+/// lead or be in the leader's group again at full resolution.
 std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::vector<Candidate>& candidates,
                               const Limits& limits) {
   const std::vector<std::string> present = top.model.effect_keys();
@@ -175,7 +178,8 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
     for (std::size_t later = s + 1; later < ladder.steps.size(); ++later) {
       LadderStep step = ladder.steps[later];
       const std::vector<std::string> held = step.trial.model.effect_keys();
-      const auto gone = static_cast<std::size_t>(std::find(held.begin(), held.end(), candidate.info.key) - held.begin());
+      const auto gone =
+          static_cast<std::size_t>(std::find(held.begin(), held.end(), candidate.info.key) - held.begin());
       if (gone < held.size()) step.trial = try_without(bench, bench.fine, step.trial, gone);
       rebuilt.push_back(std::move(step));
     }

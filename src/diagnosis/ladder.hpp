@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/diagnosis/diagnosis.hpp"
 #include "trial.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -15,17 +15,17 @@ namespace tribofit::diagnosis {
 struct Judged {
   std::size_t candidate = 0;
   Trial trial;
-  double fall = 0;           ///< of the whitened squares on held-out cycles
-  double size = 0;           ///< that fall over the squares that sensor noise leaves
-  double p_value = 1;        ///< corrected for the number of candidates and of places looked at
+  double fall = 0;     ///< of the whitened squares on held-out cycles
+  double size = 0;     ///< that fall over the squares that sensor noise leaves
+  double p_value = 1;  ///< corrected for the number of candidates and of places looked at
   double design_effect = 1;
-  bool hopeless = false;     ///< far behind the best already at low resolution, and judged there only
-  bool plausible = true;     ///< no telling parameter on its bound
+  bool hopeless = false;  ///< far behind the best already at low resolution, and judged there only
+  bool plausible = true;  ///< no telling parameter on its bound
   bool passes = false;
 };
 
 struct LadderStep {
-  std::optional<std::size_t> added;    ///< candidate; none for the base law
+  std::optional<std::size_t> added;     ///< candidate; none for the base law
   Trial trial;                          ///< at full resolution
   std::vector<std::size_t> equivalent;  ///< candidates that do as well
   std::vector<Judged> judged;           ///< every candidate tried beside the step before
@@ -35,7 +35,7 @@ struct LadderStep {
 struct Ladder {
   BaseLaw law = BaseLaw::exponential;
   std::vector<LadderStep> steps;  ///< the base law first
-  std::vector<Judged> last;  ///< candidates judged beside the last rung: none of them passes
+  std::vector<Judged> last;       ///< candidates judged beside the last rung: none of them passes
   const Trial& top() const { return steps.back().trial; }
 };
 

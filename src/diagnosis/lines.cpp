@@ -90,7 +90,8 @@ void add_stick(const Motion& motion, const Span& stick, double rate, std::vector
   }
   const Eigen::VectorXd left = mu - design * (design.transpose() * design).ldlt().solve(design.transpose() * mu);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto at = static_cast<std::size_t>((motion.time[stick.begin + static_cast<std::size_t>(i)] - motion.time[0]) * rate);
+    const auto at =
+        static_cast<std::size_t>((motion.time[stick.begin + static_cast<std::size_t>(i)] - motion.time[0]) * rate);
     if (at < series.size()) series[at] = left(i);
   }
 }

@@ -126,8 +126,7 @@ Probe over_velocity(const Bench& bench, const Trial& trial) {
     const bool at_rest = range.begin + i == range.end;
     return hats(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
   };
-  const Eigen::VectorXd found =
-      judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  const Eigen::VectorXd found = judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
   probe.at = hats.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
@@ -227,8 +226,8 @@ Probe over_time(const Bench& bench, const Trial& trial, const Ground& ground) {
     }
     return out;
   };
-  const Eigen::VectorXd found = judge_probe(bench, bench.coarse, trial,
-                                            scaling(ground, kCosines + (swings ? 2 : 0), functions), places, probe);
+  const Eigen::VectorXd found =
+      judge_probe(bench, bench.coarse, trial, scaling(ground, kCosines + (swings ? 2 : 0), functions), places, probe);
   if (swings && found.size() == kCosines + 2) {
     probe.period = period;
     probe.value = {std::hypot(found(kCosines), found(kCosines + 1)), std::atan2(found(kCosines), found(kCosines + 1))};

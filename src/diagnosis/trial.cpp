@@ -45,8 +45,7 @@ void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& 
     trial.at_bound[k] = trial.p[k] <= bounds.lower[k] + 1e-3 * tolerance || trial.p[k] >= bounds.upper[k] - tolerance;
     trial.linear.free[k] = !trial.at_bound[k];
   }
-  std::vector<double> squares =
-      squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
+  std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
   trial.held_out = held_out_squares(trial.linear, blocks);
   pay_for_scatter(trial.whitening, squares);
   pay_for_scatter(trial.whitening, trial.held_out);
@@ -96,8 +95,7 @@ Trial try_base(const Bench& bench, const Level& level, const FrictionModel& mode
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals plain = residuals_of(level.observations, model, {});
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
-  Trial trial = try_model(bench, level, model,
-                          minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
+  Trial trial = try_model(bench, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
   // Scatter is known better once it has been taken out.
   return trial.usable ? try_model(bench, level, model, trial.p) : trial;
 }

@@ -20,12 +20,12 @@ struct Trial {
   FrictionModel model{BaseLaw::exponential};
   std::vector<double> p;  ///< SI
   std::vector<bool> at_bound;
-  bool usable = false;            ///< finite
+  bool usable = false;  ///< finite
   ModelResiduals::Whitening whitening;
-  Linearised linear;              ///< at p
-  std::vector<double> held_out;   ///< squares of each cycle, from parameters that the other blocks suggest
-  double squares = 0;             ///< of all cycles, at p
-  double held_out_squares = 0;    ///< sum of held_out
+  Linearised linear;             ///< at p
+  std::vector<double> held_out;  ///< squares of each cycle, from parameters that the other blocks suggest
+  double squares = 0;            ///< of all cycles, at p
+  double held_out_squares = 0;   ///< sum of held_out
 };
 
 /// The observations at one resolution.

@@ -23,8 +23,8 @@ class FullRecord {
   std::span<const Record> records_;
   const Observations& observations_;
   Channels needs_;
-  std::vector<Channel> channels_;                     // of each record
-  mutable std::vector<double> acceleration_, load_;   // of the slip asked for last
+  std::vector<Channel> channels_;                    // of each record
+  mutable std::vector<double> acceleration_, load_;  // of the slip asked for last
 };
 
 /// What a model leaves on every sample.

@@ -47,7 +47,7 @@ const std::vector<Sketch>& sketches() {
       {"stribeck-exponent", {1.8}, View::curve},
       {"frictional-lag", {2}, View::loop},
       {"rate-state", {100, 0}, View::loop},
-      {"bristle", {100, 0}, View::creep},
+      {"bristle", {40, 0}, View::creep},
       {"contact-spin", {4}, View::creep},
       {"ageing", {0.02, 0.1}, View::stick_time},
       {"asymmetry", {0.85}, View::directions},
@@ -202,12 +202,13 @@ Fingerprint directions(const Scene& scene) {
   return {.x = {"|v_r|", "mm/s", 1e-3}, .y = {"|mu|", "", 1}, .clouds = {forward, backward}, .conditions = ""};
 }
 
-/// The second half of a stick, when what re-stick struck has died away.
+/// The second half of a stick, without its end: what re-stick struck has died away.
 Fingerprint creep(const Scene& scene) {
   FingerprintCloud with{.name = "with", .x = {}, .y = {}}, without{.name = "without", .x = {}, .y = {}};
   for (const auto& [hidden, cloud] : {std::pair(&scene.with, &with), std::pair(&scene.without, &without)}) {
     const auto slips = slips_of(hidden->motion);
-    for (std::size_t i = (slips.at(1).second + slips.at(2).first) / 2; i < slips.at(2).first; ++i) {
+    const std::size_t begin = slips.at(1).second, end = slips.at(2).first, part = (end - begin) / 30;
+    for (std::size_t i = begin + 15 * part; i < end - part; ++i) {
       add(*cloud, hidden->recording.trace.friction[i], hidden->motion.relative_velocity[i]);
     }
   }
@@ -304,14 +305,11 @@ Fingerprint draw(View view, const Scene& scene) {
     case View::line:
       break;
   }
-  const std::size_t begin = slips_of(motion).at(1).second, end = slips_of(motion).at(2).first;
-  const double slope = (trace.friction[end - 1] - trace.friction[begin]) / static_cast<double>(end - 1 - begin);
+  const std::size_t begin = slips_of(motion).at(1).second;
   return over_samples(
-      {begin, end}, {"time in stick", "s", 1}, {"mu minus a straight line", "", 1},
+      {begin, begin + 2000}, {"time in stick", "ms", 1e-3}, {"mu as read minus mu", "", 1},
       [&](std::size_t i) { return motion.time[i] - motion.time[begin]; },
-      [&](std::size_t i) {
-        return trace.friction[i] - trace.friction[begin] - slope * static_cast<double>(i - begin);
-      });
+      [&](std::size_t i) { return trace.friction[i] - motion.friction[i]; });
 }
 
 /// "sigma = 0.001 s/mm, ..."

@@ -92,7 +92,7 @@ std::string what_next(const EffectInfo& effect) {
 
 std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options) {
   const Style style(options.colour, options.width);
-  std::string text = "Effects that can be added to a base law with --effect KEY; bounds are for dry contacts\n";
+  std::string text = "Effects that can be added to a base law with --effect KEY (bounds: dry contacts)\n";
   for (const EffectGroup group : {EffectGroup::friction, EffectGroup::rig, EffectGroup::measurement}) {
     text += style.heading(group == EffectGroup::friction ? "Friction"
                           : group == EffectGroup::rig    ? "Rig"

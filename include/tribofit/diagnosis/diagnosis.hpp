@@ -11,7 +11,7 @@
 namespace tribofit {
 
 struct DiagnosisOptions {
-  int threads = 0;  ///< 0: as many as there are; the result does not depend on it
+  int threads = 0;       ///< 0: as many as there are; the result does not depend on it
   int most_effects = 4;  ///< rungs beyond the base law
   /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
   std::function<void(std::string_view, double)> progress;
@@ -58,10 +58,10 @@ struct EffectFinding {
 
 /// One rung of the ladder: the model after an effect was added.
 struct Rung {
-  std::string added;           ///< key; empty for the base law
-  double held_out_rmse = 0;    ///< [1 or N]
+  std::string added;         ///< key; empty for the base law
+  double held_out_rmse = 0;  ///< [1 or N]
   double held_out_std_error = 0;
-  double rmse = 0;             ///< on all data [1 or N]
+  double rmse = 0;                      ///< on all data [1 or N]
   std::vector<std::string> equivalent;  ///< effects that fit as well, without `added`
 };
 
@@ -76,8 +76,8 @@ struct Confirmation {
 /// Where a law fails, which effect is missing, and whether it is enough.
 ///
 /// Method: every effect of the catalogue that the data can excite is added to the model, fitted within its plausible
-/// bounds and judged by the squares it leaves on held-out contiguous blocks of cycles, with the scatter of break-away as
-/// a random effect (likelihood). It counts when the fall is not chance (F test whose noise is that between cycles,
+/// bounds and judged by the squares it leaves on held-out contiguous blocks of cycles, with the scatter of break-away
+/// as a random effect (likelihood). It counts when the fall is not chance (F test whose noise is that between cycles,
 /// corrected for the number of candidates and of places looked at), is at least 2 % of what sensor noise leaves, and no
 /// telling parameter sits on a bound. The best one is added, with those that do as well as its group, until none is
 /// left; effects that became redundant are dropped; both base laws climb a ladder of their own and the better or
@@ -85,8 +85,8 @@ struct Confirmation {
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   BaseLaw law = BaseLaw::exponential;
-  std::vector<Share> where;      ///< of the base law, largest first
-  std::vector<Share> remaining;  ///< of the last rung, largest first
+  std::vector<Share> where;            ///< of the base law, largest first
+  std::vector<Share> remaining;        ///< of the last rung, largest first
   std::vector<EffectFinding> effects;  ///< every effect of the catalogue, in its order, then the user's own
   std::vector<Rung> ladder;            ///< base law first
   double floor_rmse = 0;               ///< [1 or N]
@@ -105,8 +105,8 @@ struct Diagnosed {
 /// Diagnoses one record, or several together with all parameters shared.
 /// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.
 /// Cost: about 1 s for 100 slips, on two threads.
-Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws, const std::vector<Effect>& own = {},
-                   const Instruments& instruments = {}, const FitOptions& fit = {},
+Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws,
+                   const std::vector<Effect>& own = {}, const Instruments& instruments = {}, const FitOptions& fit = {},
                    const DiagnosisOptions& options = {});
 
 }  // namespace tribofit

@@ -28,8 +28,8 @@ struct FitOptions {
   double loss_scale = 3;  ///< where the robust losses bend, in units of the floor
   int starts = 5;         ///< starting points; the first comes from the data, the others are seeded
   std::uint64_t seed = 1;
-  int folds = 5;         ///< contiguous blocks of cycles held out in turn
-  bool profile = false;  ///< profile likelihood intervals beside the others
+  int folds = 5;              ///< contiguous blocks of cycles held out in turn
+  bool profile = false;       ///< profile likelihood intervals beside the others
   std::vector<double> start;  ///< values (SI) to begin with, instead of several starts; empty: from the data
 };
 

@@ -21,17 +21,17 @@ double scalar_part(const T& x) {
 /// One instant as a friction law may see it. SI.
 template <class T>
 struct Instant {
-  T velocity;                   ///< v_r [m/s], signed
-  double direction = 1;         ///< of sliding: the sign of v_r, also at rest
-  double acceleration = 0;      ///< of the block [m/s^2]
-  double time = 0;              ///< from the trace's first sample [s]
-  double angle = 0;             ///< of the disc [rad]
-  double distance = 0;          ///< slid since the trace's first sample [m]
-  double stick_time = 0;        ///< of the stick before this slip [s]
-  double load = 0;              ///< normal force [N]
-  double mean_load = 1;         ///< N0 [N]
-  double temperature = 0;       ///< [degC]
-  double mean_temperature = 0;  ///< T0 [degC]
+  T velocity;                                                          ///< v_r [m/s], signed
+  double direction = 1;                                                ///< of sliding: the sign of v_r, also at rest
+  double acceleration = 0;                                             ///< of the block [m/s^2]
+  double time = 0;                                                     ///< from the trace's first sample [s]
+  double angle = 0;                                                    ///< of the disc [rad]
+  double distance = 0;                                                 ///< slid since the trace's first sample [m]
+  double stick_time = 0;                                               ///< of the stick before this slip [s]
+  double load = 0;                                                     ///< normal force [N]
+  double mean_load = 1;                                                ///< N0 [N]
+  double temperature = 0;                                              ///< [degC]
+  double mean_temperature = 0;                                         ///< T0 [degC]
   double since_break_away = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: no break-away was recorded
   double disc_speed = 0;                                               ///< omega [rad/s]
 };
