@@ -126,7 +126,8 @@ void require_channels(const IdentifyOptions& options, const Motion& motion, std:
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options) {
   Identification out;
   out.path = input.path;
-  Trace trace = read_trace(input.path, with_declared(input.read, options.instruments));
+  Trace trace =
+      input.trace ? *input.trace : read_trace(input.path, with_declared(input.read, options.instruments));
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
@@ -348,7 +349,7 @@ Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, co
 }  // namespace
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
-  Identification out = prepare({path, options.read}, options, options.motion);
+  Identification out = prepare({path, options.read, {}}, options, options.motion);
   if (out.analysed) fit_all(options, out);
   return out;
 }

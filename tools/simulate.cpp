@@ -392,7 +392,10 @@ void run(const Request& request) {
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
     text += fmt::format("what was not given is that of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
   }
-  print(text + fmt::format("next: identify --radius {:g}mm {}\n", 1e3 * plan.drive.radius, request.out));
+  std::string known = fmt::format("--radius {:g}mm", 1e3 * plan.drive.radius);
+  if (plan.drive.speed.constant) known += fmt::format(" --speed {:g}rpm", plan.speed / kRpm);
+  if (plan.model.needs().force) known += fmt::format(" --load {:g}N", plan.drive.mean_load);
+  print(text + fmt::format("next: identify {} {}\n", known, request.out));
 }
 
 void add_options(CLI::App& verb, Request& r) {

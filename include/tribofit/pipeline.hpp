@@ -13,6 +13,7 @@
 ///   Friction Radii (2023).
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,8 @@ struct Identification {
 /// One input file with what is known of it beforehand (a manifest's row over the command line).
 struct TraceInput {
   std::string path;
-  ReadOptions read;
+  ReadOptions read = {};
+  std::shared_ptr<const Trace> trace = {};  ///< already in memory (a simulation): `path` is its name, nothing is read
 };
 
 struct DiagnoseOptions {

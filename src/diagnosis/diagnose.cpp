@@ -61,14 +61,18 @@ std::size_t count_cycles(std::span<const Record> records) {
   return cycles;
 }
 
-/// Sensor noise of all records, without a line that runs through it.
-double sensor_noise(std::span<const Record> records) {
-  double squares = 0;
+/// Sensor noise of all records, without a line that runs through it, and scatter of break-away.
+Floor floor_of(std::span<const Record> records) {
+  double noise = 0, scatter = 0;
   for (const Record& record : records) {
     const Floor floor = estimate_floor(*record.motion, *record.segmentation);
-    squares += std::pow(noise_without_line(record, floor.noise), 2);
+    noise += std::pow(noise_without_line(record, floor.noise), 2) / static_cast<double>(records.size());
+    scatter += std::pow(floor.scatter, 2) / static_cast<double>(records.size());
   }
-  return std::sqrt(squares / static_cast<double>(records.size()));
+  Floor out;
+  out.noise = std::sqrt(noise);
+  out.scatter = std::sqrt(scatter);
+  return out;
 }
 
 }  // namespace
@@ -126,7 +130,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   constexpr std::size_t kFineValues = 20000, kCoarseValues = 5000;
   const Observations fine = observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400));
   const Observations coarse = observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40));
-  const Bench bench(records, fine, coarse, sensor_noise(records));
+  const Floor leaves = floor_of(records);
+  const Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
   const std::vector<Candidate> all = candidates(records, fine, own);
 
   std::vector<Ladder> ladders(laws.size());
@@ -159,12 +164,12 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   });
   Floor floor = out.fits.back().floor;
   const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
-  floor.noise = bench.floor_noise;
+  floor.noise = bench.noise;
   floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
   for (Fit& rung : out.fits) set_floor(floor, rung);
   diagnosis.floor_rmse = floor.rmse;
 
-  const std::vector<Probe> structure = remaining_structure(bench, probes[1]);
+  const std::vector<Probe> structure = remaining_structure(probes[1]);
   double left = 0;
   for (const Probe& probe : structure) left = std::max(left, probe.fall);
   const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;

@@ -47,7 +47,7 @@ std::string why_not(const Judged& judged) {
   if (!judged.plausible) return "it would help only with values that are not plausible";
   if (judged.fall <= 0) return "it does not lower the error on held-out cycles";
   if (judged.p_value >= kChance) return fmt::format("what it explains may be chance (p = {:.2g})", judged.p_value);
-  return fmt::format("what it explains is {:.1f} % of the sensor noise, too little to be named", 100 * judged.size);
+  return fmt::format("what it explains is {:.1f} % of what noise leaves, too little to be named", 100 * judged.size);
 }
 
 /// Parameters of a trial as the report shows them, without intervals.
@@ -141,11 +141,11 @@ std::vector<Share> shares_of(const std::vector<Probe>& probes, double above) {
   return out;
 }
 
-std::vector<Probe> remaining_structure(const Bench& bench, const std::vector<Probe>& probes) {
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
   std::vector<Probe> out;
   for (const Probe& probe : probes) {
     const bool chance = probe.p_value * static_cast<double>(probes.size()) >= kChance;
-    if (!chance && probe.fall > kLeastStructure * bench.floor_squares()) out.push_back(probe);
+    if (!chance && probe.fall > 0 && probe.size > kLeastStructure) out.push_back(probe);
   }
   std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;

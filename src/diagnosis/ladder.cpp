@@ -60,16 +60,17 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   out.p_value = std::min(1.0, tests * fall_p_value(poorer.squares - trial.squares, std::max<std::size_t>(1, free),
                                                    noise, out.design_effect, freedom));
   out.fall = poorer.held_out_squares - trial.held_out_squares;
-  out.size = out.fall / bench.floor_squares();
+  out.size = std::max(out.fall / bench.noise_squares(),
+                      (poorer.plain_squares - trial.plain_squares) / bench.floor_squares(trial.whitening));
   out.plausible = is_plausible(bench, trial, info);
-  out.passes = out.plausible && out.p_value < limits.p_value && out.size > limits.least_size;
+  out.passes = out.plausible && out.fall > 0 && out.p_value < limits.p_value && out.size > limits.least_size;
   return out;
 }
 
 bool told_apart(const Bench& bench, const Judged& better, const Judged& worse) {
   const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
   return difference > kToldApart * noise_of(bench.fine, better.trial) * better.design_effect &&
-         difference > kToldApartSize * bench.floor_squares();
+         difference > kToldApartSize * bench.noise_squares();
 }
 
 /// The leader among those that pass, with those that cannot be told from it.
@@ -113,7 +114,8 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
   const std::vector<std::string> present = top.model.effect_keys();
   const std::vector<double> residual = residual_of(bench, top);
   const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
-  const double least = 0.5 * limits.least_size * bench.floor_squares();
+  const double least = 0.5 * limits.least_size * bench.noise_squares();
+  const double least_plain = 0.5 * limits.least_size * bench.floor_squares(top.whitening);
   const auto tests = static_cast<double>(candidates.size());
   std::vector<Judged> out;
   std::vector<double> places;
@@ -127,7 +129,7 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     const bool narrow = is_narrow(candidate.info);
     const Level& level = narrow ? bench.fine : bench.coarse;
     const Trial& beside = narrow ? top : coarse_top;
-    const Opening opening = opening_of(bench, level, beside, candidate, residual, least);
+    const Opening opening = opening_of(bench, level, beside, candidate, residual, least, least_plain);
     Trial trial;
     const FrictionModel model = with_effect(top.model, candidate.effect);
     if (opening.start.empty()) {
@@ -147,7 +149,7 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     const Candidate& candidate = candidates[judged.candidate];
     if (!judged.trial.usable || is_narrow(candidate.info)) continue;
     const double behind = judged.trial.held_out_squares - best;
-    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.floor_squares() || judged.fall < 0;
+    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0;
     if (judged.hopeless) {
       judged.passes = false;
       continue;
@@ -231,7 +233,7 @@ std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders
     const double noise = std::min(first.squares, second.squares) / bench.fine.values;
     // A longer ladder must earn every rung that the other does without.
     const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
-    const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.floor_squares();
+    const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.noise_squares();
     const bool apart = std::abs(difference) > std::max(kToldApart * noise, least);
     if (apart || more == 0 ? difference > 0 : second.p.size() < first.p.size()) best = k;
   }

@@ -16,7 +16,9 @@ struct Judged {
   std::size_t candidate = 0;
   Trial trial;
   double fall = 0;     ///< of the whitened squares on held-out cycles
-  double size = 0;     ///< that fall over the squares that sensor noise leaves
+  /// That fall over the squares that sensor noise leaves, or the fall of the plain squares over those that noise and
+  /// scatter leave: the larger.
+  double size = 0;
   double p_value = 1;  ///< corrected for the number of candidates and of places looked at
   double design_effect = 1;
   bool hopeless = false;  ///< far behind the best already at low resolution, and judged there only

@@ -107,6 +107,12 @@ Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial&
   const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
   const double after = sum(squares_after(wide, step));
   probe.fall = sum(held_out_squares(trial.linear, bench.blocks)) - sum(held_out_squares(wide, bench.blocks));
+  ModelResiduals plain(trial.model, observations, all);
+  Linearised flat;
+  flat.rows = plain.white_rows(trial.p.data(), columns);
+  flat.free = wide.free;
+  const double fall = trial.plain_squares - sum(squares_after(flat, gauss_newton_step(flat)));
+  probe.size = std::max(probe.fall / bench.noise_squares(), fall / bench.floor_squares(trial.whitening));
   for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
   const double noise = after / level.values;
   double design = 1;

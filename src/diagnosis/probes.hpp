@@ -12,6 +12,7 @@ namespace tribofit::diagnosis {
 struct Probe {
   std::string variable;
   double fall = 0;     ///< of the squares on held-out cycles
+  double size = 0;     ///< see Judged::size
   double p_value = 1;  ///< not corrected for the number of variables
   double period = 0;   ///< of the strongest swing over time [s], or 1/frequency of the strongest line; else 0
   std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|

@@ -75,8 +75,20 @@ void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
 Level::Level(const Observations& given)
     : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
 
-Bench::Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double noise)
-    : records(given), fine(finely), coarse(coarsely), blocks(finely.cycles), floor_noise(noise) {}
+Bench::Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
+             double sensor_noise, double break_away_scatter)
+    : records(given),
+      fine(finely),
+      coarse(coarsely),
+      blocks(finely.cycles),
+      noise(sensor_noise),
+      scatter(break_away_scatter) {}
+
+double Bench::floor_squares(const ModelResiduals::Whitening& whitening) const {
+  double sensitivity = 0;
+  for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
+  return noise_squares() + scatter * scatter * sensitivity;
+}
 
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start) {
   Trial trial;
@@ -87,7 +99,12 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   const ModelResiduals residuals = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(20)).p;
   wrap_phases(model, trial.p);
-  judge(bench.blocks, residuals, bounds, trial);
+  // Scatter is known better once the model is: a start may see as scatter what an effect explains.
+  trial.whitening = residuals_of(observations, model, {}).whitening_at(trial.p.data());
+  const ModelResiduals again = residuals_of(observations, model, trial.whitening);
+  trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
+  judge(bench.blocks, again, bounds, trial);
+  if (trial.usable) trial.plain_squares = sum(again.squares(trial.p.data()));
   return trial;
 }
 
@@ -95,9 +112,7 @@ Trial try_base(const Bench& bench, const Level& level, const FrictionModel& mode
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals plain = residuals_of(level.observations, model, {});
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
-  Trial trial = try_model(bench, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
-  // Scatter is known better once it has been taken out.
-  return trial.usable ? try_model(bench, level, model, trial.p) : trial;
+  return try_model(bench, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
 }
 
 std::vector<double> residual_of(const Bench& bench, const Trial& trial) {
@@ -121,7 +136,7 @@ FrictionModel with_effect(const FrictionModel& model, const Effect& effect) {
 }
 
 Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                   std::span<const double> residual, double least) {
+                   std::span<const double> residual, double least, double least_plain) {
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
@@ -163,7 +178,13 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
       opening.start = start;
     }
   }
-  if (now - best_promise < least) opening.start.clear();
+  if (opening.start.empty() || now - best_promise >= least) return opening;
+  // What acts through the level of break-away may look like its scatter, which has been taken out.
+  Linearised plain;
+  plain.rows = residuals_of(level.observations, model, {}).white_rows(opening.start.data());
+  plain.free.assign(opening.start.size(), true);
+  const double left = sum(squares_after(plain, gauss_newton_step(plain)));
+  if (base.plain_squares - left < least_plain) opening.start.clear();
   return opening;
 }
 

@@ -25,6 +25,7 @@ struct Trial {
   Linearised linear;             ///< at p
   std::vector<double> held_out;  ///< squares of each cycle, from parameters that the other blocks suggest
   double squares = 0;            ///< of all cycles, at p
+  double plain_squares = 0;      ///< the same not whitened: scatter of break-away counts in full
   double held_out_squares = 0;   ///< sum of held_out
 };
 
@@ -43,11 +44,15 @@ struct Bench {
   Level fine;    ///< what models are judged by
   Level coarse;  ///< fewer values a slip: where a search begins, and where the hopeless are found out
   Blocks blocks;
-  double floor_noise = 0;  ///< sensor noise of a sample [1 or N]
+  double noise = 0;    ///< sensor noise of a sample [1 or N]
+  double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
 
-  Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double noise);
+  Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,
+        double break_away_scatter);
   /// Squares that sensor noise leaves.
-  double floor_squares() const { return fine.samples * floor_noise * floor_noise; }
+  double noise_squares() const { return fine.samples * noise * noise; }
+  /// Squares that noise and scatter leave together, in slips whose friction follows break-away as the whitening says.
+  double floor_squares(const ModelResiduals::Whitening& whitening) const;
 };
 
 /// Fits a model from a start, with the scatter of break-away as the model sees it there.
@@ -61,14 +66,15 @@ std::vector<double> residual_of(const Bench& bench, const Trial& trial);
 
 /// Where one effect more begins to lower what a trial leaves.
 struct Opening {
-  std::vector<double> start;  ///< of all parameters [SI]; empty: no start promises a fall of the squares by `least`
+  std::vector<double> start;  ///< of all parameters [SI]; empty: no start promises a fall of the squares
   double places = 1;          ///< independent places that were looked at
 };
 
 /// The best of the starts of an effect beside the model of `base`, a trial at `level`.
-/// residual: see residual_of.
+/// residual: see residual_of; least, least_plain: falls of the whitened and of the plain squares, one of which a start
+/// must promise.
 Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                   std::span<const double> residual, double least);
+                   std::span<const double> residual, double least, double least_plain);
 
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);

@@ -145,7 +145,7 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
         if (std::isfinite(kept[k])) levels(static_cast<Eigen::Index>(k)) = kept[k] - p[k];
       }
     }
-    const Eigen::VectorXd step = levels - inverse_over(curvature, free) * (gradient + curvature * levels);
+    const Eigen::VectorXd step = levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
     for (std::size_t k = 0; k < q.size(); ++k) {
       q[k] += step(static_cast<Eigen::Index>(k));
       if (free[k]) q[k] = std::clamp(q[k], job.bounds.lower[k], job.bounds.upper[k]);

@@ -63,6 +63,24 @@ Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bo
   return out;
 }
 
+Eigen::MatrixXd inverse_where_known(const Eigen::MatrixXd& kept, const Eigen::MatrixXd& total,
+                                    const std::vector<bool>& free) {
+  constexpr double kLeastKnown = 0.1;
+  // total^-1 = B B'; B' kept B has the known parts as eigenvalues. Scaled, because units differ by many orders.
+  const Eigen::Index n = total.rows();
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) scale(i) = total(i, i) > 0 ? 1 / std::sqrt(total(i, i)) : 1;
+  const Eigen::MatrixXd scaled_total = scale.asDiagonal() * total * scale.asDiagonal();
+  const Eigen::MatrixXd scaled_kept = scale.asDiagonal() * kept * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(inverse_over(scaled_total, free));
+  const Eigen::MatrixXd basis = all.eigenvectors() * all.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(basis.transpose() * scaled_kept * basis);
+  Eigen::VectorXd inverse = known.eigenvalues();
+  for (Eigen::Index i = 0; i < n; ++i) inverse(i) = inverse(i) >= kLeastKnown ? 1 / inverse(i) : 0;
+  const Eigen::MatrixXd directions = scale.asDiagonal() * basis * known.eigenvectors();
+  return directions * inverse.asDiagonal() * directions.transpose();
+}
+
 Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bool>& free) {
   const auto cycles = static_cast<Eigen::Index>(equations.curvature.size());
   const auto n = static_cast<double>(cycles);

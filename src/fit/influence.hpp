@@ -35,6 +35,11 @@ struct Spread {
 };
 Spread spread_of(const Eigen::MatrixXd& influence);
 
+/// The inverse of `kept` over the free parameters, along directions about which `kept` knows at least a tenth of what
+/// `total` knows; nothing along the others.
+Eigen::MatrixXd inverse_where_known(const Eigen::MatrixXd& kept, const Eigen::MatrixXd& total,
+                                    const std::vector<bool>& free);
+
 /// Inverse of the block of `matrix` over the free parameters, zeros elsewhere; stable when nearly singular.
 Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bool>& free);
 

@@ -12,7 +12,7 @@ struct StribeckExponent {
     return {
         .key = "stribeck-exponent",
         .statement = "friction falls with speed over a sharper or wider range than the base law",
-        .equation = "exp(-(alpha v)^delta), or 1/(1 + (beta v)^delta) = fall of the base law",
+        .equation = "mu = mu_k + (mu_s - mu_k) exp(-(alpha v)^delta), or 1/(1 + (beta v)^delta) for the last term",
         .source =
             "L. C. Bo, D. Pavelescu, Wear 82 (1982) 277; B. Armstrong-Helouvry, P. "
             "Dupont, "
