@@ -100,6 +100,7 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
     return "the block slides in one direction only";
   }
   if (info.key == "ringing" && !seen.breaks_away) return "there is no break-away to strike it";
+  if (info.key == "contact-spin" && !seen.breaks_away) return "there is no break-away before which the block could creep";
   return {};
 }
 

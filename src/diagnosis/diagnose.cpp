@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base_law.hpp"
 #include "findings.hpp"
 #include "lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -107,7 +108,7 @@ std::string_view to_string(EffectStatus status) {
   return "untestable";
 }
 
-Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws, const std::vector<Effect>& own,
+Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& given, const std::vector<Effect>& own,
                    const Instruments& instruments, const FitOptions& fit, const DiagnosisOptions& options) {
   Diagnosed out;
   Diagnosis& diagnosis = out.diagnosis;
@@ -134,12 +135,13 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   const Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
   const std::vector<Candidate> all = candidates(records, fine, own);
 
+  const std::vector<BaseLaw> laws = base_laws(records, given);
   std::vector<Ladder> ladders(laws.size());
   run_tasks(laws.size(), options.threads, [&](std::size_t k) {
     ladders[k] = climb(bench, laws[k], all, Limits(), options.most_effects,
                        [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
   });
-  const Ladder& ladder = ladders[better_ladder(bench, ladders)];
+  const Ladder& ladder = ladders[told_ladder(bench, ladders)];
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;

@@ -42,6 +42,7 @@ Normal normal_of(const Linearised& model, const std::vector<Eigen::Index>& index
 /// Columns that turn the curvature into the identity, without directions the data do not determine.
 Eigen::MatrixXd whitener(const Eigen::MatrixXd& curvature) {
   const Eigen::Index n = curvature.rows();
+  if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i) scale(i) = curvature(i, i) > 0 ? 1 / std::sqrt(curvature(i, i)) : 0;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * curvature * scale.asDiagonal());
@@ -66,6 +67,7 @@ Eigen::VectorXd spread_out(const Eigen::VectorXd& step, const std::vector<Eigen:
 /// Step from the normal equations of the kept cycles, in the basis in which all cycles know one of everything.
 Eigen::VectorXd step_of(const Normal& kept, const Eigen::MatrixXd& basis) {
   constexpr double kLeastKnown = 0.1;
+  if (basis.cols() == 0) return Eigen::VectorXd::Zero(basis.rows());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(basis.transpose() * kept.curvature * basis);
   Eigen::VectorXd pull = known.eigenvectors().transpose() * (basis.transpose() * kept.gradient);
   for (Eigen::Index i = 0; i < pull.size(); ++i) {
@@ -77,15 +79,34 @@ Eigen::VectorXd step_of(const Normal& kept, const Eigen::MatrixXd& basis) {
 
 }  // namespace
 
-Blocks::Blocks(std::size_t cycles)
-    : cycles_(std::max<std::size_t>(1, cycles)), count_(std::clamp<std::size_t>(cycles / 5, 2, 10)) {}
-
 Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<bool>& kept) {
   const auto index = free_indices(model);
   const Normal all = normal_of(model, index, {});
   const Eigen::MatrixXd basis = whitener(all.curvature);
   const Normal part = kept.empty() ? all : normal_of(model, index, kept);
   return spread_out(step_of(part, basis), index, model.free.size());
+}
+
+Eigen::VectorXd bounded_step(Linearised model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(lower.size());
+  for (Eigen::Index round = 0; round <= lower.size(); ++round) {
+    const Eigen::VectorXd free_step = gauss_newton_step(model);
+    Eigen::Index worst = -1;
+    double most = 0;
+    for (Eigen::Index k = 0; k < lower.size(); ++k) {
+      if (!model.free[static_cast<std::size_t>(k)]) continue;
+      step(k) = std::clamp(free_step(k), lower(k), upper(k));
+      const double beyond = std::abs(free_step(k) - step(k)) / std::max(1e-300, upper(k) - lower(k));
+      if (beyond > most) {
+        most = beyond;
+        worst = k;
+      }
+    }
+    if (worst < 0) break;
+    model.free[static_cast<std::size_t>(worst)] = false;
+    for (Eigen::MatrixXd& rows : model.rows) rows.col(rows.cols() - 1) += rows.col(worst) * step(worst);
+  }
+  return step;
 }
 
 std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "fit/model_residuals.hpp"
@@ -14,12 +16,16 @@ namespace tribofit::diagnosis {
 /// Neighbouring cycles share slow scatter, so a block is at least five of them; about ten blocks.
 class Blocks {
  public:
-  explicit Blocks(std::size_t cycles);
+  explicit Blocks(const Observations& observations)
+      : count_(std::clamp<std::size_t>(observations.cycles / 5, 2, 10)), of_(blocks_of(observations, count_)) {}
+  /// From the block of every cycle.
+  explicit Blocks(std::vector<std::size_t> of) : count_(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1), of_(std::move(of)) {}
   std::size_t count() const { return count_; }
-  std::size_t of(std::size_t cycle) const { return cycle * count_ / cycles_; }
+  std::size_t of(std::size_t cycle) const { return of_[cycle]; }
 
  private:
-  std::size_t cycles_, count_;
+  std::size_t count_;
+  std::vector<std::size_t> of_;
 };
 
 /// A model as the data see it near one point: whitened rows [J r] of every cycle, compressed.
@@ -35,6 +41,10 @@ struct Linearised {
 /// they know at least a tenth of what all cycles know; the rest stays as it is.
 /// kept: one flag a cycle; empty: all of them.
 Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<bool>& kept = {});
+
+/// The same for all cycles within bounds on the step: parameters that would leave them go to their bound and the others
+/// follow.
+Eigen::VectorXd bounded_step(Linearised model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
 /// Whitened squares of each cycle after a step of the parameters.
 std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step);

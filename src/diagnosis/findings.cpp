@@ -173,7 +173,7 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
     say(variable == "velocity" ? "Repeat at another disc speed: what belongs to v_r stays at the same v_r."
         : variable == "time" ? "Repeat the run: what belongs to the clock or to the surface comes back at another time."
         : variable == "angle"     ? "Turn the disc by a quarter on its hub: a pattern of the disc turns with it."
-        : variable == "load"      ? "LadderStep the load up and down: what belongs to it comes back at the same load."
+        : variable == "load"      ? "Step the load up and down: what belongs to it comes back at the same load."
         : variable == "frequency" ? "Record with the disc at rest: a line that stays is picked up by the instruments."
                                   : "Run at 1, 2, 4 and 8 rpm: a loop that is constant in ms is a lag or a delay, one "
                                     "constant in um a memory.");
@@ -194,6 +194,9 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
 
 std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe) {
   std::vector<std::string> forms;
+  // A coefficient is of the order of one, a force of the order of what was recorded; probes may overshoot either.
+  double largest = std::max(1.0, bench.fine.observations.largest_friction);
+  for (const double value : probe.value) largest = std::max(largest, 5 * std::abs(value));
   if (probe.variable == "velocity" && probe.at.size() > 4) {
     std::size_t peak = 1;
     // About the straight line between the ends, which the law itself can take up.
@@ -208,16 +211,16 @@ std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe
     for (std::size_t k = peak > 1 ? peak - 1 : 1; k <= std::min(peak + 1, probe.at.size() - 2); ++k) {
       for (const double w : {width, 2 * width}) {
         forms.push_back(fmt::format(
-            "hump = a*exp(-((v-v0)/w)^2); a={:.4g}[-1,1], v0={:.4g}mm/s[0,{:.4g}], w={:.4g}mm/s[{:.4g},{:.4g}]",
-            bulge(peak), probe.at[k] * 1e3, last, w, 0.3 * width, last));
+            "hump = a*exp(-((v-v0)/w)^2); a={:.4g}[{:.4g},{:.4g}], v0={:.4g}mm/s[0,{:.4g}], w={:.4g}mm/s[{:.4g},{:.4g}]",
+            bulge(peak), -largest, largest, probe.at[k] * 1e3, last, w, 0.3 * width, last));
       }
     }
   } else if (probe.variable == "time" && probe.period > 0 && probe.value.size() == 2) {
     const double size = probe.value[0] * std::abs(top.p[1]);
     forms.push_back(
-        fmt::format("swing = a*cos(6.283185307*t/T-phi); a={:.4g}[0,1], T={:.6g}s[{:.6g},{:.6g}], "
+        fmt::format("swing = a*cos(6.283185307*t/T-phi); a={:.4g}[0,{:.4g}], T={:.6g}s[{:.6g},{:.6g}], "
                     "phi={:.4g}[-6.3,6.3]",
-                    size, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]));
+                    size, largest, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]));
   }
   // The form is worth offering when the fit takes up most of what the free function does.
   std::string best_form;

@@ -34,7 +34,9 @@ bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
-    if (telling && trial.at_bound[offset + k]) return false;
+    // delta = 2 is the Gaussian curve of the textbooks, a law of its own.
+    const bool gaussian = q.name == "delta" && trial.p[offset + k] > 1;
+    if (telling && !gaussian && trial.at_bound[offset + k]) return false;
     if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
       return false;
   }
@@ -114,8 +116,13 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
   const std::vector<std::string> present = top.model.effect_keys();
   const std::vector<double> residual = residual_of(bench, top);
   const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
-  const double least = 0.5 * limits.least_size * bench.noise_squares();
-  const double least_plain = 0.5 * limits.least_size * bench.floor_squares(top.whitening);
+  // What is too small to be named, or small beside what is wrong for another reason, need not be fitted.
+  constexpr double kLeastPart = 0.02;
+  const auto enough = [&](double floor, double squares) {
+    return std::max(0.5 * limits.least_size * floor, kLeastPart * (squares - floor));
+  };
+  const double least = enough(bench.noise_squares(), coarse_top.squares);
+  const double least_plain = enough(bench.floor_squares(top.whitening), coarse_top.plain_squares);
   const auto tests = static_cast<double>(candidates.size());
   std::vector<Judged> out;
   std::vector<double> places;
@@ -132,10 +139,10 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     const Opening opening = opening_of(bench, level, beside, candidate, residual, least, least_plain);
     Trial trial;
     const FrictionModel model = with_effect(top.model, candidate.effect);
-    if (opening.start.empty()) {
-      trial.model = model;
-    } else {
-      trial = try_model(bench, level, model, opening.start);
+    trial.model = model;
+    for (const auto& start : opening.starts) {
+      Trial next = try_model(bench, level, model, start);
+      if (next.usable && (!trial.usable || next.squares < trial.squares)) trial = std::move(next);
     }
     Judged judged = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
     judged.candidate = k;

@@ -62,6 +62,18 @@ SolverOptions quick_search(int iterations) {
   return options;
 }
 
+/// How far a step may go.
+struct Room {
+  Eigen::VectorXd lower, upper;
+};
+
+Room room_about(const std::vector<double>& start, const Bounds& bounds) {
+  const auto n = static_cast<Eigen::Index>(start.size());
+  const Eigen::Map<const Eigen::VectorXd> from(start.data(), n);
+  return {Eigen::Map<const Eigen::VectorXd>(bounds.lower.data(), n) - from,
+          Eigen::Map<const Eigen::VectorXd>(bounds.upper.data(), n) - from};
+}
+
 /// A full turn more or less is the same phase.
 void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
   constexpr double kPi = 3.14159265358979323846;
@@ -80,7 +92,7 @@ Bench::Bench(std::span<const Record> given, const Observations& finely, const Ob
     : records(given),
       fine(finely),
       coarse(coarsely),
-      blocks(finely.cycles),
+      blocks(finely),
       noise(sensor_noise),
       scatter(break_away_scatter) {}
 
@@ -151,40 +163,55 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   const std::size_t added = candidate.info.parameters.size();
   const Starts starts = starts_of(candidate, bench.records, bench.fine.observations, residual);
 
-  Opening opening;
-  opening.places = starts.places;
-  double best_score = 0, best_promise = 0;
+  const auto is_phase = [&](std::size_t k) { return candidate.info.parameters[k].unit == "rad"; };
+  struct Promise {
+    std::vector<double> start, place;  ///< place: the values that are no phases
+    double score, squares;
+  };
+  std::vector<Promise> promises;  // the best of every place
   for (const auto& values : starts.values) {
-    std::vector<double> start;
+    Promise promise;
     std::size_t from_base = 0;
     for (std::size_t k = 0; k < base.p.size() + added; ++k) {
       const bool own = k >= offset && k < offset + added;
-      start.push_back(own ? values[k - offset] : base.p[from_base]);
+      promise.start.push_back(std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
       if (!own) ++from_base;
-      start.back() = std::clamp(start.back(), bounds.lower[k], bounds.upper[k]);
+      if (own && !is_phase(k - offset)) promise.place.push_back(values[k - offset]);
     }
     Linearised linear;
-    linear.rows = residuals.white_rows(start.data());
+    linear.rows = residuals.white_rows(promise.start.data());
     if (!linear.finite()) continue;
-    linear.free.assign(start.size(), true);
-    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(start.size()));
-    const double here = sum(squares_after(linear, nothing));
-    const double promise = sum(squares_after(linear, gauss_newton_step(linear)));
+    linear.free.assign(promise.start.size(), true);
+    const Room room = room_about(promise.start, bounds);
+    const double here = sum(squares_after(linear, Eigen::VectorXd::Zero(room.lower.size())));
+    const double there = sum(squares_after(linear, bounded_step(linear, room.lower, room.upper)));
+    promise.squares = std::min(here, there);
     // A linear step promises the same from every phase; the start that is lower now is the nearer one.
-    const double score = promise + 1e-2 * here;
-    if (opening.start.empty() || score < best_score) {
-      best_score = score;
-      best_promise = std::min(promise, here);
-      opening.start = start;
+    promise.score = there + 1e-2 * here;
+    const auto same = std::find_if(promises.begin(), promises.end(),
+                                   [&](const Promise& other) { return other.place == promise.place; });
+    if (same == promises.end()) {
+      promises.push_back(std::move(promise));
+    } else if (promise.score < same->score) {
+      *same = std::move(promise);
     }
   }
-  if (opening.start.empty() || now - best_promise >= least) return opening;
-  // What acts through the level of break-away may look like its scatter, which has been taken out.
-  Linearised plain;
-  plain.rows = residuals_of(level.observations, model, {}).white_rows(opening.start.data());
-  plain.free.assign(opening.start.size(), true);
-  const double left = sum(squares_after(plain, gauss_newton_step(plain)));
-  if (base.plain_squares - left < least_plain) opening.start.clear();
+  std::stable_sort(promises.begin(), promises.end(),
+                   [](const Promise& a, const Promise& b) { return a.score < b.score; });
+  Opening opening;
+  opening.places = starts.places;
+  if (promises.empty()) return opening;
+  if (now - promises[0].squares < least) {
+    // What acts through the level of break-away may look like its scatter, which has been taken out.
+    Linearised plain;
+    plain.rows = residuals_of(level.observations, model, {}).white_rows(promises[0].start.data());
+    plain.free.assign(promises[0].start.size(), true);
+    const Room room = room_about(promises[0].start, bounds);
+    const double left = sum(squares_after(plain, bounded_step(plain, room.lower, room.upper)));
+    if (base.plain_squares - left < least_plain) return opening;
+  }
+  constexpr std::size_t kMost = 2;
+  for (std::size_t k = 0; k < std::min(kMost, promises.size()); ++k) opening.starts.push_back(promises[k].start);
   return opening;
 }
 

@@ -66,11 +66,12 @@ std::vector<double> residual_of(const Bench& bench, const Trial& trial);
 
 /// Where one effect more begins to lower what a trial leaves.
 struct Opening {
-  std::vector<double> start;  ///< of all parameters [SI]; empty: no start promises a fall of the squares
+  std::vector<std::vector<double>> starts;  ///< of all parameters [SI], the most promising first; empty: none promises
+                                            ///< a fall of the squares
   double places = 1;          ///< independent places that were looked at
 };
 
-/// The best of the starts of an effect beside the model of `base`, a trial at `level`.
+/// The best two of the starts of an effect beside the model of `base`, a trial at `level`.
 /// residual: see residual_of; least, least_plain: falls of the whitened and of the plain squares, one of which a start
 /// must promise.
 Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "errors.hpp"
 #include "influence.hpp"
@@ -38,12 +40,18 @@ std::vector<std::size_t> sample_of_slips(const Observations& observations, std::
   return slips;
 }
 
-std::size_t fold_of_cycle(std::size_t cycle, std::size_t cycles, std::size_t folds) {
-  return cycle * folds / cycles;
-}
-
 std::size_t fold_count(const Observations& observations, const FitOptions& options) {
   return std::min(observations.cycles, static_cast<std::size_t>(std::max(2, options.folds)));
+}
+
+/// Good enough to compare.
+SolverOptions quick_search() {
+  SolverOptions quick;
+  quick.max_iterations = 40;
+  quick.relative_cost = 1e-8;
+  quick.relative_step = 1e-7;
+  quick.careful = false;
+  return quick;
 }
 
 /// One fit in the making: what all its steps share.
@@ -74,11 +82,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
   if (!job.options.start.empty()) starts = {job.options.start};
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
-  SolverOptions quick;
-  quick.max_iterations = 40;
-  quick.relative_cost = 1e-8;
-  quick.relative_step = 1e-7;
-  quick.careful = false;
+  const SolverOptions quick = quick_search();
   std::vector<SolverResult> tries;
   for (const auto& s : starts) tries.push_back(job.solve(part, s, quick));
   std::size_t best = 0;
@@ -114,8 +118,8 @@ SolverResult published_estimate(Job& job, const CycleExtremes& extremes, std::ve
 }
 
 /// Error on cycles that took no part: contiguous blocks of cycles are left out in turn and the rest fitted, by one
-/// Gauss-Newton step from the fit of all. The step is short (a fraction of a standard error), so it ends where a refit
-/// would.
+/// Gauss-Newton step from the fit of all. The step is mostly short (a fraction of a standard error), so it ends where a
+/// refit would; where it is not, the rest is fitted again.
 /// Levels from extremes are those of the cycles kept.
 void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
               const std::vector<bool>& free, const SampleErrors& errors, const CycleExtremes* extremes, Fit& fit) {
@@ -123,11 +127,12 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
+  fit.cycle_folds = blocks_of(job.observations, folds);
   for (std::size_t fold = 0; fold < folds; ++fold) {
     Eigen::MatrixXd curvature = equations.total;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(curvature.rows());
     for (std::size_t c = 0; c < job.observations.cycles; ++c) {
-      if (fold_of_cycle(c, job.observations.cycles, folds) == fold) {
+      if (fit.cycle_folds[c] == fold) {
         curvature -= equations.curvature[c];
       } else {
         gradient += equations.gradient[c];
@@ -138,7 +143,7 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
     if (extremes != nullptr) {
       std::vector<bool> left_out(job.observations.cycles);
       for (std::size_t c = 0; c < left_out.size(); ++c) {
-        left_out[c] = fold_of_cycle(c, job.observations.cycles, folds) == fold;
+        left_out[c] = fit.cycle_folds[c] == fold;
       }
       const std::array<double, 2> kept = extremes->means(left_out);
       for (std::size_t k = 0; k < 2; ++k) {
@@ -146,14 +151,19 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
       }
     }
     const Eigen::VectorXd step = levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
+    std::vector<std::size_t> held, kept;
+    for (const std::size_t s : all_slips(job.observations)) {
+      (fit.cycle_folds[job.observations.slips[s].cycle] == fold ? held : kept).push_back(s);
+    }
+    bool is_long = false;  // too long for the model to be straight over it
     for (std::size_t k = 0; k < q.size(); ++k) {
-      q[k] += step(static_cast<Eigen::Index>(k));
+      const double length = step(static_cast<Eigen::Index>(k));
+      const double range = job.bounds.upper[k] - job.bounds.lower[k];
+      is_long |= free[k] && std::abs(length) > 0.2 * std::abs(p[k]) + 1e-3 * range;
+      q[k] += length;
       if (free[k]) q[k] = std::clamp(q[k], job.bounds.lower[k], job.bounds.upper[k]);
     }
-    std::vector<std::size_t> held;
-    for (const std::size_t s : all_slips(job.observations)) {
-      if (fold_of_cycle(job.observations.slips[s].cycle, job.observations.cycles, folds) == fold) held.push_back(s);
-    }
+    if (is_long && extremes == nullptr) q = job.solve(kept, p, quick_search()).p;
     // The squares on every sample at p are known; means over a few samples give their change exactly
     // where the two curves differ by a nearly constant amount within such a mean.
     const ModelResiduals residuals(job.model, job.observations, held);
@@ -177,6 +187,35 @@ bool on_bound(double value, double lower, double upper) {
 std::string in_newtons(const std::string& unit) {
   if (unit == "1") return "N";
   return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
+}
+
+/// How far a parameter may move from its best value, the others staying, before the squares tell (a rise by
+/// chi-squared's 95 % point). For places where the derivative is nil: the time of a step that happened in stick.
+std::pair<double, double> silent_interval(const Job& job, const ModelResiduals& residuals, std::vector<double> p,
+                                          std::size_t k) {
+  constexpr double kRise = 3.84;
+  const auto squares = [&](double value) {
+    p[k] = value;
+    double total = 0;
+    for (const double s : residuals.squares(p.data())) total += s;
+    return total;
+  };
+  const double best = p[k], least = squares(best);
+  const double noise = least / std::max(1.0, static_cast<double>(job.observations.size()));
+  const auto reach = [&](double bound) {
+    double inside = 0, outside = 1e-7;
+    while (outside < 1 && squares(best + outside * (bound - best)) < least + kRise * noise) {
+      inside = outside;
+      outside *= 2;
+    }
+    outside = std::min(outside, 1.0);
+    for (int i = 0; i < 20; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (squares(best + middle * (bound - best)) < least + kRise * noise ? inside : outside) = middle;
+    }
+    return best + outside * (bound - best);
+  };
+  return {reach(job.bounds.lower[k]), reach(job.bounds.upper[k])};
 }
 
 void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution,
@@ -260,10 +299,6 @@ std::vector<double> Fit::values() const {
   return p;
 }
 
-std::size_t Fit::fold_of(std::size_t cycle) const {
-  return cycles == 0 ? 0 : fold_of_cycle(cycle, cycles, fold_parameters.size());
-}
-
 void set_floor(const Floor& floor, Fit& fit) {
   fit.floor = floor;
   const double above = std::pow(fit.constant_rmse, 2) - std::pow(floor.rmse, 2);
@@ -330,6 +365,15 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     }
   }
   fill_parameters(job, given, solution, start, influences, fit);
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    FitParameter& parameter = fit.parameters[k];
+    const double range = job.bounds.upper[k] - job.bounds.lower[k];
+    if (!inside[k] || parameter.parameter.name != "t_c") continue;
+    // Its likelihood is flat with steep walls: a derivative says nothing of it.
+    std::tie(parameter.lower95, parameter.upper95) = silent_interval(job, residuals, p, k);
+    parameter.std_error = std::min(range, (parameter.upper95 - parameter.lower95) / std::sqrt(12.0));
+    inside[k] = false;
+  }
 
   const FullRecord record(records, observations, model.needs());
   const SampleErrors errors = sample_errors(model, p, record, observations);

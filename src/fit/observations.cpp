@@ -23,6 +23,20 @@ std::size_t median_size(const std::vector<Observations::Range>& slips) {
   return *middle;
 }
 
+/// A stick that began before the record is taken to be as long as the others were.
+void fill_stick_times(std::vector<Observations::Range>& slips) {
+  std::vector<double> known;
+  for (const auto& slip : slips) {
+    if (std::isfinite(slip.stick_time)) known.push_back(slip.stick_time);
+  }
+  if (known.empty()) return;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  for (auto& slip : slips) {
+    if (slip.from_stick && !std::isfinite(slip.stick_time)) slip.stick_time = *middle;
+  }
+}
+
 /// One range per slip of the segmentation; slips without stick are cut into pieces of about equal length.
 std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Observations::Range> ranges;
@@ -57,6 +71,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
       ranges.push_back(range);
     }
   }
+  fill_stick_times(ranges);
   return ranges;
 }
 
@@ -196,16 +211,18 @@ Slip Observations::slip(const Range& range) const {
 }
 
 std::vector<double> slip_acceleration(const Motion& motion, const Span& samples) {
-  constexpr std::size_t kHalf = 10;
-  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * kHalf);
+  // The same stretch of time at any rate leaves about the same noise; a longer one would flatten what turns quickly.
+  constexpr double kStretch = 0.5e-3;  // [s]
+  const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(kStretch / motion.step), 2.0, 10.0));
+  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
   const std::size_t length = samples.end - begin;
   std::vector<double> acceleration(samples.size(), 0.0);
   if (length < 3) return acceleration;
   std::vector<double> weights;
   std::size_t last_left = 0, last_right = 0;
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
-    const std::size_t right = std::min(kHalf, samples.end - 1 - i);
-    const std::size_t left = std::min(i - begin, 2 * kHalf - right);
+    const std::size_t right = std::min(half, samples.end - 1 - i);
+    const std::size_t left = std::min(i - begin, 2 * half - right);
     if (weights.empty() || left != last_left || right != last_right) weights = slope_weights(left, right);
     last_left = left;
     last_right = right;
@@ -217,6 +234,19 @@ std::vector<double> slip_acceleration(const Motion& motion, const Span& samples)
     acceleration[i - samples.begin] = slope / motion.step;
   }
   return acceleration;
+}
+
+std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count) {
+  std::vector<std::size_t> record(observations.cycles, 0), cycles, before;
+  for (const auto& slip : observations.slips) record[slip.cycle] = slip.record;
+  for (const std::size_t r : record) {
+    if (r >= cycles.size()) cycles.resize(r + 1, 0);
+    ++cycles[r];
+  }
+  before.resize(cycles.size(), 0);
+  std::vector<std::size_t> blocks;
+  for (const std::size_t r : record) blocks.push_back(before[r]++ * count / cycles[r]);
+  return blocks;
 }
 
 Observations join(std::vector<Observations> records) {

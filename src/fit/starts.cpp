@@ -83,6 +83,30 @@ std::array<double, 2> decay_range(const Observations& observations) {
   return {0.2 / v, 40 / v};
 }
 
+double median(std::vector<double> x) {
+  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
+/// How far the slips of these data exceed those of a tribometer; pieces of a record that never sticks say nothing.
+double growth_of(Grows grows, const Observations& observations) {
+  constexpr double kSlipTime = 0.1, kSlipLength = 5e-3;  // [s], [m]
+  if (grows == Grows::never) return 1;
+  std::vector<double> sizes;
+  for (const auto& slip : observations.slips) {
+    if (!slip.from_stick || slip.end - slip.begin < 2) continue;
+    const double time = observations.time[slip.end - 1] - observations.time[slip.begin];
+    double speed = 0, weight = 0;
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      speed += observations.weight[i] * std::abs(observations.velocity[i]);
+      weight += observations.weight[i];
+    }
+    sizes.push_back(grows == Grows::with_slip_time ? time / kSlipTime : time * speed / weight / kSlipLength);
+  }
+  return sizes.empty() ? 1 : std::max(1.0, median(std::move(sizes)));
+}
+
 }  // namespace
 
 Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
@@ -92,8 +116,9 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   for (const auto& slot : model.parameters()) {
     const Parameter& q = slot.parameter;
     const double unit = q.si * (q.of_friction || q.of_force ? scale : 1.0);
-    bounds.lower.push_back(q.lower * unit);
-    bounds.upper.push_back(q.upper * unit);
+    const double grown = growth_of(q.grows, observations);
+    bounds.lower.push_back(q.lower * unit * (q.lower < 0 ? grown : 1.0));
+    bounds.upper.push_back(q.upper * unit * grown);
   }
   bounds.upper[0] = bounds.upper[1] = 5 * scale;
   if (model.base_count() == 3) {

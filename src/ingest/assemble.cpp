@@ -34,6 +34,7 @@ class Assembler {
     trace_.disc_angle = std::move(run_[Channel::angle]);
     unwrap(trace_.disc_angle);
     trace_.time = std::move(run_[Channel::time]);
+    if (trace_.disc_angle.empty() && trace_.disc_speed.empty()) set_angle_turned();
     return std::move(trace_);
   }
 
@@ -189,12 +190,23 @@ class Assembler {
     trace_.velocity = std::move(run_[channel]);
     const Column* column = run_.columns.find(channel);
     if (column == nullptr || !column->angular) return;
+    if (!block && !options_.conditions.speed.known()) turning_ = trace_.velocity;
     for (const Step& step : trace_.steps) {
       const double radius = radius_of(step, "a velocity given as a rotational speed");
       for (std::size_t i = step.begin; i < step.end; ++i) trace_.velocity[i] *= radius;
     }
     trace_.notes.push_back(
         fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel), column->name));
+  }
+
+  /// One part turns against the other: the angle between them is the integral of the rotational speed recorded.
+  void set_angle_turned() {
+    if (turning_.empty()) return;
+    trace_.disc_angle.assign(turning_.size(), 0.0);
+    for (std::size_t i = 1; i < turning_.size(); ++i) {
+      const double mean = 0.5 * (turning_[i - 1] + turning_[i]);
+      trace_.disc_angle[i] = trace_.disc_angle[i - 1] + mean * (trace_.time[i] - trace_.time[i - 1]);
+    }
   }
 
   void set_fixed_block() {
@@ -229,6 +241,7 @@ class Assembler {
   FileRecord run_;
   const ReadOptions& options_;
   Trace trace_;
+  std::vector<double> turning_;  ///< rotational speed between the parts [rad/s], where it is all that was recorded
 };
 
 }  // namespace

@@ -89,11 +89,12 @@ struct Fit {
   std::vector<double> cycle_squares;                 ///< held-out sum of squares of each cycle
   std::vector<double> cycle_counts;                  ///< residuals of each cycle
   std::vector<std::vector<double>> fold_parameters;  ///< values (SI) fitted with each fold held out
+  std::vector<std::size_t> cycle_folds;              ///< fold in which each cycle was held out
   std::vector<std::string> messages;
 
   std::vector<double> values() const;
   /// Fold in which a cycle was held out.
-  std::size_t fold_of(std::size_t cycle) const;
+  std::size_t fold_of(std::size_t cycle) const { return cycle_folds.empty() ? 0 : cycle_folds.at(cycle); }
 };
 
 /// One record of several that are fitted together.

@@ -30,7 +30,7 @@ struct Observations {
     std::size_t record = 0;          ///< which of several records
     bool from_stick = false;
     double break_away_time = 0;  ///< [s]
-    double stick_time = 0;       ///< [s], NaN when not recorded
+    double stick_time = 0;       ///< [s]; the median where its beginning was not recorded, NaN where none was
     double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
     double direction = 1;
     double disc_speed = 0;                     ///< omega [rad/s]; 0 where it is not known
@@ -67,8 +67,12 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
 /// means of all.
 Observations join(std::vector<Observations> records);
 
-/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, 21 samples) whose window stops
-/// at re-stick, where the acceleration jumps.
+/// Block of every cycle when each record is cut into `count` contiguous blocks of about equally many cycles; block k of
+/// one record belongs together with block k of the others.
+std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count);
+
+/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, over 1 ms, 5 to 21
+/// samples) whose window stops at re-stick, where the acceleration jumps.
 std::vector<double> slip_acceleration(const Motion& motion, const Span& samples);
 
 }  // namespace tribofit

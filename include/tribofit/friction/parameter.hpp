@@ -8,6 +8,13 @@ namespace tribofit {
 /// For parameters that are never neutral by themselves.
 inline constexpr double kUnused = std::numeric_limits<double>::quiet_NaN();
 
+/// What the bounds of a parameter grow with, on machines larger and slower than the tribometers they are stated for.
+enum class Grows {
+  never,
+  with_slip_time,   ///< beyond slips of 0.1 s
+  with_slip_length  ///< beyond slips of 5 mm
+};
+
 /// One parameter of a law or of an effect as a person sees it.
 /// Values inside the library are SI; `lower`, `upper` and `start` are in `unit`.
 struct Parameter {
@@ -21,6 +28,7 @@ struct Parameter {
   bool of_friction = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
   bool of_force = false;     ///< its bounds grow with the force where friction is one, its unit does not
   int grid = 1;              ///< values over its bounds from which a search must begin so that it ends at the best one
+  Grows grows = Grows::never;
 };
 
 }  // namespace tribofit

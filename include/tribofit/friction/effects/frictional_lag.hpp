@@ -16,7 +16,7 @@ struct FrictionalLag {
                 "doi:10.1016/0005-1098(94)90209-7",
             .experiment =
                 "1, 2, 4 and 8 rpm: the loop stays constant in ms; a delay of the channels also shows at re-stick",
-            .parameters = {{"tau", "ms", 1e-3, 0.1, 10, 1, 0.1, false, false, 3}}};
+            .parameters = {{"tau", "ms", 1e-3, 0.1, 10, 1, 0.1, false, false, 3, Grows::with_slip_time}}};
   }
 
   template <class T>

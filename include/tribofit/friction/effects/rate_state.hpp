@@ -20,7 +20,7 @@ struct RateState {
             "J. R. Rice, N. Lapusta, K. Ranjith, J. Mech. Phys. Solids 49 (2001) 1865, "
             "doi:10.1016/S0022-5096(01)00042-4",
         .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
-        .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4}, {"a", "1", 1, 0, 0.02, 0, 0, true}}};
+        .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, Grows::with_slip_length}, {"a", "1", 1, 0, 0.02, 0, 0, true}}};
   }
 
   template <class T>

@@ -1,0 +1,115 @@
+/// Rigs of other laboratories, against what was published about them; skipped where the shared data are absent.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tribofit/pipeline.hpp"
+
+namespace {
+
+using namespace tribofit;
+using ::testing::Contains;
+
+class RealData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* given = std::getenv("TRIBOFIT_SHARED_DIR");
+    shared_ = (given != nullptr ? std::filesystem::path(given)
+                                : std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared") /
+              "measured";
+    if (!std::filesystem::exists(shared_)) GTEST_SKIP() << shared_ << " is absent";
+  }
+
+  DiagnosedTraces diagnosed(const std::string& file, ReadOptions read) const {
+    return diagnose({{(shared_ / file).string(), std::move(read), {}}});
+  }
+
+  std::filesystem::path shared_;
+};
+
+const EffectFinding& finding(const DiagnosedTraces& result, const std::string& key) {
+  const auto& effects = result.diagnosis.effects;
+  return *std::find_if(effects.begin(), effects.end(), [&](const EffectFinding& f) { return f.key == key; });
+}
+
+double value_of(const DiagnosedTraces& result, const std::string& name) {
+  for (const FitParameter& parameter : result.fits.back().parameters) {
+    if (parameter.parameter.name == name) return parameter.value;
+  }
+  return std::nan("");
+}
+
+std::vector<std::string> rungs(const DiagnosedTraces& result) {
+  std::vector<std::string> added;
+  for (const Rung& rung : result.diagnosis.ladder) added.push_back(rung.added);
+  return added;
+}
+
+double fall(const DiagnosedTraces& result) {
+  const auto& ladder = result.diagnosis.ladder;
+  return 1 - ladder.back().held_out_rmse / ladder.front().held_out_rmse;
+}
+
+/// Published (IDIM-LS): moving mass 95.1089 kg, viscous 203.5034 N s/m, Coulomb 20.3935 N, offset -3.1648 N.
+TEST_F(RealData, PositioningSystemClimbsFromCoulombFrictionToItsPublishedModel) {
+  ReadOptions read;
+  read.columns = {{"time", "time_s"}, {"v_r", "dq_f_m_per_s"}, {"force", "Force1_N"}};
+  const DiagnosedTraces result = diagnosed("emps/emps_training_measured.csv", read);
+  ASSERT_TRUE(result.analysed);
+  EXPECT_EQ(result.diagnosis.law, BaseLaw::coulomb);  // no Stribeck drop
+  const std::vector<std::string> added = rungs(result);
+  for (const char* key : {"sensor-inertia", "viscous", "sensor-offset"}) EXPECT_THAT(added, Contains(key));
+  EXPECT_FALSE(std::count(added.begin(), added.end(), "stribeck-exponent"));
+  EXPECT_NEAR(value_of(result, "m_s"), 95.1089, 0.02 * 95.1089);
+  EXPECT_NEAR(value_of(result, "sigma"), 203.5034, 0.05 * 203.5034);
+  EXPECT_NEAR(value_of(result, "mu_k"), 20.3935, 0.02 * 20.3935);
+  EXPECT_NEAR(value_of(result, "b"), -3.1648, 0.1 * 3.1648);
+  EXPECT_NE(result.diagnosis.verdict, Verdict::sufficient);
+  EXPECT_NE(result.diagnosis.verdict, Verdict::not_enough_data);
+}
+
+TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
+  ReadOptions read;
+  read.conditions.radius = {0.05, "command line"};
+  read.columns = {{"v_r", "bit_speed_rpm"}, {"torque", "torque_on_bit_Nm"}, {"load", "none"}};
+  const DiagnosedTraces alone = diagnosed("drill-string/drillstring_175.csv", read);
+  ASSERT_TRUE(alone.analysed);
+  EXPECT_EQ(alone.traces[0].motion.friction_kind, FrictionKind::force);
+  EXPECT_GE(fall(alone), 0.25);
+  EXPECT_EQ(alone.diagnosis.verdict, Verdict::unexplained);
+  EXPECT_FALSE(alone.diagnosis.remaining.empty());
+
+  read.columns["load"] = "weight_on_bit_N";
+  const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read);
+  ASSERT_TRUE(weighted.analysed);
+  EXPECT_GE(fall(weighted), 0.10);
+  EXPECT_FALSE(weighted.diagnosis.remaining.empty());
+}
+
+TEST_F(RealData, RotaryTribometerFrictionRisesWithSpeedAndNeverSticks) {
+  for (const char* file : {"013_FX2_316SS_0.25in_Rotary_3N_4tests_75-300mm-s_6-15mm-radius_3min-each.csv",
+                           "014_FX2_316SS_0.25in_Rotary_3N_4tests_300-75mm-s_6-15mm-radius_3min-each.csv",
+                           "017_FX2_316SS_0.25in_Rotary_9N_4tests_75-300mm-s_6-15mm-radius_3min-each.csv",
+                           "019_FX2_Polyimide_0.25in_Rotary_3N_4tests_75-300mm-s_6-15mm-radius_3min-each.csv"}) {
+    ReadOptions read;
+    read.step_radii = {0.006, 0.009, 0.012, 0.015};
+    const DiagnosedTraces result = diagnosed(std::string("rotary-tribometer/") + file, read);
+    ASSERT_TRUE(result.analysed) << file;
+    EXPECT_EQ(result.traces[0].segmentation.kind, MotionKind::always_slipping) << file;
+    const bool law_rises = result.diagnosis.law != BaseLaw::coulomb &&
+                           result.fits.back().parameters[0].value < result.fits.back().parameters[1].value;
+    const bool viscous_rises = finding(result, "viscous").status == EffectStatus::missing && value_of(result, "sigma") > 0;
+    EXPECT_TRUE(law_rises || viscous_rises) << file;
+    for (const char* key : {"ringing", "ageing", "contact-spin"}) {
+      EXPECT_EQ(finding(result, key).status, EffectStatus::untestable) << file << ' ' << key;
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,158 @@
+/// The benchmark of hidden effects: simulates, diagnoses, judges, and prints the tables of the README.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hidden_effects.hpp"
+
+namespace {
+
+using namespace recovery;
+using nlohmann::json;
+
+struct Options {
+  PlanOptions plan;
+  std::string only, one, json_path;
+  int threads = 0;
+  bool quiet = false, experiments = true;
+};
+
+std::string describe(const Name& name) {
+  std::string text = name.added;
+  for (const std::string& other : name.equivalent) text += "|" + other;
+  return text;
+}
+
+std::string names(const Outcome& o) {
+  std::string text;
+  for (const Name& name : o.names) text += (text.empty() ? "" : ", ") + describe(name);
+  return text.empty() ? "nothing" : text;
+}
+
+std::string line(const Outcome& o) {
+  if (!o.failure.empty()) return fmt::format("THREW {:<34} {}", o.of.name, o.failure);
+  return fmt::format("{:<5} {:<34} {:<8} {} ({}{}){}; error {:.5f} -> {:.5f}, floor {:.5f}; {:.1f} s",
+                     o.right ? "ok" : "MISS", o.of.name, to_string(o.naming), names(o), tribofit::to_string(o.verdict),
+                     o.remaining.empty() ? "" : ", remaining over " + o.remaining,
+                     o.partner.empty() ? "" : (o.split ? "; split from " : "; not split from ") + o.partner, o.first,
+                     o.last, o.floor, o.seconds);
+}
+
+json to_json(const Outcome& o) {
+  json named = json::array(), hidden = json::array(), parameters = json::array();
+  for (const Name& name : o.names) named.push_back({{"added", name.added}, {"equivalent", name.equivalent}});
+  for (const Ingredient& what : o.of.hidden) hidden.push_back({{"key", what.key}, {"values", what.values}});
+  for (const Recovered& p : o.parameters) {
+    parameters.push_back({{"effect", p.key},
+                          {"name", p.parameter},
+                          {"truth", p.truth},
+                          {"value", p.value},
+                          {"ci95", {p.lower95, p.upper95}}});
+  }
+  return {{"case", o.of.name},
+          {"kind", to_string(o.of.kind)},
+          {"setting", to_string(o.of.setting)},
+          {"seed", o.of.seed},
+          {"hidden", hidden},
+          {"law", tribofit::to_string(o.of.law)},
+          {"radius_mm", o.of.radius * 1e3},
+          {"noise_colour", o.of.colour},
+          {"scatter", o.of.scatter},
+          {"wander", o.of.wander},
+          {"named", named},
+          {"naming", to_string(o.naming)},
+          {"right", o.right},
+          {"verdict", tribofit::to_string(o.verdict)},
+          {"law_found", tribofit::to_string(o.law)},
+          {"remaining", o.remaining},
+          {"remaining_share", o.remaining_share},
+          {"status", o.status},
+          {"next_experiment", o.experiment},
+          {"partner", o.partner},
+          {"split", o.split},
+          {"held_out_rmse", {o.first, o.last}},
+          {"floor_rmse", o.floor},
+          {"parameters", parameters},
+          {"seconds", o.seconds},
+          {"failure", o.failure}};
+}
+
+void write(const std::string& path, const std::vector<Outcome>& outcomes) {
+  json all = json::array();
+  for (const Outcome& o : outcomes) all.push_back(to_json(o));
+  const std::string unfinished = path + ".part";
+  std::ofstream(unfinished) << all.dump(1) << '\n';
+  std::filesystem::rename(unfinished, path);
+}
+
+/// One case in full, as a user would see it.
+void explain(const Case& c) {
+  const Outcome outcome = run_case(c, true);
+  fmt::print("{}\n{}\n", line(outcome), to_json(outcome).dump(1));
+  const auto diagnosed = diagnose_case(simulate_case(c)).diagnosis;
+  for (const auto& finding : diagnosed.effects) {
+    fmt::print("{:<24} {:<12} error {:.5f}, takes away {:.3f}, p {:.2g}; {}\n", finding.key,
+               tribofit::to_string(finding.status), finding.held_out_rmse, finding.error_reduction, finding.p_value,
+               finding.reason);
+    for (const auto& p : finding.parameters) {
+      if (p.effect != finding.key) continue;
+      fmt::print("    {} = {:.5g} ({:.5g} .. {:.5g}) {}\n", p.parameter.name, p.value / p.parameter.si,
+                 p.lower95 / p.parameter.si, p.upper95 / p.parameter.si, p.parameter.unit);
+    }
+  }
+  for (const auto& rung : diagnosed.ladder) fmt::print("rung {:<20} {:.5f}\n", rung.added, rung.held_out_rmse);
+  for (const auto& share : diagnosed.remaining) {
+    fmt::print("remaining {:<12} {:.3f}, p {:.2g}\n", share.variable, share.share, share.p_value);
+  }
+  for (const std::string& message : diagnosed.messages) fmt::print("{}\n", message);
+  fmt::print("next: {}\n", diagnosed.next_experiment);
+}
+
+int run(const Options& options) {
+  std::vector<Case> cases = plan_cases(options.plan);
+  if (!options.one.empty()) {
+    for (const Case& c : cases) {
+      if (c.name != options.one) continue;
+      explain(c);
+      return 0;
+    }
+    fmt::print(stderr, "no case '{}' in this plan: give --runs, --nothing and --seed as in the run it comes from\n",
+               options.one);
+    return 2;
+  }
+  std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
+  const auto outcomes = run_cases(cases, options.threads, options.experiments, [&](const Outcome& o, std::size_t done) {
+    if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
+  });
+  if (!options.json_path.empty()) write(options.json_path, outcomes);
+  fmt::print("{}", tables(outcomes));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Diagnoses records in which effects of the catalogue are hidden, and counts what was named");
+  app.add_option("--runs", options.plan.runs, "cases of each effect and size")->capture_default_str();
+  app.add_option("--pairs", options.plan.pairs, "cases of each pair")->capture_default_str();
+  app.add_option("--nothing", options.plan.nothing, "cases with nothing hidden")->capture_default_str();
+  app.add_option("--aliens", options.plan.aliens, "cases of each effect in no catalogue")->capture_default_str();
+  app.add_option("--unknowable", options.plan.unknowable, "cases of ageing at one constant speed")
+      ->capture_default_str();
+  app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
+  app.add_option("--only", options.only, "only cases whose name holds this, e.g. runout, 'drift=', nothing, +");
+  app.add_option("--case", options.one, "one case by name, in full");
+  app.add_option("--json", options.json_path, "write every case to this file");
+  app.add_option("--threads", options.threads, "0: as many as there are; results do not depend on it");
+  app.add_flag("!--no-experiments", options.experiments, "do not simulate the next experiment where a group was named");
+  app.add_flag("--quiet", options.quiet, "no line for each case");
+  CLI11_PARSE(app, argc, argv);
+  return run(options);
+}

@@ -1,0 +1,447 @@
+/// Which cases there are, and how they are simulated.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+#include "hidden_effects.hpp"
+#include "tribofit/oscillator/hide.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+namespace {
+
+constexpr double kRpm = 2 * std::numbers::pi / 60;
+
+/// Numbers from a seed, the same with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double lower, double upper) {
+    return lower + (upper - lower) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  double sign() { return uniform(-1, 1) < 0 ? -1 : 1; }
+  double phase() { return uniform(-std::numbers::pi, std::numbers::pi); }
+  std::size_t below(std::size_t n) {
+    return std::min(n - 1, static_cast<std::size_t>(uniform(0, static_cast<double>(n))));
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// FNV-1a.
+std::uint64_t hash(std::string_view text, std::uint64_t seed) {
+  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return h;
+}
+
+using Values = std::vector<double> (*)(double size, Random&);
+
+/// An effect, the sizes in which a user meets it, and how it is recorded. Units of the catalogue.
+struct Recipe {
+  const char* key;
+  Setting setting;
+  std::vector<double> sizes;
+  Values values;
+  std::vector<std::size_t> main_parameters = {0};
+};
+
+std::vector<double> just(double size, Random&) {
+  return {size};
+}
+std::vector<double> either_sign(double size, Random& r) {
+  return {r.sign() * size};
+}
+std::vector<double> ageing(double size, Random& r) {
+  return {size, r.uniform(0.05, 0.2)};
+}
+
+const std::vector<Recipe>& recipes() {
+  static const std::vector<Recipe> all = {
+      {"viscous", Setting::fast, {0.0008, 0.0011, 0.0015}, just},
+      {"stribeck-exponent", Setting::fast, {0.6, 1.4, 1.8}, just},
+      {"frictional-lag", Setting::fast, {0.5, 1, 2}, just},
+      {"rate-state",
+       Setting::fast,
+       {20, 50, 90},
+       [](double s, Random&) {
+         return std::vector{s, 0.0};
+       }},
+      {"bristle",
+       Setting::fast,
+       {100, 60, 30},
+       [](double s, Random&) {
+         return std::vector{s, 0.001};
+       }},
+      {"contact-spin", Setting::fast, {0.5, 1, 2}, just},
+      {"ageing", Setting::four_speeds, {0.008, 0.012, 0.016}, ageing},
+      {"ageing", Setting::pauses, {0.008, 0.012, 0.016}, ageing},
+      {"asymmetry", Setting::both_directions, {0.93, 1.07, 1.15}, just},
+      {"heating",
+       Setting::slow,
+       {0.05, 0.1},
+       [](double s, Random& r) {
+         return std::vector{r.sign() * s, r.uniform(8, 15)};
+       }},
+      {"run-in",
+       Setting::slow,
+       {0.05, 0.08},
+       [](double s, Random& r) {
+         return std::vector{r.sign() * s, r.uniform(30, 80)};
+       }},
+      {"drift", Setting::slow, {0.0006, 0.0009, 0.0012}, either_sign},
+      {"step",
+       Setting::slow,
+       {0.015, 0.03},
+       [](double s, Random& r) {
+         return std::vector{r.sign() * s, r.uniform(8, 32)};
+       },
+       {0, 1}},
+      {"load-dependence", Setting::load_swings, {0.1, 0.2, 0.3}, just},
+      {"temperature-dependence", Setting::temperature_swings, {0.003, 0.006}, either_sign},
+      {"runout",
+       Setting::slow,
+       {0.02, 0.04, 0.06},
+       [](double s, Random& r) {
+         return std::vector{s, r.phase()};
+       }},
+      {"disc-pattern",
+       Setting::slow,
+       {0.02, 0.04},
+       [](double s, Random& r) {
+         return std::vector{s, r.phase(), r.sign() < 0 ? 0 : 0.02, r.phase()};
+       }},
+      {"speed-ripple",
+       Setting::slow,
+       {0.03, 0.07},
+       [](double s, Random& r) {
+         return std::vector{s, 1.0 + static_cast<double>(r.below(3)), r.phase()};
+       }},
+      {"load-coupling", Setting::fast, {0.1, 0.2}, either_sign},
+      {"ringing",
+       Setting::fast,
+       {0.008, 0.014},
+       [](double s, Random& r) {
+         return std::vector{s, r.uniform(150, 400), r.uniform(0.02, 0.06), r.phase()};
+       },
+       {0, 1}},
+      {"sensor-inertia", Setting::fast, {0.1, 0.2}, just},
+      {"sensor-offset", Setting::both_directions, {0.01, 0.02}, either_sign},
+      {"crosstalk", Setting::load_swings, {0.01, 0.02}, either_sign},
+      {"force-bandwidth",
+       Setting::fast,
+       {300, 200, 100},
+       [](double s, Random& r) {
+         return std::vector{s, r.uniform(0.5, 0.9)};
+       }},
+      {"channel-delay", Setting::fast, {0.5, 1, 2}, either_sign},
+      {"radius-offset", Setting::fast, {0.94, 1.05}, just},
+      {"velocity-gain", Setting::fast, {0.93, 1.08}, just},
+      {"velocity-highpass", Setting::fast, {0.1, 0.3}, just},
+      {"interference",
+       Setting::fast,
+       {0.005, 0.012},
+       [](double s, Random& r) {
+         constexpr double kLines[] = {50, 60, 133};
+         return std::vector{s, kLines[r.below(3)], r.phase()};
+       },
+       {0, 1}},
+  };
+  return all;
+}
+
+struct Pair {
+  const char *a, *b;
+  double size_a, size_b;
+  Setting setting;
+};
+
+const std::vector<Pair>& pairs() {
+  static const std::vector<Pair> all = {
+      {"frictional-lag", "runout", 1, 0.04, Setting::slow},
+      {"viscous", "drift", 0.0011, 0.0012, Setting::slow},
+      {"stribeck-exponent", "channel-delay", 1.4, 1, Setting::fast},
+      {"sensor-inertia", "heating", 0.2, 0.1, Setting::slow},
+      {"bristle", "interference", 60, 0.005, Setting::fast},
+      {"rate-state", "runout", 90, 0.04, Setting::slow},
+      {"viscous", "frictional-lag", 0.0015, 2, Setting::fast},
+      {"force-bandwidth", "interference", 100, 0.012, Setting::fast},
+      {"asymmetry", "sensor-offset", 1.15, 0.02, Setting::both_directions},
+      {"load-dependence", "frictional-lag", 0.2, 1, Setting::load_swings},
+      {"temperature-dependence", "viscous", 0.006, 0.0011, Setting::temperature_swings},
+      {"radius-offset", "channel-delay", 1.05, 1, Setting::fast},
+      {"velocity-highpass", "runout", 0.3, 0.04, Setting::slow},
+      {"speed-ripple", "drift", 0.07, 0.0012, Setting::slow},
+      {"step", "disc-pattern", 0.03, 0.04, Setting::slow},
+      {"ringing", "runout", 0.014, 0.06, Setting::slow},
+      {"run-in", "sensor-inertia", 0.08, 0.2, Setting::slow},
+      {"drift", "runout", 0.0012, 0.04, Setting::slow},
+  };
+  return all;
+}
+
+const Recipe& recipe(std::string_view key) {
+  return *std::find_if(recipes().begin(), recipes().end(), [&](const Recipe& r) { return key == r.key; });
+}
+
+Ingredient ingredient(const Recipe& r, double size, Random& random) {
+  return {r.key, size, r.values(size, random), r.main_parameters};
+}
+
+/// Rig, law and noise about those of [D]. `cell` walks through radii, laws, noise and scatter, so that every group of
+/// cases holds all of them.
+Case draw(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random) {
+  Case c;
+  c.name = fmt::format("{}:{}", group, number);
+  c.kind = kind;
+  c.setting = setting;
+  c.seed = seed;
+  const std::size_t cell = (5 * number + hash(group, 0) % 32) % 32;
+  c.group = std::move(group);
+  constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
+  c.radius = kRadii[cell % 4];
+  c.law = (cell / 4) % 2 == 0 ? BaseLaw::exponential : BaseLaw::fractional;
+  c.colour = (cell / 8) % 2 == 0 ? 0 : 0.9;
+  c.wander = (cell / 16) % 2 == 0 ? 0 : 0.7;
+  c.scatter = random.uniform(0.004, 0.02);
+  c.rig = rig_with_damping_ratio(random.uniform(0.75, 0.95), 1e3 * random.uniform(11, 16), random.uniform(0.01, 0.04));
+  c.friction.mu_s = random.uniform(0.49, 0.53);
+  c.friction.mu_k = random.uniform(0.31, 0.39);
+  c.friction.decay = 1e3 * (c.law == BaseLaw::exponential ? random.uniform(0.03, 0.06) : random.uniform(0.05, 0.11));
+  c.speed = 4 * kRpm;
+  c.load = 50;
+  return c;
+}
+
+std::string number(double x) {
+  return fmt::format("{:.9g}", x);
+}
+
+/// A formula whose parameters are the numbers in its text.
+Effect alien(const Case& c, const Ingredient& what) {
+  const std::vector<double>& p = what.values;
+  if (what.key == "hump") {
+    return Formula(
+        fmt::format("hump = a*exp(-((v-v0)/w)^2); a={}, v0={}, w={}", number(p[0]), number(p[1]), number(p[2])));
+  }
+  const char* fall = c.law == BaseLaw::exponential ? "exp(-{}*v)" : "1/(1+{}*v)";
+  const std::string level =
+      fmt::format("({}+{}*{})", number(c.friction.mu_k), number(c.friction.mu_s - c.friction.mu_k),
+                  fmt::format(fmt::runtime(fall), number(c.friction.decay * 1e-3)));
+  return Formula(fmt::format("swing = a*{}*cos({}*t+b); a={}, b={}", level, number(2 * std::numbers::pi / p[1]),
+                             number(p[0]), number(p[2])));
+}
+
+/// Hump over velocity [1, mm/s, mm/s], or swing over time [1, s, rad] whose period is no part of a revolution.
+Ingredient alien_ingredient(std::string_view key, Random& r) {
+  if (key == "hump") return {"hump", 0, {r.uniform(0.015, 0.025), r.uniform(15, 35), r.uniform(4, 8)}, {}};
+  constexpr std::pair<double, double> kPeriods[] = {{4.1, 4.7}, {5.4, 7.0}, {8.2, 9.0}};
+  const auto [lower, upper] = kPeriods[r.below(3)];
+  return {"swing", 0, {r.uniform(0.04, 0.08), r.uniform(lower, upper), r.phase()}, {}};
+}
+
+struct Model {
+  FrictionModel model;
+  std::vector<double> p;
+};
+
+/// The model with its parameters in its own order.
+Model true_model(const Case& c) {
+  std::vector<Effect> effects;
+  std::vector<std::pair<std::string, std::vector<double>>> values;
+  for (const Ingredient& what : c.hidden) {
+    const bool known = what.key != "hump" && what.key != "swing";
+    const Effect effect = known ? make_effect(what.key) : alien(c, what);
+    const EffectInfo info = describe(effect);
+    std::vector<double> si;
+    for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+      si.push_back((known ? what.values[k] : info.parameters[k].start) * info.parameters[k].si);
+    }
+    values.emplace_back(info.key, std::move(si));
+    effects.push_back(effect);
+  }
+  Model out{FrictionModel(c.law, std::move(effects)), {c.friction.mu_s, c.friction.mu_k, c.friction.decay}};
+  for (const std::string& key : out.model.effect_keys()) {
+    const auto at = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == key; });
+    out.p.insert(out.p.end(), at->second.begin(), at->second.end());
+  }
+  return out;
+}
+
+Drive drive_of(const Case& c, const Run& run, Random& random) {
+  Drive drive;
+  drive.radius = run.radius > 0 ? run.radius : c.radius;
+  drive.mean_load = c.load;
+  const double speed = run.speed * c.speed;
+  drive.speed = constant_speed(speed);
+  if (run.setting == Setting::both_directions) drive.speed = reversing_speed(speed, random.uniform(0.1, 0.2));
+  if (run.setting == Setting::pauses) {
+    std::vector<Pause> pauses;
+    for (double t = random.uniform(1, 2); t < 55;) {
+      const double length = 0.3 * std::pow(20.0, random.uniform(0, 1));
+      pauses.push_back({t, length});
+      t += length + random.uniform(1, 2);
+    }
+    drive.speed = stepped_speed({0}, {speed}, pauses);
+  }
+  if (run.setting == Setting::load_swings) {
+    const double share = random.uniform(0.4, 0.6), period = random.uniform(17, 26), phase = random.phase();
+    drive.load = [=, mean = c.load](double t) {
+      return mean * (1 + share * std::sin(2 * std::numbers::pi * t / period + phase));
+    };
+  }
+  if (run.setting == Setting::temperature_swings) {
+    const double swing = random.uniform(15, 20), period = random.uniform(17, 26), phase = random.phase();
+    drive.mean_temperature = 40;
+    drive.temperature = [=](double t) { return 40 + swing * std::sin(2 * std::numbers::pi * t / period + phase); };
+  }
+  return drive;
+}
+
+std::pair<double, double> duration_and_rate(Setting setting) {
+  switch (setting) {
+    case Setting::fast:
+      return {12, 10000};
+    case Setting::both_directions:
+      return {24, 10000};
+    case Setting::four_speeds:
+      return {20, 5000};
+    case Setting::pauses:
+      return {60, 5000};
+    case Setting::slow:
+    case Setting::load_swings:
+    case Setting::temperature_swings:
+      break;
+  }
+  return {40, 5000};
+}
+
+/// Record number `number` of a case, from its own random numbers.
+Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
+  Random random((c.seed ^ 0x5bd1e995u) + number);
+  const Drive drive = drive_of(c, run, random);
+  SimulationOptions options;
+  std::tie(options.duration, options.rate) = duration_and_rate(run.setting);
+  if (run.duration > 0) options.duration = run.duration;
+  if (run.setting != Setting::both_directions) options.settle = settling_time(c.rig, drive, truth.p);
+  options.scatter = {c.scatter, c.wander};
+  options.seed = c.seed + number;
+  Sensors sensors;
+  sensors.friction_noise = 0.003;
+  sensors.velocity_noise = 0.02e-3;
+  sensors.noise_colour = c.colour;
+  sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
+  return hide(truth.model, truth.p, c.rig, drive, options, sensors);
+}
+
+}  // namespace
+
+std::string_view to_string(Setting setting) {
+  constexpr std::string_view kNames[] = {"fast",        "slow",  "both directions", "load swings", "temperature swings",
+                                         "four speeds", "pauses"};
+  return kNames[static_cast<std::size_t>(setting)];
+}
+
+std::string_view to_string(Kind kind) {
+  constexpr std::string_view kNames[] = {"single", "pair", "nothing", "alien", "unknowable"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Case> plan_cases(const PlanOptions& options) {
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& group, std::size_t count, Kind kind, Setting setting, const auto& hide) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t seed = hash(fmt::format("{}:{}", group, i), options.seed);
+      Random random(seed);
+      Case c = draw(group, i, kind, setting, seed, random);
+      hide(c, random);
+      cases.push_back(std::move(c));
+    }
+  };
+  for (const Recipe& r : recipes()) {
+    const char* suffix = r.setting == Setting::pauses ? "-pauses" : "";
+    for (const double size : r.sizes) {
+      if (options.largest_only && size != r.sizes.back()) continue;
+      add(fmt::format("{}{}={:g}", r.key, suffix, size), options.runs, Kind::single, r.setting,
+          [&](Case& c, Random& random) { c.hidden = {ingredient(r, size, random)}; });
+    }
+  }
+  for (const Pair& pair : pairs()) {
+    add(fmt::format("{}+{}", pair.a, pair.b), options.pairs, Kind::pair, pair.setting, [&](Case& c, Random& random) {
+      c.hidden = {ingredient(recipe(pair.a), pair.size_a, random)};
+      c.hidden.push_back(ingredient(recipe(pair.b), pair.size_b, random));
+    });
+  }
+  // Nothing is hidden in records of every kind, mostly the plain ones.
+  constexpr Setting kSettings[] = {
+      Setting::fast,   Setting::slow,           Setting::fast,        Setting::slow,
+      Setting::fast,   Setting::slow,           Setting::load_swings, Setting::temperature_swings,
+      Setting::pauses, Setting::both_directions};
+  add("nothing", options.nothing, Kind::nothing, Setting::fast,
+      [&](Case& c, Random& random) { c.setting = kSettings[random.below(std::size(kSettings))]; });
+  for (const auto& [key, setting, variable] :
+       {std::tuple("hump", Setting::fast, "velocity"), {"swing", Setting::slow, "time"}}) {
+    add(key, options.aliens, Kind::alien, setting, [&, k = key, v = variable](Case& c, Random& random) {
+      c.hidden = {alien_ingredient(k, random)};
+      c.variable = v;
+    });
+  }
+  add("ageing-at-one-speed", options.unknowable, Kind::unknowable, Setting::fast,
+      [&](Case& c, Random& random) { c.hidden = {ingredient(recipe("ageing"), 0.012, random)}; });
+  return cases;
+}
+
+std::vector<Run> telling_runs(std::string_view a, std::string_view b) {
+  struct Test {
+    std::string_view a, b;
+    std::vector<Run> runs;
+  };
+  const std::vector<Run> other_speeds = {{.speed = 0.25}, {.speed = 0.5}, {.speed = 2}};
+  const std::vector<Run> faster_and_longer = {{.setting = Setting::slow, .speed = 2, .duration = 80}};
+  const std::vector<Test> tests = {
+      {"frictional-lag", "rate-state", other_speeds},
+      {"frictional-lag", "channel-delay", {{.speed = 2}}},
+      {"viscous", "stribeck-exponent", {{.speed = 4}}},
+      {"runout", "drift", {{.setting = Setting::slow, .duration = 60}}},
+      // At another speed the distance is another for the same time, and over a longer record a line goes on.
+      {"heating", "run-in", faster_and_longer},
+      {"heating", "drift", faster_and_longer},
+      {"run-in", "drift", faster_and_longer},
+      {"bristle", "contact-spin", {{.speed = 2, .radius = 0.009}, {.speed = 1, .radius = 0.018}}},
+      {"ageing", "rate-state", {{.setting = Setting::pauses}}},
+  };
+  for (const Test& test : tests) {
+    if ((test.a == a && test.b == b) || (test.a == b && test.b == a)) return test.runs;
+  }
+  return {};
+}
+
+Simulated simulate_case(const Case& c, const std::vector<Run>& more) {
+  Model truth = true_model(c);
+  std::vector<Run> runs = {{.setting = c.setting}};
+  if (c.setting == Setting::four_speeds) {
+    runs.clear();
+    for (const double speed : {0.25, 0.5, 1.0, 2.0}) runs.push_back({.setting = c.setting, .speed = speed});
+  }
+  runs.insert(runs.end(), more.begin(), more.end());
+  double squares = 0;
+  Simulated out{truth.model, truth.p, {}, 0};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    Hidden hidden = hide_in(c, runs[i], truth, i);
+    squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());
+    hidden.recording.trace.path = fmt::format("{}{}", c.name, runs.size() > 1 ? fmt::format("/{}", i) : "");
+    out.traces.push_back(std::make_shared<const Trace>(std::move(hidden.recording.trace)));
+  }
+  out.floor_rmse = std::sqrt(squares);
+  return out;
+}
+
+}  // namespace recovery

@@ -1,0 +1,212 @@
+#include "hidden_effects.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <mutex>
+
+#include "tribofit/fit/parallel.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+namespace {
+
+constexpr std::size_t kLargestGroup = 4;
+
+/// Effects that show in the motion and not in the error: they count as named when they were found there.
+bool is_of_motion_key(const std::string& key) {
+  return key == "radius-offset" || key == "velocity-gain" || key == "velocity-highpass" || key == "speed-ripple";
+}
+
+const EffectFinding* finding(const Diagnosis& diagnosis, std::string_view key) {
+  const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                               [&](const EffectFinding& f) { return f.key == key; });
+  return at != diagnosis.effects.end() ? &*at : nullptr;
+}
+
+bool holds(const Name& name, const std::string& key) {
+  return name.added == key || std::find(name.equivalent.begin(), name.equivalent.end(), key) != name.equivalent.end();
+}
+
+std::size_t size_of(const Name& name) {
+  return 1 + name.equivalent.size();
+}
+
+/// The ladder beyond the base law; effects of the motion from their own findings, radius and gain as one group.
+std::vector<Name> names_of(const Diagnosis& diagnosis) {
+  std::vector<Name> names;
+  for (const Rung& rung : diagnosis.ladder) {
+    if (!rung.added.empty() && !is_of_motion_key(rung.added)) names.push_back({rung.added, rung.equivalent});
+  }
+  for (const char* key : {"radius-offset", "velocity-gain", "velocity-highpass", "speed-ripple"}) {
+    const EffectFinding* found = finding(diagnosis, key);
+    if (found == nullptr || found->status != EffectStatus::missing) continue;
+    Name name{key, {}};
+    for (const char* other : {"radius-offset", "velocity-gain"}) {
+      const EffectFinding* twin = finding(diagnosis, other);
+      const bool of_plateau = std::string_view(key) == "radius-offset" || std::string_view(key) == "velocity-gain";
+      if (of_plateau && twin != nullptr && twin->status == EffectStatus::equivalent) name.equivalent.push_back(other);
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+/// Which of the names hold what was hidden; each name is used once.
+Naming judge(const Case& c, Outcome& out) {
+  std::vector<bool> used(out.names.size(), false);
+  std::size_t hits = 0;
+  bool alone = true;
+  for (const Ingredient& what : c.hidden) {
+    for (std::size_t i = 0; i < out.names.size(); ++i) {
+      if (used[i] || !holds(out.names[i], what.key)) continue;
+      out.group_size = std::max(out.group_size, size_of(out.names[i]));
+      if (size_of(out.names[i]) > kLargestGroup) continue;
+      used[i] = true;
+      alone &= size_of(out.names[i]) == 1;
+      ++hits;
+      break;
+    }
+  }
+  if (out.names.empty()) return Naming::missed;
+  if (hits == 0) return Naming::wrong;
+  if (hits < c.hidden.size()) return Naming::partly;
+  if (hits < out.names.size()) return Naming::beside;
+  return alone ? Naming::alone : Naming::group;
+}
+
+bool is_right(const Outcome& out) {
+  switch (out.of.kind) {
+    case Kind::single:
+    case Kind::pair:
+      return out.naming == Naming::alone || out.naming == Naming::group;
+    case Kind::nothing:
+      return out.names.empty() && out.verdict == Verdict::sufficient;
+    case Kind::alien:
+      return out.verdict == Verdict::unexplained && out.remaining == out.of.variable;
+    case Kind::unknowable:
+      return out.names.empty() && (out.status == "untestable" || out.status == "equivalent");
+  }
+  return false;
+}
+
+void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
+  for (const Ingredient& what : out.of.hidden) {
+    const EffectFinding* found = finding(diagnosis, what.key);
+    if (found == nullptr || found->status != EffectStatus::missing) continue;
+    for (const std::size_t k : what.main_parameters) {
+      if (k >= found->parameters.size()) continue;
+      const FitParameter& p = found->parameters[k];
+      const double unit = p.parameter.si;
+      out.parameters.push_back(
+          {what.key, p.parameter.name, what.values[k], p.value / unit, p.lower95 / unit, p.upper95 / unit});
+    }
+  }
+}
+
+/// Time this thread has had a processor [s]: not the waiting beside other cases.
+double processor_time() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+std::string_view to_string(Naming naming) {
+  constexpr std::string_view kNames[] = {"alone", "group", "beside", "partly", "wrong", "missed"};
+  return kNames[static_cast<std::size_t>(naming)];
+}
+
+DiagnosedTraces diagnose_case(const Simulated& simulated) {
+  std::vector<TraceInput> inputs;
+  for (const auto& trace : simulated.traces) inputs.push_back({trace->path, {}, trace});
+  IdentifyOptions options;
+  options.threads = 1;
+  return diagnose(inputs, options);
+}
+
+namespace {
+
+/// The runs that tell the hidden effect from the first of its group for which there are any, diagnosed with the first
+/// record.
+void try_experiment(const Case& c, Outcome& out) {
+  const std::string& key = c.hidden.front().key;
+  for (const Name& name : out.names) {
+    std::vector<std::string> members = name.equivalent;
+    members.insert(members.begin(), name.added);
+    for (const std::string& member : members) {
+      const std::vector<Run> runs = telling_runs(key, member);
+      if (runs.empty()) continue;
+      out.partner = member;
+      const std::vector<Name> after = names_of(diagnose_case(simulate_case(c, runs)).diagnosis);
+      const auto in = [](const std::string& k) { return [&k](const Name& n) { return holds(n, k); }; };
+      out.split =
+          std::any_of(after.begin(), after.end(), in(key)) && std::none_of(after.begin(), after.end(), in(member));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Outcome run_case(const Case& c, bool experiments) {
+  Outcome out;
+  out.of = c;
+  try {
+    const Simulated simulated = simulate_case(c);
+    const double begin = processor_time();
+    const DiagnosedTraces diagnosed = diagnose_case(simulated);
+    out.seconds = processor_time() - begin;
+    const Diagnosis& diagnosis = diagnosed.diagnosis;
+    out.names = names_of(diagnosis);
+    out.verdict = diagnosis.verdict;
+    out.law = diagnosis.law;
+    if (!diagnosis.remaining.empty() && diagnosis.remaining.front().share > 0) {
+      out.remaining = diagnosis.remaining.front().variable;
+      out.remaining_share = diagnosis.remaining.front().share;
+    }
+    if (!c.hidden.empty()) {
+      const EffectFinding* found = finding(diagnosis, c.hidden.front().key);
+      if (found != nullptr) out.status = to_string(found->status);
+    }
+    out.experiment = diagnosis.next_experiment;
+    if (!diagnosis.ladder.empty()) {
+      out.first = diagnosis.ladder.front().held_out_rmse;
+      out.last = diagnosis.ladder.back().held_out_rmse;
+    }
+    out.floor = simulated.floor_rmse;
+    out.naming = judge(c, out);
+    out.right = is_right(out);
+    compare_parameters(diagnosis, out);
+    if (experiments && c.kind == Kind::single && out.naming == Naming::group) try_experiment(c, out);
+  } catch (const std::exception& e) {
+    out.failure = e.what();
+  }
+  return out;
+}
+
+std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool experiments,
+                               const std::function<void(const Outcome&, std::size_t)>& done) {
+  std::vector<Outcome> outcomes(cases.size());
+  std::mutex mutex;
+  std::size_t count = 0;
+  run_tasks(cases.size(), threads, [&](std::size_t i) {
+    outcomes[i] = run_case(cases[i], experiments);
+    const std::lock_guard lock(mutex);
+    if (done) done(outcomes[i], ++count);
+  });
+  return outcomes;
+}
+
+double upper_bound_95(std::size_t hits, std::size_t n) {
+  if (hits >= n) return 1;
+  const boost::math::beta_distribution<double> beta(static_cast<double>(hits) + 1, static_cast<double>(n - hits));
+  return boost::math::quantile(beta, 0.95);
+}
+
+}  // namespace recovery

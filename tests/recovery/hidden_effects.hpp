@@ -1,0 +1,169 @@
+#pragma once
+
+/// The benchmark of hidden effects: records in which effects of the catalogue are hidden, diagnosed and judged against
+/// what was hidden.
+///
+/// Every case is made from its own seed, which follows from its name: a case that failed is rerun by name alone, and
+/// results do not depend on the number of threads or on which other cases are run.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tribofit/friction/model.hpp"
+#include "tribofit/ingest/trace.hpp"
+#include "tribofit/oscillator/rig.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace recovery {
+
+/// How the rig is driven and what is recorded.
+enum class Setting {
+  fast,                ///< 12 s at 10 kHz, constant speed: for what happens within a slip
+  slow,                ///< 40 s at 5 kHz, constant speed: for what changes over the record
+  both_directions,     ///< 24 s at 10 kHz, the disc swings forth and back; its speed is recorded
+  load_swings,         ///< slow, with a load that swings and is recorded
+  temperature_swings,  ///< slow, with a temperature that swings and is recorded
+  four_speeds,         ///< four records of 20 s at 5 kHz: 1, 2, 4 and 8 rpm, diagnosed together
+  pauses               ///< 60 s at 5 kHz with standstills of different length
+};
+std::string_view to_string(Setting setting);
+
+/// What a case is meant to show.
+enum class Kind {
+  single,     ///< one effect: to be named
+  pair,       ///< two effects: both to be named
+  nothing,    ///< none: nothing to be named
+  alien,      ///< what no catalogue holds: to be called unexplained, over the right variable
+  unknowable  ///< an effect that these data cannot show: not to be named
+};
+std::string_view to_string(Kind kind);
+
+/// An effect that is hidden, and how large.
+struct Ingredient {
+  std::string key;                           ///< of the catalogue; "hump", "swing" for those of no catalogue
+  double size = 0;                           ///< of its first parameter, in the unit of the catalogue
+  std::vector<double> values;                ///< of all its parameters in those units
+  std::vector<std::size_t> main_parameters;  ///< those that tell
+};
+
+/// One case, before it is simulated.
+struct Case {
+  std::string name;  ///< group and number: "frictional-lag:2:0"
+  std::string group;
+  Kind kind = Kind::single;
+  Setting setting = Setting::fast;
+  std::vector<Ingredient> hidden;
+  std::string variable;  ///< aliens: the one over which they show
+  tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
+  tribofit::LawParameters<double> friction{};
+  tribofit::Rig rig;
+  double radius = 0;  ///< [m]
+  double speed = 0;   ///< [rad/s]
+  double load = 0;    ///< [N]
+  double colour = 0;  ///< AR(1) coefficient of the noise
+  double scatter = 0, wander = 0;
+  std::uint64_t seed = 0;
+};
+
+/// How many cases of each kind.
+struct PlanOptions {
+  std::size_t runs = 10;      ///< of each effect and size
+  std::size_t pairs = 10;     ///< of each pair
+  std::size_t nothing = 800;  ///< with nothing hidden
+  std::size_t aliens = 40;    ///< of each of those in no catalogue
+  std::size_t unknowable = 20;
+  bool largest_only = false;  ///< of the sizes of an effect
+  std::uint64_t seed = 1;
+};
+
+std::vector<Case> plan_cases(const PlanOptions& options);
+
+/// A record of a case.
+struct Run {
+  Setting setting = Setting::fast;
+  double speed = 1;     ///< of that of the case
+  double radius = 0;    ///< [m]; 0: that of the case
+  double duration = 0;  ///< [s]; 0: that of the setting
+};
+
+/// The runs that tell two effects apart, where records can: those of the catalogue's tests that need no hand on the
+/// rig. Empty where there are none. The order of the keys does not matter.
+std::vector<Run> telling_runs(std::string_view key_a, std::string_view key_b);
+
+/// A case as recorded.
+struct Simulated {
+  tribofit::FrictionModel model{tribofit::BaseLaw::exponential};
+  std::vector<double> truth;  ///< parameters of `model` [SI]
+  std::vector<std::shared_ptr<const tribofit::Trace>> traces;
+  double floor_rmse = 0;  ///< what the true law leaves over slip, all traces together [1]
+};
+/// more: runs of the same rig beside those of the case.
+Simulated simulate_case(const Case& c, const std::vector<Run>& more = {});
+
+/// A rung of the ladder as it counts here: what was added, and what does as well.
+struct Name {
+  std::string added;
+  std::vector<std::string> equivalent;
+};
+
+struct Recovered {
+  std::string key, parameter;
+  double truth = 0, value = 0, lower95 = 0, upper95 = 0;  ///< in the unit of the catalogue
+};
+
+/// How well what was hidden was named. Of groups larger than four nothing counts as named.
+enum class Naming {
+  alone,   ///< everything hidden named, each by itself, and nothing else
+  group,   ///< everything named, alone or in groups of at most four, and nothing else
+  beside,  ///< everything named, but something else too
+  partly,  ///< of two, one
+  wrong,   ///< only something else
+  missed   ///< nothing named
+};
+std::string_view to_string(Naming naming);
+
+/// What came of a case.
+struct Outcome {
+  Case of;
+  std::vector<Name> names;  ///< rungs beyond the base law, and effects of the motion that were found
+  tribofit::Verdict verdict = tribofit::Verdict::sufficient;
+  tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
+  std::string remaining;  ///< variable of the largest remaining share; empty: none
+  double remaining_share = 0;
+  std::string status;      ///< of the first hidden effect of the catalogue
+  std::string experiment;  ///< the next one, as suggested
+  Naming naming = Naming::missed;
+  std::size_t group_size = 0;             ///< of the largest group that holds a hidden effect
+  bool right = false;                     ///< what the kind of the case asks for
+  double first = 0, last = 0, floor = 0;  ///< held-out RMSE of the base law and of the last rung; see Simulated [1]
+  std::vector<Recovered> parameters;      ///< main parameters of hidden effects that were added
+  std::string partner;                    ///< of its group, where there are telling_runs(); empty: none
+  bool split = false;                     ///< with those runs beside the first it is named without that partner
+  double seconds = 0;                     ///< of one processor, for the diagnosis alone
+  std::string failure;                    ///< what was thrown
+};
+
+/// Simulates, diagnoses on one thread and judges. Never throws: what is thrown is in `failure`.
+/// experiments: where a single effect was named in a group, the telling runs are simulated too.
+Outcome run_case(const Case& c, bool experiments = false);
+
+/// The diagnosis alone, as run_case() does it.
+tribofit::DiagnosedTraces diagnose_case(const Simulated& simulated);
+
+/// Runs cases side by side. done: called after each with the number done, from one thread at a time.
+std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool experiments = false,
+                               const std::function<void(const Outcome&, std::size_t)>& done = {});
+
+/// The tables that stand in the README, as Markdown.
+std::string tables(const std::vector<Outcome>& outcomes);
+
+/// Upper end of the one-sided 95 % interval of a rate after `hits` in `n` (Clopper-Pearson).
+double upper_bound_95(std::size_t hits, std::size_t n);
+
+}  // namespace recovery

@@ -1,0 +1,102 @@
+/// A slice of the benchmark of hidden effects; scripts/hidden-effects runs all of it.
+#include "hidden_effects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tribofit/friction/effects/all.hpp"
+
+namespace {
+
+using namespace recovery;
+
+std::string names(const Outcome& o) {
+  std::string text;
+  for (const Name& name : o.names) {
+    text += (text.empty() ? "" : ", ") + name.added;
+    for (const std::string& other : name.equivalent) text += "|" + other;
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+/// Number of cases that came out right; prints the others.
+std::size_t count_right(const std::vector<Outcome>& outcomes) {
+  std::size_t right = 0;
+  for (const Outcome& o : outcomes) {
+    EXPECT_EQ(o.failure, "") << o.of.name;
+    right += o.right ? 1u : 0u;
+    if (!o.right) {
+      std::printf("%-32s %s, %s\n", o.of.name.c_str(), names(o).c_str(),
+                  std::string(tribofit::to_string(o.verdict)).c_str());
+    }
+  }
+  return right;
+}
+
+std::vector<Case> slice(Kind kind, const PlanOptions& options) {
+  std::vector<Case> cases = plan_cases(options);
+  std::erase_if(cases, [&](const Case& c) { return c.kind != kind; });
+  return cases;
+}
+
+constexpr PlanOptions kSlice = {
+    .runs = 1, .pairs = 0, .nothing = 10, .aliens = 2, .unknowable = 1, .largest_only = true};
+
+TEST(HiddenEffects, EveryEffectOfTheCatalogueIsInTheBenchmark) {
+  std::set<std::string> hidden;
+  for (const Case& c : slice(Kind::single, kSlice)) hidden.insert(c.hidden[0].key);
+  for (const tribofit::Effect& effect : tribofit::effect_catalogue()) {
+    EXPECT_EQ(hidden.count(tribofit::describe(effect).key), 1u) << tribofit::describe(effect).key;
+  }
+}
+
+/// A case that failed can be rerun alone, whatever else was in the plan.
+TEST(HiddenEffects, ACaseFollowsFromItsNameAlone) {
+  const std::vector<Case> few = slice(Kind::single, kSlice);
+  PlanOptions more = kSlice;
+  more.runs = 2;
+  more.largest_only = false;
+  const std::vector<Case> many = slice(Kind::single, more);
+  const auto again = std::find_if(many.begin(), many.end(), [&](const Case& c) { return c.name == few[3].name; });
+  ASSERT_NE(again, many.end());
+  const Simulated a = simulate_case(few[3]), b = simulate_case(*again);
+  EXPECT_EQ(a.truth, b.truth);
+  EXPECT_EQ(a.traces[0]->friction, b.traces[0]->friction);
+  EXPECT_GT(a.floor_rmse, 0.003);
+  EXPECT_LT(a.floor_rmse, 0.02);
+}
+
+TEST(HiddenEffects, AreNamed) {
+  const std::vector<Outcome> outcomes = run_cases(slice(Kind::single, kSlice), 0);
+  EXPECT_GE(count_right(outcomes), outcomes.size() - 3);
+}
+
+TEST(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
+  const std::vector<Outcome> outcomes = run_cases(slice(Kind::nothing, kSlice), 0);
+  EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
+}
+
+TEST(HiddenEffects, OfNoCatalogueAreCalledUnexplained) {
+  const std::vector<Outcome> outcomes = run_cases(slice(Kind::alien, kSlice), 0);
+  EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
+}
+
+TEST(HiddenEffects, AgeingIsNotNamedFromOneConstantSpeed) {
+  const std::vector<Outcome> outcomes = run_cases(slice(Kind::unknowable, kSlice), 0);
+  EXPECT_EQ(count_right(outcomes), outcomes.size());
+}
+
+/// No hits in 800: 1 - 0.05^(1/800).
+TEST(HiddenEffects, UpperBoundOfARateIsThatOfTheBinomial) {
+  EXPECT_NEAR(upper_bound_95(0, 800), 1 - std::pow(0.05, 1.0 / 800), 1e-12);
+  EXPECT_NEAR(upper_bound_95(1, 10), 0.394163, 1e-6);  // Clopper, Pearson, Biometrika 26 (1934) 404
+  EXPECT_EQ(upper_bound_95(10, 10), 1);
+}
+
+}  // namespace

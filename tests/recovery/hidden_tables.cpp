@@ -1,0 +1,359 @@
+/// What the outcomes say, as Markdown.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "hidden_effects.hpp"
+#include "tribofit/friction/effect_pairs.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+namespace {
+
+using Outcomes = std::vector<const Outcome*>;
+
+Outcomes of_kind(const std::vector<Outcome>& all, Kind kind) {
+  Outcomes found;
+  for (const Outcome& o : all) {
+    if (o.of.kind == kind) found.push_back(&o);
+  }
+  return found;
+}
+
+/// Groups in the order of their first case.
+std::vector<Outcomes> by_group(const Outcomes& outcomes) {
+  std::vector<Outcomes> groups;
+  std::map<std::string, std::size_t> at;
+  for (const Outcome* o : outcomes) {
+    const auto [entry, is_new] = at.emplace(o->of.group, groups.size());
+    if (is_new) groups.emplace_back();
+    groups[entry->second].push_back(o);
+  }
+  return groups;
+}
+
+template <class Predicate>
+std::size_t count(const Outcomes& outcomes, Predicate predicate) {
+  return static_cast<std::size_t>(std::count_if(outcomes.begin(), outcomes.end(), predicate));
+}
+
+std::size_t count(const Outcomes& outcomes, Naming naming) {
+  return count(outcomes, [&](const Outcome* o) { return o->failure.empty() && o->naming == naming; });
+}
+
+std::string percent(std::size_t hits, std::size_t n) {
+  return n == 0 ? "" : fmt::format("{:.1f} %", 100 * static_cast<double>(hits) / static_cast<double>(n));
+}
+
+bool is_low(const Outcome* o) {
+  return o->last > 0 && o->last <= 1.15 * o->floor;
+}
+bool is_right(const Outcome* o) {
+  return o->right;
+}
+bool was_tried(const Outcome* o) {
+  return !o->partner.empty();
+}
+bool failed(const Outcome* o) {
+  return !o->failure.empty();
+}
+
+struct Parameters {
+  std::size_t n = 0, close = 0, covered = 0;
+};
+
+Parameters parameters(const Outcomes& outcomes) {
+  Parameters out;
+  for (const Outcome* o : outcomes) {
+    if (!o->right) continue;
+    for (const Recovered& p : o->parameters) {
+      ++out.n;
+      out.close += std::abs(p.value - p.truth) <= 0.1 * std::abs(p.truth) ? 1u : 0u;
+      out.covered += p.lower95 <= p.truth && p.truth <= p.upper95 ? 1u : 0u;
+    }
+  }
+  return out;
+}
+
+std::string mean_group(const Outcomes& outcomes) {
+  double sum = 0;
+  std::size_t n = 0;
+  for (const Outcome* o : outcomes) {
+    if (o->group_size == 0) continue;
+    sum += static_cast<double>(o->group_size);
+    ++n;
+  }
+  return n == 0 ? "" : fmt::format("{:.1f}", sum / static_cast<double>(n));
+}
+
+void add_row(std::string& text, const std::string& name, const Outcomes& g) {
+  const Parameters p = parameters(g);
+  fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, g.size(),
+                 count(g, Naming::alone), count(g, Naming::group), count(g, Naming::beside), count(g, Naming::wrong),
+                 count(g, Naming::missed), mean_group(g), percent(count(g, is_low), g.size()), percent(p.close, p.n),
+                 percent(p.covered, p.n));
+}
+
+std::string singles_table(const Outcomes& singles) {
+  std::string text =
+      "| hidden | n | alone | in a group of at most 4 | beside another | wrong | missed | mean group | "
+      "error within 1.15 | parameter within 10 % | inside 95 % |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+  for (const Outcomes& g : by_group(singles)) add_row(text, fmt::format("`{}`", g[0]->of.group), g);
+  add_row(text, "all", singles);
+  return text;
+}
+
+std::string pairs_table(const Outcomes& pairs) {
+  std::string text =
+      "| hidden | n | both | both, beside another | one | neither | nothing | error within 1.15 |\n"
+      "|---|--:|--:|--:|--:|--:|--:|--:|\n";
+  const auto row = [&](const std::string& name, const Outcomes& g) {
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} |\n", name, g.size(),
+                   count(g, is_right), count(g, Naming::beside), count(g, Naming::partly), count(g, Naming::wrong),
+                   count(g, Naming::missed), percent(count(g, is_low), g.size()));
+  };
+  for (const Outcomes& g : by_group(pairs)) row(fmt::format("`{}`", g[0]->of.group), g);
+  row("all", pairs);
+  return text;
+}
+
+/// "drift 2, runout 1", most frequent first.
+std::string list(const std::map<std::string, std::size_t>& counts) {
+  std::vector<std::pair<std::string, std::size_t>> sorted(counts.begin(), counts.end());
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (const auto& [key, n] : sorted) {
+    fmt::format_to(std::back_inserter(text), "{}{} {}", text.empty() ? "" : ", ", key, n);
+  }
+  return text;
+}
+
+/// Confusion matrix without its zeros: a row for each hidden effect, what was said to be missing, and what was offered
+/// beside it as equal.
+std::string confusion_table(const Outcomes& singles) {
+  struct Row {
+    std::size_t n = 0;
+    std::map<std::string, std::size_t> added, equal;
+  };
+  std::vector<std::string> order;
+  std::map<std::string, Row> rows;
+  for (const Outcome* o : singles) {
+    const std::string& key = o->of.hidden[0].key;
+    if (rows.count(key) == 0) order.push_back(key);
+    Row& row = rows[key];
+    ++row.n;
+    if (o->names.empty()) ++row.added["nothing"];
+    for (const Name& name : o->names) {
+      ++row.added[name.added];
+      for (const std::string& other : name.equivalent) ++row.equal[other];
+    }
+  }
+  std::string text = "| hidden | n | named | offered as equal |\n|---|--:|---|---|\n";
+  for (const std::string& key : order) {
+    const Row& row = rows[key];
+    fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} |\n", key, row.n, list(row.added), list(row.equal));
+  }
+  return text;
+}
+
+/// Pairs that look alike: is the one taken for the other?
+std::string twins_table(const Outcomes& singles) {
+  std::string text =
+      "| hidden | looks like | n | alone | with it in a group | with it, group too large | it was named instead |\n"
+      "|---|---|--:|--:|--:|--:|--:|\n";
+  std::vector<std::string> seen;
+  for (const Outcome* first : singles) {
+    const std::string& key = first->of.hidden[0].key;
+    if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
+    seen.push_back(key);
+    Outcomes of;
+    std::copy_if(singles.begin(), singles.end(), std::back_inserter(of),
+                 [&](const Outcome* o) { return o->of.hidden[0].key == key; });
+    for (const LookAlike& twin : look_alikes(key)) {
+      std::size_t grouped = 0, wide = 0, instead = 0;
+      for (const Outcome* o : of) {
+        for (const Name& name : o->names) {
+          const auto in = [&](const std::string& k) {
+            return name.added == k ||
+                   std::find(name.equivalent.begin(), name.equivalent.end(), k) != name.equivalent.end();
+          };
+          if (!in(twin.key)) continue;
+          if (!in(key)) {
+            ++instead;
+          } else {
+            ++(name.equivalent.size() < 4 ? grouped : wide);
+          }
+        }
+      }
+      fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} | {} | {} | {} |\n", key, twin.key, of.size(),
+                     count(of, Naming::alone), grouped, wide, instead);
+    }
+  }
+  return text;
+}
+
+/// Groups that the next experiment was to split.
+std::string experiments_table(const Outcomes& tried) {
+  std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> pairs;
+  for (const Outcome* o : tried) {
+    auto& [n, split] = pairs[{o->of.hidden[0].key, o->partner}];
+    ++n;
+    split += o->split ? 1u : 0u;
+  }
+  std::string text = "| hidden | in a group with | n | split |\n|---|---|--:|--:|\n";
+  for (const auto& [pair, counts] : pairs) {
+    fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} |\n", pair.first, pair.second, counts.first,
+                   counts.second);
+  }
+  return text;
+}
+
+std::string nothing_table(const Outcomes& empties) {
+  std::string text =
+      "| records with nothing hidden | n | something named | rate | at most (95 %) | named |\n"
+      "|---|--:|--:|--:|--:|---|\n";
+  const auto row = [&](const std::string& name, auto&& of) {
+    Outcomes g;
+    std::copy_if(empties.begin(), empties.end(), std::back_inserter(g), of);
+    if (g.empty()) return;
+    std::map<std::string, std::size_t> named;
+    for (const Outcome* o : g) {
+      for (const Name& n : o->names) ++named[n.added];
+      if (o->names.empty() && !o->right) ++named[std::string("verdict ") + std::string(to_string(o->verdict))];
+    }
+    const std::size_t alarms = g.size() - count(g, is_right);
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {:.1f} % | {} |\n", name, g.size(), alarms,
+                   percent(alarms, g.size()), 100 * upper_bound_95(alarms, g.size()), list(named));
+  };
+  for (const double colour : {0.0, 0.9}) {
+    for (const double wander : {0.0, 0.7}) {
+      row(fmt::format("{} noise, {} scatter", colour > 0 ? "AR(1) 0.9" : "white",
+                      wander > 0 ? "wandering" : "independent"),
+          [&](const Outcome* o) { return o->of.colour == colour && o->of.wander == wander; });
+    }
+  }
+  std::set<Setting> settings;
+  for (const Outcome* o : empties) settings.insert(o->of.setting);
+  for (const Setting setting : settings) {
+    row(std::string(to_string(setting)), [&](const Outcome* o) { return o->of.setting == setting; });
+  }
+  row("all", [](const Outcome*) { return true; });
+  return text;
+}
+
+std::string others_table(const Outcomes& outcomes) {
+  std::string text =
+      "| hidden | n | right | something named all the same | verdicts | largest remaining share over |\n"
+      "|---|--:|--:|--:|---|---|\n";
+  for (const Outcomes& g : by_group(outcomes)) {
+    std::map<std::string, std::size_t> verdicts, variables;
+    for (const Outcome* o : g) {
+      ++verdicts[std::string(to_string(o->verdict))];
+      ++variables[o->remaining.empty() ? "none" : o->remaining];
+    }
+    fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} | {} | {} |\n", g[0]->of.group, g.size(),
+                   count(g, is_right), count(g, [](const Outcome* o) { return !o->names.empty(); }), list(verdicts),
+                   list(variables));
+  }
+  return text;
+}
+
+/// By what is not the effect: is one radius, law or noise worse than the others?
+std::string conditions_table(const Outcomes& outcomes) {
+  std::string text = "| condition | n | named |\n|---|--:|--:|\n";
+  const auto row = [&](const std::string& name, auto&& of) {
+    Outcomes g;
+    std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(g), of);
+    if (g.empty()) return;
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, g.size(),
+                   percent(count(g, is_right), g.size()));
+  };
+  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    row(std::string(to_string(law)), [&](const Outcome* o) { return o->of.law == law; });
+  }
+  for (const double radius : {0.009, 0.012, 0.015, 0.018}) {
+    row(fmt::format("{:g} mm", radius * 1e3), [&](const Outcome* o) { return o->of.radius == radius; });
+  }
+  row("white noise", [](const Outcome* o) { return o->of.colour == 0; });
+  row("AR(1) 0.9 noise", [](const Outcome* o) { return o->of.colour > 0; });
+  row("independent scatter", [](const Outcome* o) { return o->of.wander == 0; });
+  row("wandering scatter", [](const Outcome* o) { return o->of.wander > 0; });
+  row("scatter below 0.01", [](const Outcome* o) { return o->of.scatter < 0.01; });
+  row("scatter 0.01 to 0.02", [](const Outcome* o) { return o->of.scatter >= 0.01; });
+  return text;
+}
+
+std::string summary(const std::vector<Outcome>& all) {
+  const Outcomes singles = of_kind(all, Kind::single), pairs = of_kind(all, Kind::pair),
+                 empties = of_kind(all, Kind::nothing), aliens = of_kind(all, Kind::alien),
+                 unknowable = of_kind(all, Kind::unknowable);
+  std::string text = "| what is asked | of | figure |\n|---|--:|--:|\n";
+  const auto row = [&](const char* name, std::size_t n, const std::string& figure) {
+    if (n > 0) fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, n, figure);
+  };
+  const auto share = [&](const char* name, const Outcomes& of, const auto& what) {
+    row(name, of.size(), percent(count(of, what), of.size()));
+  };
+  share("single effects named, alone or in a group of at most 4", singles, is_right);
+  share("single effects named alone", singles, [](const Outcome* o) { return o->naming == Naming::alone; });
+  share("pairs of which both are named", pairs, is_right);
+  const std::size_t alarms = empties.size() - count(empties, is_right);
+  row("something named where nothing is hidden (at most, 95 %)", empties.size(),
+      fmt::format("{} ({:.1f} %)", percent(alarms, empties.size()), 100 * upper_bound_95(alarms, empties.size())));
+  share("effects of no catalogue called unexplained over the right variable", aliens, is_right);
+  share("ageing at one constant speed called untestable", unknowable, is_right);
+  Outcomes named;
+  for (const Outcomes& of : {singles, pairs}) std::copy_if(of.begin(), of.end(), std::back_inserter(named), is_right);
+  share("held-out error within 1.15 times what the true law leaves, where named", named, is_low);
+  const Parameters p = parameters(named);
+  row("main parameters within 10 %", p.n, percent(p.close, p.n));
+  row("main parameters inside their 95 % interval", p.n, percent(p.covered, p.n));
+  row("mean size of the group that holds the hidden effect", singles.size(), mean_group(singles));
+  Outcomes tried;
+  std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
+  share("groups split by the next experiment, where records can do it", tried,
+        [](const Outcome* o) { return o->split; });
+  double seconds = 0, slowest = 0;
+  std::size_t failures = 0;
+  for (const Outcome& o : all) {
+    seconds += o.seconds;
+    slowest = std::max(slowest, o.seconds);
+    failures += failed(&o) ? 1u : 0u;
+  }
+  row("processor seconds of a diagnosis, mean (longest)", all.size(),
+      fmt::format("{:.2f} ({:.2f})", seconds / static_cast<double>(std::max<std::size_t>(1, all.size())), slowest));
+  row("cases that threw", failures, fmt::format("{}", failures));
+  return text;
+}
+
+}  // namespace
+
+std::string tables(const std::vector<Outcome>& all) {
+  std::string text = summary(all);
+  const auto section = [&](const char* title, const Outcomes& of, auto&& table) {
+    if (!of.empty()) fmt::format_to(std::back_inserter(text), "\n**{}**\n\n{}", title, table(of));
+  };
+  const Outcomes singles = of_kind(all, Kind::single);
+  section("One effect hidden", singles, singles_table);
+  section("Two effects hidden", of_kind(all, Kind::pair), pairs_table);
+  section("Nothing hidden", of_kind(all, Kind::nothing), nothing_table);
+  Outcomes others = of_kind(all, Kind::alien);
+  const Outcomes unknowable = of_kind(all, Kind::unknowable);
+  others.insert(others.end(), unknowable.begin(), unknowable.end());
+  section("In no catalogue, or not to be seen in these data", others, others_table);
+  section("What was named for what was hidden", singles, confusion_table);
+  section("Effects that look alike", singles, twins_table);
+  Outcomes tried;
+  std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
+  section("The next experiment, simulated", tried, experiments_table);
+  section("By condition, single effects", singles, conditions_table);
+  return text;
+}
+
+}  // namespace recovery
