@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/own_effects.hpp"
 #include "tribofit/fit/parallel.hpp"
 
 namespace tribofit {
@@ -357,6 +358,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& given,
                          const DiagnoseOptions& more) {
   DiagnosedTraces out;
+  diagnosis::refuse_same(given.effects);
   IdentifyOptions options = given;
   std::vector<Effect> own = of_friction(given.effects);
   options.effects.erase(std::remove_if(options.effects.begin(), options.effects.end(),
@@ -373,6 +375,14 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
       MotionOptions corrected = options.motion;
       corrected.plateau = PlateauCorrection::radius;
       trace = prepare(input, options, corrected);
+    }
+    require_channels(given, trace.motion, trace.warnings, trace.analysed);
+    for (const Effect& effect : own) {
+      const std::string trouble =
+          trace.analysed ? diagnosis::not_finite(effect, {&trace.motion, &trace.segmentation}) : std::string();
+      if (trouble.empty()) continue;
+      trace.warnings.push_back(trouble);
+      trace.analysed = false;
     }
     out.analysed &= trace.analysed;
   }

@@ -10,8 +10,7 @@ namespace {
 bool bends(const Bench& bench, const Trial& trial) {
   constexpr double kStraight = 0.5;  // of the rise still to come at the fastest slip
   const bool falls = trial.p[0] > trial.p[1];
-  return falls ||
-         stribeck_shape(trial.model.law(), trial.p[2] * bench.fine.observations.fastest) < kStraight;
+  return falls || stribeck_shape(trial.model.law(), trial.p[2] * bench.fine.observations.fastest) < kStraight;
 }
 
 }  // namespace

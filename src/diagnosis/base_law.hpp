@@ -12,8 +12,8 @@ namespace tribofit::diagnosis {
 /// such records shows a level of break-away, and a drop from it must be found in sliding alone.
 std::vector<BaseLaw> base_laws(std::span<const Record> records, std::vector<BaseLaw> given);
 
-/// The ladder to tell: see better_ladder. Where Coulomb friction is among them, a law that only rises in a straight line
-/// does not compete: it is Coulomb friction with something more, and the ladder from there says what.
+/// The ladder to tell: see better_ladder. Where Coulomb friction is among them, a law that only rises in a straight
+/// line does not compete: it is Coulomb friction with something more, and the ladder from there says what.
 std::size_t told_ladder(const Bench& bench, const std::vector<Ladder>& ladders);
 
 }  // namespace tribofit::diagnosis

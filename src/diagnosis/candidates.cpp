@@ -100,7 +100,8 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
     return "the block slides in one direction only";
   }
   if (info.key == "ringing" && !seen.breaks_away) return "there is no break-away to strike it";
-  if (info.key == "contact-spin" && !seen.breaks_away) return "there is no break-away before which the block could creep";
+  if (info.key == "contact-spin" && !seen.breaks_away)
+    return "there is no break-away before which the block could creep";
   return {};
 }
 
@@ -199,11 +200,11 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
     std::vector<double> values;
     double places = 1;
     if (parameter.unit == "Hz" && candidate.info.key == "interference") {
-      const Line line = strongest_line(records[0], observations, residual, parameter.lower, parameter.upper);
+      const SpectralLine line = strongest_line(records[0], observations, residual, parameter.lower, parameter.upper);
       values = {line.frequency > 0 ? line.frequency : parameter.start};
       places = line.places;
     } else if (parameter.unit == "Hz" && candidate.info.key == "ringing") {
-      const Line line =
+      const SpectralLine line =
           strongest_ringing(observations, residual, std::max(parameter.lower, lowest_ringing(observations)));
       values = {line.frequency > 0 ? line.frequency : parameter.start};
       places = line.places;

@@ -191,6 +191,16 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   diagnosis.verdict = !structure.empty()        ? Verdict::unexplained
                       : ladder.steps.size() > 1 ? Verdict::effect_found
                                                 : Verdict::sufficient;
+  // Far above the floor, an error that goes with no variable of these data is not explained either.
+  constexpr double kFar = 2;
+  const double left_over = out.fits.back().error.held_out_rmse / floor.rmse;
+  if (structure.empty() && left_over > kFar) {
+    diagnosis.verdict = Verdict::unexplained;
+    diagnosis.messages.push_back(
+        fmt::format("what remains is {:.1f} times the floor and goes with no variable of these data more than chance "
+                    "would make it: it changes from cycle to cycle, or with something that was not recorded",
+                    left_over));
+  }
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   voice.say("a closed form of the rest", 0.95);
   if (!structure.empty()) diagnosis.formula = closed_form(bench, ladder.top(), structure.front());

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kChance = 0.01;          ///< p-value below which structure is not chance
-constexpr double kLeastStructure = 0.05;  ///< of the squares that sensor noise leaves
 
 bool contains(const std::vector<std::size_t>& list, std::size_t value) {
   return std::find(list.begin(), list.end(), value) != list.end();
@@ -109,6 +108,10 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       finding.status = EffectStatus::superseded;
       finding.reason = "another effect explains the same error better";
     }
+    if (contains(ladder.withdrawn, k)) {
+      finding.status = EffectStatus::unsupported;
+      finding.reason = "more remains over its variable than it explains: its name would be wrong";
+    }
     for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
       const LadderStep& step = ladder.steps[s];
       if (contains(step.equivalent, k)) {
@@ -138,16 +141,6 @@ std::vector<Share> shares_of(const std::vector<Probe>& probes, double above) {
     out.push_back({probe.variable, p < 0.05 ? std::max(0.0, probe.fall) / most : 0.0, p});
   }
   std::stable_sort(out.begin(), out.end(), [](const Share& a, const Share& b) { return a.share > b.share; });
-  return out;
-}
-
-std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
-  std::vector<Probe> out;
-  for (const Probe& probe : probes) {
-    const bool chance = probe.p_value * static_cast<double>(probes.size()) >= kChance;
-    if (!chance && probe.fall > 0 && probe.size > kLeastStructure) out.push_back(probe);
-  }
-  std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;
 }
 

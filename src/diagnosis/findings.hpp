@@ -18,9 +18,6 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
 /// above: the squares above the floor.
 std::vector<Share> shares_of(const std::vector<Probe>& probes, double above);
 
-/// The probes that no chance makes, largest first.
-std::vector<Probe> remaining_structure(const std::vector<Probe>& probes);
-
 /// What to do next: the test that splits the groups of the ladder, or what remains to be looked at.
 std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& all,
                             const std::vector<Probe>& structure);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "lines.hpp"
+#include "probes.hpp"
 #include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit::diagnosis {
@@ -156,7 +158,9 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     const Candidate& candidate = candidates[judged.candidate];
     if (!judged.trial.usable || is_narrow(candidate.info)) continue;
     const double behind = judged.trial.held_out_squares - best;
-    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0;
+    const bool small = judged.size < 0.5 * limits.least_size || judged.p_value > 0.5 ||
+                       (judged.fall < least && judged.fall < kLeastPart * fallen);
+    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0 || small;
     if (judged.hopeless) {
       judged.passes = false;
       continue;
@@ -167,6 +171,53 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     judged.candidate = which;
   }
   return out;
+}
+
+/// Takes step s out of a ladder; the steps above are rebuilt without its effect.
+void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s) {
+  const std::string& key = candidates[*ladder.steps[s].added].info.key;
+  ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
+  for (std::size_t later = s; later < ladder.steps.size(); ++later) {
+    Trial& trial = ladder.steps[later].trial;
+    const std::vector<std::string> held = trial.model.effect_keys();
+    const auto gone = static_cast<std::size_t>(std::find(held.begin(), held.end(), key) - held.begin());
+    if (gone < held.size()) trial = try_without(bench, bench.fine, trial, gone);
+  }
+}
+
+/// Where the absence of an effect shows.
+std::string fingerprint_variable(const std::string& key) {
+  static const std::map<std::string, std::string> variables = {
+      {"viscous", "velocity"},    {"stribeck-exponent", "velocity"}, {"drift", "time"},
+      {"heating", "time"},        {"run-in", "time"},                {"step", "time"},
+      {"runout", "angle"},        {"disc-pattern", "angle"},         {"frictional-lag", "branch"},
+      {"rate-state", "branch"},   {"bristle", "branch"},             {"sensor-inertia", "branch"},
+      {"channel-delay", "branch"}, {"force-bandwidth", "branch"},    {"load-dependence", "load"},
+      {"crosstalk", "load"},      {"ageing", "stick-time"}};
+  const auto at = variables.find(key);
+  return at == variables.end() ? "" : at->second;
+}
+
+/// Withdraws names that were given to a small part of something larger: where more remains over the variable of an
+/// effect than the effect explained, its name is probably wrong.
+void withdraw(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates) {
+  constexpr double kLeastPart = 0.7;
+  while (ladder.steps.size() > 1) {
+    const Trial& top = ladder.top();
+    const std::vector<Probe> structure = remaining_structure(probe_all(
+        bench, try_model(bench, bench.coarse, top.model, top.p), top, residual_of(bench, top)));
+    std::optional<std::size_t> wrong;
+    for (std::size_t s = 1; s < ladder.steps.size() && !wrong; ++s) {
+      const std::string variable = fingerprint_variable(candidates[*ladder.steps[s].added].info.key);
+      const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
+      for (const Probe& probe : structure) {
+        if (probe.variable == variable && fall < kLeastPart * (fall + probe.fall)) wrong = s;
+      }
+    }
+    if (!wrong) return;
+    ladder.withdrawn.push_back(*ladder.steps[*wrong].added);
+    remove(bench, ladder, candidates, *wrong);
+  }
 }
 
 /// Drops effects that the ones added after them made redundant.
@@ -182,17 +233,7 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
       ++s;
       continue;
     }
-    // The rungs above are rebuilt without it.
-    std::vector<LadderStep> rebuilt(ladder.steps.begin(), ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
-    for (std::size_t later = s + 1; later < ladder.steps.size(); ++later) {
-      LadderStep step = ladder.steps[later];
-      const std::vector<std::string> held = step.trial.model.effect_keys();
-      const auto gone =
-          static_cast<std::size_t>(std::find(held.begin(), held.end(), candidate.info.key) - held.begin());
-      if (gone < held.size()) step.trial = try_without(bench, bench.fine, step.trial, gone);
-      rebuilt.push_back(std::move(step));
-    }
-    ladder.steps = std::move(rebuilt);
+    remove(bench, ladder, candidates, s);
     s = 1;
   }
 }
@@ -224,6 +265,7 @@ Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& cand
     ladder.steps.push_back(std::move(step));
   }
   prune(bench, ladder, candidates, limits);
+  withdraw(bench, ladder, candidates);
   return ladder;
 }
 

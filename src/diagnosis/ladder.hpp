@@ -37,6 +37,7 @@ struct LadderStep {
 struct Ladder {
   BaseLaw law = BaseLaw::exponential;
   std::vector<LadderStep> steps;  ///< the base law first
+  std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
   std::vector<Judged> last;       ///< candidates judged beside the last rung: none of them passes
   const Trial& top() const { return steps.back().trial; }
 };

@@ -121,9 +121,9 @@ double noise_without_line(const Record& record, double noise) {
   return std::sqrt(std::max(noise * noise - line, 0.05 * noise * noise));
 }
 
-Line strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
+SpectralLine strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
                     double lowest, double highest) {
-  Line line;
+  SpectralLine line;
   const Motion& motion = *record.motion;
   const double rate = observation_rate(observations);
   if (!(rate > 0) || observations.slips.empty()) return line;
@@ -157,8 +157,8 @@ Line strongest_line(const Record& record, const Observations& observations, std:
   return line;
 }
 
-Line strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
-  Line line;
+SpectralLine strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
+  SpectralLine line;
   const double rate = observation_rate(observations);
   std::vector<double> lengths;
   for (const auto& slip : observations.slips) {

@@ -8,7 +8,7 @@
 namespace tribofit::diagnosis {
 
 /// A spectral line and how many independent frequencies were looked at to find it.
-struct Line {
+struct SpectralLine {
   double frequency = 0;  ///< [Hz]; 0: none
   double places = 1;
 };
@@ -17,14 +17,14 @@ struct Line {
 /// stick about a parabola through each stick. Its phase runs on from one to the next, and its frequency is found more
 /// finely than the record resolves, between `lowest` and `highest` [Hz]. residual: one value for each of the
 /// observations, signed. Only the first record is looked at.
-Line strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
+SpectralLine strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
                     double lowest, double highest);
 
 /// Sensor noise [1 or N] without the strongest line that runs through the sticks, where that line is most of it.
 double noise_without_line(const Record& record, double noise);
 
 /// The strongest line whose phase starts anew at each break-away, from `lowest` [Hz] up.
-Line strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest);
+SpectralLine strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest);
 
 /// Below this a ring has too few periods in a slip to be told from the shape of the law [Hz].
 double lowest_ringing(const Observations& observations);

@@ -308,7 +308,7 @@ std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
 
 std::optional<Probe> over_frequency(const Bench& bench, const Trial& fine, std::span<const double> residual) {
   const Observations& o = bench.fine.observations;
-  const Line line = strongest_line(bench.records[0], o, residual, 2, 0.4 * observation_rate(o));
+  const SpectralLine line = strongest_line(bench.records[0], o, residual, 2, 0.4 * observation_rate(o));
   if (!(line.frequency > 0)) return std::nullopt;
   Probe probe;
   probe.variable = "frequency";
@@ -343,6 +343,18 @@ std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Tria
   add(over_stick_time(bench, coarse));
   add(over_load(bench, coarse, ground));
   add(over_frequency(bench, fine, residual));
+  return out;
+}
+
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
+  constexpr double kChance = 0.01;          // p-value below which structure is no chance
+  constexpr double kLeastStructure = 0.05;  // of the squares that noise leaves
+  std::vector<Probe> out;
+  for (const Probe& probe : probes) {
+    const bool chance = probe.p_value * static_cast<double>(probes.size()) >= kChance;
+    if (!chance && probe.fall > 0 && probe.size > kLeastStructure) out.push_back(probe);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;
 }
 

@@ -23,4 +23,7 @@ struct Probe {
 std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual);
 
+/// The probes that no chance makes and that are large enough to matter, largest first.
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes);
+
 }  // namespace tribofit::diagnosis

@@ -203,6 +203,7 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   if (!breaks_away) return out;
   // delta_i of each slip by least squares, and what noise is left once it is taken out.
   std::vector<double> deltas;
+  std::vector<std::size_t> records;
   double left = 0, freedom = 0, norms = 0;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
@@ -213,6 +214,7 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
     if (!(norm > 0)) continue;
     const double projection = g.dot(block.col(residual));
     deltas.push_back(projection / norm);
+    records.push_back(observations_.slips[slips_[k]].record);
     left += block.col(residual).squaredNorm() - projection * projection / norm;
     freedom += static_cast<double>(g.size()) - 1;
     norms += norm;
@@ -221,6 +223,15 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   double mean = 0, scatter = 0;
   for (const double delta : deltas) mean += delta / n;
   for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / n;
+  // What differs slowly from cycle to cycle, or between records, may be an effect that the model lacks: only what
+  // neighbours differ by is taken for scatter.
+  double steps = 0, pairs = 0;
+  for (std::size_t k = 1; k < deltas.size(); ++k) {
+    if (records[k] != records[k - 1]) continue;
+    steps += 0.5 * (deltas[k] - deltas[k - 1]) * (deltas[k] - deltas[k - 1]);
+    pairs += 1;
+  }
+  if (pairs > 0) scatter = std::min(scatter, steps / pairs);
   if (deltas.size() < 2 || !(left > 0) || !(freedom > 0)) return out;
   const double noise = left / freedom, information = norms / n;  // of a sample; of a slip about its delta
   scatter = std::max(0.0, scatter - noise / information);

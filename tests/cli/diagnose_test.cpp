@@ -138,6 +138,61 @@ TEST(Diagnose, TooFewCyclesAreSaidToBeTooFew) {
   EXPECT_EQ(j["diagnosis"]["verdict"], "not-enough-data");
 }
 
+TEST(Diagnose, TooShortTracesSayWhatWouldBeEnough) {
+  const Workshop shop;
+  std::vector<std::string> lines = lines_of(empty_trace());
+  lines.resize(8000);  // 1.6 s, some seven cycles
+  shop.write("trace.csv", joined(lines));
+  const Outcome outcome = shop.identify("diagnose --radius 15mm --json d.json trace.csv");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("12 are needed to hold some of them out"));
+  const json j = json::parse(contents(shop / "d.json"));
+  EXPECT_EQ(j["diagnosis"]["verdict"], "not-enough-data");
+  EXPECT_THAT(j["diagnosis"]["next_experiment"].get<std::string>(), HasSubstr("Record for at least"));
+}
+
+/// What is wrong with the effects a user asks for is said, whatever the data hold.
+TEST(Diagnose, BadEffectsAreRefusedWithAReason) {
+  const Workshop shop;
+  shop.write("trace.csv", empty_trace());
+  struct Case {
+    const char* arguments;
+    int status;
+    const char* says;
+  };
+  for (const Case& c :
+       std::vector<Case>{{"--effect temperature-dependence", 1, "needs the channel 'temperature'"},
+                         {"--formula 'x = a*temperature; a=0.001'", 1, "needs the channel 'temperature'"},
+                         {"--effect load-dependence", 1, "needs the channel 'load'"},
+                         {"--formula 'hump = a*exp(-((v-v0)/w^2; a=0.02, v0=25, w=6'", 3, "parenthesis"},
+                         {"--formula 'x = a*vv; a=1'", 3, "'vv'"},
+                         {"--formula 'x = a*log(v-500); a=0.1'", 1, "'x' is not finite on these data"},
+                         {"--formula 'x = a/(v-v); a=0.1'", 1, "'x' is not finite on these data"},
+                         {"--effect viscuos", 3, "did you mean 'viscous'?"},
+                         {"--effect viscous --effect viscous", 3, "the effect 'viscous' is given twice"},
+                         {"--formula 'x = a*v; a=0.1' --formula 'x = a*t; a=0.1'", 3, "the effect 'x' is given twice"},
+                         {"--formula 'viscous = a*v; a=0.1'", 3, "give it another name"},
+                         {"--law exponental", 2, "exponential"},
+                         {"--columns mu=COF", 3, "COF"}}) {
+    const Outcome outcome =
+        shop.identify(std::string("diagnose --quiet --radius 15mm --speed 4rpm ") + c.arguments + " trace.csv");
+    EXPECT_EQ(outcome.status, c.status) << c.arguments << '\n' << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(c.says)) << c.arguments;
+  }
+}
+
+TEST(Diagnose, ForeignFilesAreNotGuessedAt) {
+  const Workshop shop;
+  shop.write("rig.csv", "time_s,qm_m,Force1_N,dq_f_m_per_s\n0,0,1,0.1\n0.001,0,1,0.1\n0.002,0,1,0.1\n");
+  const Outcome unnamed = shop.identify("diagnose rig.csv");
+  EXPECT_EQ(unnamed.status, 3);
+  EXPECT_THAT(unnamed.err, AllOf(HasSubstr("no friction column"), HasSubstr("Force1_N"), HasSubstr("--columns")));
+  shop.write("words.csv", "hello world\n");
+  EXPECT_EQ(shop.identify("diagnose --radius 15mm words.csv").status, 3);
+  EXPECT_EQ(shop.identify("diagnose --radius 15mm absent.csv").status, 3);
+  EXPECT_EQ(shop.identify("diagnose --radius 15mm").status, 2);
+}
+
 TEST(Diagnose, NothingIsLeftBehindByAnInterruption) {
   const Workshop shop;
   const Outcome outcome =
