@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "lines.hpp"
 #include "probes.hpp"
@@ -142,9 +141,8 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     Trial trial;
     const FrictionModel model = with_effect(top.model, candidate.effect);
     trial.model = model;
-    for (const auto& start : opening.starts) {
-      Trial next = try_model(bench, level, model, start);
-      if (next.usable && (!trial.usable || next.squares < trial.squares)) trial = std::move(next);
+    if (!opening.starts.empty()) {
+      trial = try_model(bench, level, model, nearest(level, model, beside.whitening, opening.starts));
     }
     Judged judged = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
     judged.candidate = k;
@@ -185,38 +183,26 @@ void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   }
 }
 
-/// Where the absence of an effect shows.
-std::string fingerprint_variable(const std::string& key) {
-  static const std::map<std::string, std::string> variables = {
-      {"viscous", "velocity"},    {"stribeck-exponent", "velocity"}, {"drift", "time"},
-      {"heating", "time"},        {"run-in", "time"},                {"step", "time"},
-      {"runout", "angle"},        {"disc-pattern", "angle"},         {"frictional-lag", "branch"},
-      {"rate-state", "branch"},   {"bristle", "branch"},             {"sensor-inertia", "branch"},
-      {"channel-delay", "branch"}, {"force-bandwidth", "branch"},    {"load-dependence", "load"},
-      {"crosstalk", "load"},      {"ageing", "stick-time"}};
-  const auto at = variables.find(key);
-  return at == variables.end() ? "" : at->second;
+/// What free functions find beside a trial.
+std::vector<Probe> structure_beside(const Bench& bench, const Trial& trial) {
+  const Trial coarse = try_model(bench, bench.coarse, trial.model, trial.p);
+  return remaining_structure(probe_all(bench, coarse, trial, residual_of(bench, trial)));
 }
 
-/// Withdraws names that were given to a small part of something larger: where more remains over the variable of an
-/// effect than the effect explained, its name is probably wrong.
-void withdraw(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates) {
+double largest_fall(const std::vector<Probe>& structure) { return structure.empty() ? 0 : structure.front().fall; }
+
+/// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
+/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it.
+void withdraw(const Bench& bench, Ladder& ladder) {
   constexpr double kLeastPart = 0.7;
-  while (ladder.steps.size() > 1) {
-    const Trial& top = ladder.top();
-    const std::vector<Probe> structure = remaining_structure(probe_all(
-        bench, try_model(bench, bench.coarse, top.model, top.p), top, residual_of(bench, top)));
-    std::optional<std::size_t> wrong;
-    for (std::size_t s = 1; s < ladder.steps.size() && !wrong; ++s) {
-      const std::string variable = fingerprint_variable(candidates[*ladder.steps[s].added].info.key);
-      const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
-      for (const Probe& probe : structure) {
-        if (probe.variable == variable && fall < kLeastPart * (fall + probe.fall)) wrong = s;
-      }
-    }
-    if (!wrong) return;
-    ladder.withdrawn.push_back(*ladder.steps[*wrong].added);
-    remove(bench, ladder, candidates, *wrong);
+  if (ladder.steps.size() < 2 || structure_beside(bench, ladder.top()).empty()) return;
+  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
+    const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
+    if (fall >= kLeastPart * largest_fall(structure_beside(bench, ladder.steps[s - 1].trial))) continue;
+    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
+    ladder.last = ladder.steps[s].judged;
+    ladder.steps.resize(s);
+    return;
   }
 }
 
@@ -257,6 +243,12 @@ Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& cand
     if (static_cast<int>(ladder.steps.size()) > most_effects) break;
     const Choice choice = choose(bench, ladder.last);
     if (!choice.leader) break;
+    // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
+    constexpr double kHopeless = 0.35;
+    if (ladder.last[*choice.leader].fall < kHopeless * largest_fall(structure_beside(bench, ladder.top()))) {
+      ladder.withdrawn.push_back(ladder.last[*choice.leader].candidate);
+      break;
+    }
     LadderStep step;
     step.judged = std::move(ladder.last);
     step.added = step.judged[*choice.leader].candidate;
@@ -265,7 +257,13 @@ Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& cand
     ladder.steps.push_back(std::move(step));
   }
   prune(bench, ladder, candidates, limits);
-  withdraw(bench, ladder, candidates);
+  withdraw(bench, ladder);
+  // What was added after all is told apart: both are there.
+  for (LadderStep& step : ladder.steps) {
+    std::erase_if(step.equivalent, [&](std::size_t k) {
+      return std::any_of(ladder.steps.begin(), ladder.steps.end(), [&](const LadderStep& s) { return s.added == k; });
+    });
+  }
   return ladder;
 }
 

@@ -120,6 +120,19 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   return trial;
 }
 
+std::vector<double> nearest(const Level& level, const FrictionModel& model,
+                            const ModelResiduals::Whitening& whitening, const std::vector<std::vector<double>>& starts) {
+  const Bounds bounds = bounds_of(model, level.observations);
+  const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
+  if (starts.size() == 1) return starts[0];
+  SolverResult best;
+  for (const auto& start : starts) {
+    SolverResult next = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(8));
+    if (best.p.empty() || next.cost < best.cost) best = std::move(next);
+  }
+  return best.p;
+}
+
 Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model) {
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals plain = residuals_of(level.observations, model, {});

@@ -58,6 +58,10 @@ struct Bench {
 /// Fits a model from a start, with the scatter of break-away as the model sees it there.
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start);
 
+/// The start from which a few steps lead lowest, after those steps.
+std::vector<double> nearest(const Level& level, const FrictionModel& model,
+                            const ModelResiduals::Whitening& whitening, const std::vector<std::vector<double>>& starts);
+
 /// Fits a model from the data alone.
 Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model);
 

@@ -23,6 +23,22 @@ std::size_t median_size(const std::vector<Observations::Range>& slips) {
   return *middle;
 }
 
+/// Mean friction over two milliseconds of the stick after a slip; NaN where no stick follows.
+double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
+  constexpr double kGap = 0.5e-3, kMean = 2e-3;  // [s]
+  const Cycle& cycle = segmentation.cycles[segment];
+  if (!cycle.slip_complete || segment + 1 >= segmentation.cycles.size()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Span& stick = segmentation.cycles[segment + 1].stick;
+  const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
+  const std::size_t end = std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
+  if (stick.begin < cycle.slip.end || begin + 2 > end) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += motion.friction[i];
+  return sum / static_cast<double>(end - begin);
+}
+
 /// A stick that began before the record is taken to be as long as the others were.
 void fill_stick_times(std::vector<Observations::Range>& slips) {
   std::vector<double> known;
@@ -61,6 +77,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
       range.from_stick = from_stick && k == 0;
       range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
       range.break_away_time = motion.time[range.samples.begin];
+      range.tail_friction = friction_after(motion, segmentation, range.segment);
       range.stick_time = std::numeric_limits<double>::quiet_NaN();
       if (range.from_stick) {
         range.break_away_time = std::min(cycle.break_away_time, motion.time[range.samples.begin]);
@@ -203,6 +220,7 @@ Slip Observations::slip(const Range& range) const {
   slip.break_away_time = range.break_away_time;
   slip.stick_time = range.stick_time;
   slip.stick_slope = range.stick_slope;
+  slip.tail_friction = range.tail_friction;
   slip.direction = range.direction;
   slip.mean_load = mean_load;
   slip.mean_temperature = mean_temperature;

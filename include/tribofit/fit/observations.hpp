@@ -37,6 +37,7 @@ struct Observations {
     double break_away_friction = 0;            ///< |mu| at break-away; NaN when there is none
     std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
     double lead_friction = 0;                  ///< signed, at the first of them
+    double tail_friction = 0;                  ///< signed, in the stick right after the slip; NaN where there is none
   };
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]

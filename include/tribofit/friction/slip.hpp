@@ -27,7 +27,7 @@ struct Instant {
   double time = 0;                                                     ///< from the trace's first sample [s]
   double angle = 0;                                                    ///< of the disc [rad]
   double distance = 0;                                                 ///< slid since the trace's first sample [m]
-  double stick_time = 0;                                               ///< of the stick before this slip [s]
+  double stick_time = 0;       ///< of the stick before this slip [s]
   double load = 0;                                                     ///< normal force [N]
   double mean_load = 1;                                                ///< N0 [N]
   double temperature = 0;                                              ///< [degC]
@@ -45,6 +45,8 @@ struct Slip {
   /// them.
   std::span<const double> lead_time, lead_velocity;
   double lead_friction = 0;
+  /// Friction (signed) read in the stick right after the slip; NaN where there is none.
+  double tail_friction = std::numeric_limits<double>::quiet_NaN();
   bool from_stick = false;      ///< it begins with a break-away; otherwise the record (or a reversal) begins it
   double break_away_time = 0;   ///< [s], where from_stick
   double stick_time = 0;        ///< of the stick before [s]; NaN when its beginning was not recorded

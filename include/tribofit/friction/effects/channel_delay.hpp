@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -17,11 +18,11 @@ struct ChannelDelay {
             .source = "latency of acquisition chains",
             .experiment =
                 "tap the block and align the edges; at twice the speed a delay stays the same in ms, also at re-stick",
-            .parameters = {{"delay", "ms", 1e-3, -5, 5, 0}},
+            .parameters = {{"delay", "ms", 1e-3, -5, 5, 0, 0, false, false, 4}},
             .group = EffectGroup::measurement};
   }
 
-  /// Before break-away friction is the spring's straight line; beyond the ends of the slip its last line goes on.
+  /// Before break-away friction is the spring's straight line; after re-stick it is what was read there.
   template <class T>
   void sense(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
     const std::size_t n = mu.size();
@@ -34,6 +35,10 @@ struct ChannelDelay {
       while (k + 1 < n && slip.time[k + 1] <= at) ++k;
       while (k > 0 && slip.time[k] > at) --k;
       const T late = slip.time[i] - p[0];
+      if (at > slip.time[n - 1] && std::isfinite(slip.tail_friction)) {
+        mu[i] = T(slip.tail_friction + 0.0 * p[0]);
+        continue;
+      }
       if (at >= slip.time[0]) {
         const std::size_t low = std::min(k, n - 2);
         const T slope = (true_mu[low + 1] - true_mu[low]) / (slip.time[low + 1] - slip.time[low]);
