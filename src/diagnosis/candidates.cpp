@@ -216,7 +216,6 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
       const double upper =
           parameter.unit == "s" ? std::min(bounds.upper[2 + k], std::max(2 * last, lower * 1.5)) : bounds.upper[2 + k];
       values = grid_of(parameter, lower, upper, observations);
-      if (parameter.unit != "rad") places = static_cast<double>(values.size());
     }
     std::vector<std::vector<double>> all;
     for (const auto& start : out.values) {

@@ -132,7 +132,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   const Observations fine = observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400));
   const Observations coarse = observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40));
   const Floor leaves = floor_of(records);
-  const Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
+  Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
+  bench.threads = options.threads;
   const std::vector<Candidate> all = candidates(records, fine, own);
 
   const std::vector<BaseLaw> laws = base_laws(records, given);

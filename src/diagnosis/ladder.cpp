@@ -5,6 +5,7 @@
 
 #include "lines.hpp"
 #include "probes.hpp"
+#include "tribofit/fit/parallel.hpp"
 #include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit::diagnosis {
@@ -35,13 +36,16 @@ bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
-    // delta = 2 is the Gaussian curve of the textbooks, a law of its own.
-    const bool gaussian = q.name == "delta" && trial.p[offset + k] > 1;
-    if (telling && !gaussian && trial.at_bound[offset + k]) return false;
+    if (telling && trial.at_bound[offset + k]) return false;
     if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
       return false;
   }
   return true;
+}
+
+/// A line is seen only at full resolution.
+bool is_narrow(const EffectInfo& info) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
 }
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect.
@@ -59,14 +63,22 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
     ++free;
     out.design_effect = std::max(out.design_effect, design_effect(trial.linear, offset + k, noise));
   }
-  const double freedom = std::max(3.0, 0.4 * std::pow(static_cast<double>(trial.held_out.size()), 2.0 / 3));
+  // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not.
+  const auto cycles = static_cast<double>(trial.held_out.size());
+  const double freedom = std::max(3.0, out.design_effect > 1.2 ? 0.4 * std::pow(cycles, 2.0 / 3) : cycles / 3);
   out.p_value = std::min(1.0, tests * fall_p_value(poorer.squares - trial.squares, std::max<std::size_t>(1, free),
                                                    noise, out.design_effect, freedom));
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   out.size = std::max(out.fall / bench.noise_squares(),
                       (poorer.plain_squares - trial.plain_squares) / bench.floor_squares(trial.whitening));
   out.plausible = is_plausible(bench, trial, info);
-  out.passes = out.plausible && out.fall > 0 && out.p_value < limits.p_value && out.size > limits.least_size;
+  // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
+  // cycles that took no part, needs no such test.
+  const double above = poorer.held_out_squares - bench.noise_squares();
+  const bool obvious = !is_narrow(info) && out.fall > limits.obvious_size * bench.noise_squares() &&
+                       out.fall > limits.obvious_part * above;
+  out.passes = out.plausible && out.fall > 0 && out.size > limits.least_size &&
+               (out.p_value < limits.p_value || obvious);
   return out;
 }
 
@@ -105,11 +117,6 @@ Choice choose(const Bench& bench, const std::vector<Judged>& judged) {
   return choice;
 }
 
-/// A line is seen only at full resolution.
-bool is_narrow(const EffectInfo& info) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
-}
-
 /// Every testable candidate beside the top of the ladder: searched and judged at low resolution, and those that may
 /// lead or be in the leader's group again at full resolution.
 std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::vector<Candidate>& candidates,
@@ -125,15 +132,17 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
   const double least = enough(bench.noise_squares(), coarse_top.squares);
   const double least_plain = enough(bench.floor_squares(top.whitening), coarse_top.plain_squares);
   const auto tests = static_cast<double>(candidates.size());
-  std::vector<Judged> out;
-  std::vector<double> places;
-  double best = coarse_top.held_out_squares;
+  std::vector<std::size_t> tried;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const Candidate& candidate = candidates[k];
-    if (!candidate.untestable.empty()) continue;
-    if (std::find(present.begin(), present.end(), candidate.info.key) != present.end()) continue;
-    const bool in_stick = FrictionModel(top.model.law(), {candidate.effect}).acts_in_stick();
-    if (in_stick && top.model.acts_in_stick()) continue;
+    if (!candidates[k].untestable.empty()) continue;
+    if (std::find(present.begin(), present.end(), candidates[k].info.key) != present.end()) continue;
+    const bool in_stick = FrictionModel(top.model.law(), {candidates[k].effect}).acts_in_stick();
+    if (!in_stick || !top.model.acts_in_stick()) tried.push_back(k);
+  }
+  std::vector<Judged> out(tried.size());
+  std::vector<double> places(tried.size());
+  run_tasks(tried.size(), bench.threads, [&](std::size_t t) {
+    const Candidate& candidate = candidates[tried[t]];
     const bool narrow = is_narrow(candidate.info);
     const Level& level = narrow ? bench.fine : bench.coarse;
     const Trial& beside = narrow ? top : coarse_top;
@@ -144,30 +153,32 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
     if (!opening.starts.empty()) {
       trial = try_model(bench, level, model, nearest(level, model, beside.whitening, opening.starts));
     }
-    Judged judged = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
-    judged.candidate = k;
-    if (judged.trial.usable && !narrow) best = std::min(best, judged.trial.held_out_squares);
-    out.push_back(std::move(judged));
-    places.push_back(opening.places);
+    out[t] = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
+    out[t].candidate = tried[t];
+    places[t] = opening.places;
+  });
+  double best = coarse_top.held_out_squares;
+  for (const Judged& judged : out) {
+    const bool coarse = !is_narrow(candidates[judged.candidate].info);
+    if (judged.trial.usable && coarse) best = std::min(best, judged.trial.held_out_squares);
   }
   const double fallen = coarse_top.held_out_squares - best;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    Judged& judged = out[k];
-    const Candidate& candidate = candidates[judged.candidate];
-    if (!judged.trial.usable || is_narrow(candidate.info)) continue;
+  run_tasks(out.size(), bench.threads, [&](std::size_t t) {
+    Judged& judged = out[t];
+    const Candidate& candidate = candidates[tried[t]];
+    if (!judged.trial.usable || is_narrow(candidate.info)) return;
     const double behind = judged.trial.held_out_squares - best;
-    const bool small = judged.size < 0.5 * limits.least_size || judged.p_value > 0.5 ||
+    const bool small = judged.size < 0.5 * limits.least_size || (judged.p_value > 0.5 && !judged.passes) ||
                        (judged.fall < least && judged.fall < kLeastPart * fallen);
-    judged.hopeless = behind > 0.2 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0 || small;
+    judged.hopeless = behind > 0.08 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0 || small;
     if (judged.hopeless) {
       judged.passes = false;
-      continue;
+      return;
     }
-    const std::size_t which = judged.candidate;
     Trial trial = try_model(bench, bench.fine, judged.trial.model, judged.trial.p);
-    judged = compare(bench, bench.fine, top, std::move(trial), candidate.info, places[k] * tests, limits);
-    judged.candidate = which;
-  }
+    judged = compare(bench, bench.fine, top, std::move(trial), candidate.info, places[t] * tests, limits);
+    judged.candidate = tried[t];
+  });
   return out;
 }
 

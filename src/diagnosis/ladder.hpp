@@ -46,6 +46,8 @@ struct Ladder {
 struct Limits {
   double p_value = 0.01;
   double least_size = 0.02;  ///< of the squares that sensor noise leaves
+  double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
+  double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is no chance
 };
 
 /// Adds effects to a base law, the best one at a time, until nothing passes; then drops what became redundant.

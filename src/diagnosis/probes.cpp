@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -279,12 +280,35 @@ std::optional<Probe> over_load(const Bench& bench, const Trial& trial, const Gro
   return probe;
 }
 
-/// A slip that breaks away higher was loaded for longer: only stick times that differ for another reason say anything.
+/// Logarithm of the stick time of each slip, without what its own break-away level made of it: at the same speed a
+/// slip that breaks away higher was loaded for longer. NaN where it is not known.
+std::vector<double> given_stick_times(const Observations& o) {
+  std::vector<double> mean, count;
+  for (const auto& range : o.slips) {
+    if (range.record >= mean.size()) {
+      mean.resize(range.record + 1, 0.0);
+      count.resize(range.record + 1, 0.0);
+    }
+    if (!range.from_stick) continue;
+    mean[range.record] += range.break_away_friction;
+    count[range.record] += 1;
+  }
+  std::vector<double> out;
+  for (const auto& range : o.slips) {
+    const double pulled = std::abs(range.stick_slope) * range.stick_time;
+    const bool known = range.from_stick && std::isfinite(pulled) && pulled > 0;
+    const double level = known ? range.break_away_friction - mean[range.record] / count[range.record] : 0;
+    out.push_back(known ? std::log(range.stick_time) - level / pulled : std::numeric_limits<double>::quiet_NaN());
+  }
+  return out;
+}
+
 std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
   const Observations& o = bench.coarse.observations;
+  const std::vector<double> given = given_stick_times(o);
   std::vector<double> sticks;
-  for (const auto& range : o.slips) {
-    if (std::isfinite(range.stick_time) && range.stick_time > 0) sticks.push_back(std::log(range.stick_time));
+  for (const double x : given) {
+    if (std::isfinite(x)) sticks.push_back(x);
   }
   if (sticks.size() < 12) return std::nullopt;
   std::sort(sticks.begin(), sticks.end());
@@ -295,12 +319,12 @@ std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
   probe.variable = "stick-time";
   const auto row = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
-    const bool known = std::isfinite(range.stick_time) && range.stick_time > 0;
+    const bool known = std::isfinite(given[k]);
     const bool at_rest = range.begin + i == range.end;
     // What a higher break-away does to the slip fades with speed as the law does.
     const double speed = at_rest ? 0 : std::abs(o.velocity[range.begin + i]);
     const double fade = trial.model.base_count() == 3 ? std::exp(-trial.p[2] * speed) : (at_rest ? 1 : 0);
-    return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? std::log(range.stick_time) : low));
+    return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? given[k] : low));
   };
   judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
   return probe;

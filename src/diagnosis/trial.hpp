@@ -47,6 +47,8 @@ struct Bench {
   double noise = 0;    ///< sensor noise of a sample [1 or N]
   double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
 
+  int threads = 1;     ///< over candidates
+
   Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,
         double break_away_scatter);
   /// Squares that sensor noise leaves.

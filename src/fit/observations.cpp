@@ -53,6 +53,16 @@ void fill_stick_times(std::vector<Observations::Range>& slips) {
   }
 }
 
+/// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
+/// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
+void trim_rest(const Motion& motion, Span& samples) {
+  constexpr double kSigmas = 6;
+  const std::size_t least = samples.begin + samples.size() / 2;
+  while (samples.end > least && std::abs(motion.relative_velocity[samples.end - 1]) < kSigmas * motion.velocity_noise) {
+    --samples.end;
+  }
+}
+
 /// One range per slip of the segmentation; slips without stick are cut into pieces of about equal length.
 std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Observations::Range> ranges;
@@ -68,6 +78,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
       Observations::Range range;
       range.samples = {cycle.slip.begin + k * cycle.slip.size() / parts,
                        cycle.slip.begin + (k + 1) * cycle.slip.size() / parts};
+      if (!pieces && cycle.slip_complete) trim_rest(motion, range.samples);
       if (range.samples.size() == 0) continue;
       range.cycle = ranges.size();
       range.segment = static_cast<std::size_t>(&cycle - segmentation.cycles.data());

@@ -45,9 +45,10 @@ std::vector<Case> slice(Kind kind, const PlanOptions& options) {
   return cases;
 }
 
-/// What takes longest is left to the full benchmark: joint records, and two effects whose like is in the slice.
+/// What takes longest is left to the full benchmark: joint records, and effects whose like is in the slice.
 bool is_costly(const Case& c) {
-  return c.setting == Setting::four_speeds || c.hidden[0].key == "rate-state" || c.hidden[0].key == "run-in";
+  return c.setting == Setting::four_speeds || c.hidden[0].key == "rate-state" || c.hidden[0].key == "run-in" ||
+         c.hidden[0].key == "heating";
 }
 
 constexpr PlanOptions kSlice = {

@@ -36,7 +36,11 @@ struct ChannelDelay {
       while (k > 0 && slip.time[k] > at) --k;
       const T late = slip.time[i] - p[0];
       if (at > slip.time[n - 1] && std::isfinite(slip.tail_friction)) {
-        mu[i] = T(slip.tail_friction + 0.0 * p[0]);
+        // Re-stick happens within the sample after the last of the slip.
+        const double step = slip.time[n - 1] - slip.time[n - 2];
+        const T part = (late - slip.time[n - 1]) / step;
+        mu[i] = scalar_part(part) < 1 ? T(true_mu[n - 1] + part * (slip.tail_friction - true_mu[n - 1]))
+                                      : T(slip.tail_friction + 0.0 * p[0]);
         continue;
       }
       if (at >= slip.time[0]) {

@@ -40,22 +40,30 @@ struct ForceBandwidth {
       before = level;
       previous = slip.break_away_time;
     }
+    const T lag = 2.0 * zeta / w, period = 1.0 / w;
+    double last_dt = 0;  // samples are mostly equally far apart, and the turn over a step is dear
+    T c = T(0.0 * w), s = T(0.0 * w);
     for (std::size_t i = 0; i < mu.size(); ++i) {
       const double dt = slip.time[i] - previous;
       if (dt > 0) {
         const T now = (mu[i] - before) / dt;
         // The line bends: e jumps by what its lag changes, e' by its slope.
-        e += 2.0 * zeta / w * (now - slope);
-        rate -= (now - slope) / w;
+        e += lag * (now - slope);
+        rate -= period * (now - slope);
         slope = now;
-        const T a = exp(-zeta * w * dt), c = a * cos(root * w * dt), s = a * sin(root * w * dt) / root;
+        if (std::abs(dt - last_dt) > 1e-9 * dt) {
+          const T a = exp(-zeta * w * dt);
+          c = a * cos(root * w * dt);
+          s = a * sin(root * w * dt) / root;
+          last_dt = dt;
+        }
         const T next = c * e + s * (rate + zeta * e);
         rate = c * rate - s * (e + zeta * rate);
         e = next;
         previous = slip.time[i];
         before = mu[i];
       }
-      mu[i] = before - 2.0 * zeta / w * slope + e;
+      mu[i] = before - lag * slope + e;
     }
   }
 
