@@ -127,8 +127,7 @@ void require_channels(const IdentifyOptions& options, const Motion& motion, std:
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options) {
   Identification out;
   out.path = input.path;
-  Trace trace =
-      input.trace ? *input.trace : read_trace(input.path, with_declared(input.read, options.instruments));
+  Trace trace = input.trace ? *input.trace : read_trace(input.path, with_declared(input.read, options.instruments));
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();

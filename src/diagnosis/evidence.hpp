@@ -19,7 +19,8 @@ class Blocks {
   explicit Blocks(const Observations& observations)
       : count_(std::clamp<std::size_t>(observations.cycles / 5, 2, 10)), of_(blocks_of(observations, count_)) {}
   /// From the block of every cycle.
-  explicit Blocks(std::vector<std::size_t> of) : count_(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1), of_(std::move(of)) {}
+  explicit Blocks(std::vector<std::size_t> of)
+      : count_(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1), of_(std::move(of)) {}
   std::size_t count() const { return count_; }
   std::size_t of(std::size_t cycle) const { return of_[cycle]; }
 

@@ -14,7 +14,7 @@ namespace tribofit::diagnosis {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kChance = 0.01;          ///< p-value below which structure is not chance
+constexpr double kChance = 0.01;  ///< p-value below which structure is not chance
 
 bool contains(const std::vector<std::size_t>& list, std::size_t value) {
   return std::find(list.begin(), list.end(), value) != list.end();
@@ -203,9 +203,10 @@ std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe
     const double width = 1.2 * (probe.at[1] - probe.at[0]) * 1e3, last = probe.at.back() * 1e3;
     for (std::size_t k = peak > 1 ? peak - 1 : 1; k <= std::min(peak + 1, probe.at.size() - 2); ++k) {
       for (const double w : {width, 2 * width}) {
-        forms.push_back(fmt::format(
-            "hump = a*exp(-((v-v0)/w)^2); a={:.4g}[{:.4g},{:.4g}], v0={:.4g}mm/s[0,{:.4g}], w={:.4g}mm/s[{:.4g},{:.4g}]",
-            bulge(peak), -largest, largest, probe.at[k] * 1e3, last, w, 0.3 * width, last));
+        forms.push_back(
+            fmt::format("hump = a*exp(-((v-v0)/w)^2); a={:.4g}[{:.4g},{:.4g}], v0={:.4g}mm/s[0,{:.4g}], "
+                        "w={:.4g}mm/s[{:.4g},{:.4g}]",
+                        bulge(peak), -largest, largest, probe.at[k] * 1e3, last, w, 0.3 * width, last));
       }
     }
   } else if (probe.variable == "time" && probe.period > 0 && probe.value.size() == 2) {

@@ -77,8 +77,8 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   const double above = poorer.held_out_squares - bench.noise_squares();
   const bool obvious = !is_narrow(info) && out.fall > limits.obvious_size * bench.noise_squares() &&
                        out.fall > limits.obvious_part * above;
-  out.passes = out.plausible && out.fall > 0 && out.size > limits.least_size &&
-               (out.p_value < limits.p_value || obvious);
+  out.passes =
+      out.plausible && out.fall > 0 && out.size > limits.least_size && (out.p_value < limits.p_value || obvious);
   return out;
 }
 
@@ -200,7 +200,9 @@ std::vector<Probe> structure_beside(const Bench& bench, const Trial& trial) {
   return remaining_structure(probe_all(bench, coarse, trial, residual_of(bench, trial)));
 }
 
-double largest_fall(const std::vector<Probe>& structure) { return structure.empty() ? 0 : structure.front().fall; }
+double largest_fall(const std::vector<Probe>& structure) {
+  return structure.empty() ? 0 : structure.front().fall;
+}
 
 /// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
 /// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it.

@@ -15,7 +15,7 @@ namespace tribofit::diagnosis {
 struct Judged {
   std::size_t candidate = 0;
   Trial trial;
-  double fall = 0;     ///< of the whitened squares on held-out cycles
+  double fall = 0;  ///< of the whitened squares on held-out cycles
   /// That fall over the squares that sensor noise leaves, or the fall of the plain squares over those that noise and
   /// scatter leave: the larger.
   double size = 0;
@@ -36,16 +36,16 @@ struct LadderStep {
 /// The rungs from one base law up.
 struct Ladder {
   BaseLaw law = BaseLaw::exponential;
-  std::vector<LadderStep> steps;  ///< the base law first
+  std::vector<LadderStep> steps;       ///< the base law first
   std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
-  std::vector<Judged> last;       ///< candidates judged beside the last rung: none of them passes
+  std::vector<Judged> last;            ///< candidates judged beside the last rung: none of them passes
   const Trial& top() const { return steps.back().trial; }
 };
 
 /// What must be passed for a name.
 struct Limits {
   double p_value = 0.01;
-  double least_size = 0.02;  ///< of the squares that sensor noise leaves
+  double least_size = 0.02;   ///< of the squares that sensor noise leaves
   double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
   double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is no chance
 };

@@ -122,7 +122,7 @@ double noise_without_line(const Record& record, double noise) {
 }
 
 SpectralLine strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
-                    double lowest, double highest) {
+                            double lowest, double highest) {
   SpectralLine line;
   const Motion& motion = *record.motion;
   const double rate = observation_rate(observations);

@@ -18,7 +18,7 @@ struct SpectralLine {
 /// finely than the record resolves, between `lowest` and `highest` [Hz]. residual: one value for each of the
 /// observations, signed. Only the first record is looked at.
 SpectralLine strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
-                    double lowest, double highest);
+                            double lowest, double highest);
 
 /// Sensor noise [1 or N] without the strongest line that runs through the sticks, where that line is most of it.
 double noise_without_line(const Record& record, double noise);

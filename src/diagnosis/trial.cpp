@@ -120,8 +120,8 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   return trial;
 }
 
-std::vector<double> nearest(const Level& level, const FrictionModel& model,
-                            const ModelResiduals::Whitening& whitening, const std::vector<std::vector<double>>& starts) {
+std::vector<double> nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+                            const std::vector<std::vector<double>>& starts) {
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
   if (starts.size() == 1) return starts[0];
@@ -187,7 +187,8 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
     std::size_t from_base = 0;
     for (std::size_t k = 0; k < base.p.size() + added; ++k) {
       const bool own = k >= offset && k < offset + added;
-      promise.start.push_back(std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
+      promise.start.push_back(
+          std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
       if (!own) ++from_base;
       if (own && !is_phase(k - offset)) promise.place.push_back(values[k - offset]);
     }

@@ -47,7 +47,7 @@ struct Bench {
   double noise = 0;    ///< sensor noise of a sample [1 or N]
   double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
 
-  int threads = 1;     ///< over candidates
+  int threads = 1;  ///< over candidates
 
   Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,
         double break_away_scatter);
@@ -61,8 +61,8 @@ struct Bench {
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start);
 
 /// The start from which a few steps lead lowest, after those steps.
-std::vector<double> nearest(const Level& level, const FrictionModel& model,
-                            const ModelResiduals::Whitening& whitening, const std::vector<std::vector<double>>& starts);
+std::vector<double> nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+                            const std::vector<std::vector<double>>& starts);
 
 /// Fits a model from the data alone.
 Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model);
@@ -74,7 +74,7 @@ std::vector<double> residual_of(const Bench& bench, const Trial& trial);
 struct Opening {
   std::vector<std::vector<double>> starts;  ///< of all parameters [SI], the most promising first; empty: none promises
                                             ///< a fall of the squares
-  double places = 1;          ///< independent places that were looked at
+  double places = 1;                        ///< independent places that were looked at
 };
 
 /// The best two of the starts of an effect beside the model of `base`, a trial at `level`.

@@ -150,7 +150,8 @@ void hold_out(const Job& job, const std::vector<double>& p, const NormalEquation
         if (std::isfinite(kept[k])) levels(static_cast<Eigen::Index>(k)) = kept[k] - p[k];
       }
     }
-    const Eigen::VectorXd step = levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
+    const Eigen::VectorXd step =
+        levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
     std::vector<std::size_t> held, kept;
     for (const std::size_t s : all_slips(job.observations)) {
       (fit.cycle_folds[job.observations.slips[s].cycle] == fold ? held : kept).push_back(s);

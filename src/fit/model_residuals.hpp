@@ -24,9 +24,9 @@ namespace tribofit {
 /// plain least squares would blame the law for it: mu_k and the decay factor come out biased. Once the scatter is known
 /// the rows are therefore whitened against delta_i ~ N(0, s^2) (a random effect, N. M. Laird, J. H. Ware, Biometrics 38
 /// (1982) 963, doi:10.2307/2529876): r_i becomes r_i - c g_i (d_i - d), with d_i the least-squares delta_i of the slip
-/// and d their mean, so that only differences between cycles lose weight. s^2 comes from what neighbouring cycles differ
-/// by (half the mean square), so that a slow change, which may be an effect the model lacks, is not taken for scatter. In matrix form M = I - c (P_g - P_G),
-/// symmetric.
+/// and d their mean, so that only differences between cycles lose weight. s^2 comes from what neighbouring cycles
+/// differ by (half the mean square), so that a slow change, which may be an effect the model lacks, is not taken for
+/// scatter. In matrix form M = I - c (P_g - P_G), symmetric.
 class ModelResiduals final : public Residuals {
  public:
   struct Options {

@@ -32,7 +32,8 @@ double friction_after(const Motion& motion, const Segmentation& segmentation, st
   }
   const Span& stick = segmentation.cycles[segment + 1].stick;
   const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
-  const std::size_t end = std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
+  const std::size_t end =
+      std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
   if (stick.begin < cycle.slip.end || begin + 2 > end) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += motion.friction[i];

@@ -27,7 +27,7 @@ struct Instant {
   double time = 0;                                                     ///< from the trace's first sample [s]
   double angle = 0;                                                    ///< of the disc [rad]
   double distance = 0;                                                 ///< slid since the trace's first sample [m]
-  double stick_time = 0;       ///< of the stick before this slip [s]
+  double stick_time = 0;                                               ///< of the stick before this slip [s]
   double load = 0;                                                     ///< normal force [N]
   double mean_load = 1;                                                ///< N0 [N]
   double temperature = 0;                                              ///< [degC]

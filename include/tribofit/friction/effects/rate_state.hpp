@@ -9,18 +9,18 @@ struct RateState {
   static constexpr double reference_velocity = 1e-3;  ///< v0 = 1 mm/s [m/s]
 
   static EffectInfo info() {
-    return {
-        .key = "rate-state",
-        .statement =
-            "the contacts are renewed over a sliding distance D_c, so friction follows its steady value "
-            "with a memory of that length",
-        .equation = "d phi/dt = (v/D_c) (f(v) - phi), mu = phi + a asinh(v/(2 v0)), v0 = 1 mm/s",
-        .source =
-            "A. Ruina, J. Geophys. Res. 88 (1983) 10359, doi:10.1029/JB088iB12p10359; "
-            "J. R. Rice, N. Lapusta, K. Ranjith, J. Mech. Phys. Solids 49 (2001) 1865, "
-            "doi:10.1016/S0022-5096(01)00042-4",
-        .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
-        .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, Grows::with_slip_length}, {"a", "1", 1, 0, 0.02, 0, 0, true}}};
+    return {.key = "rate-state",
+            .statement =
+                "the contacts are renewed over a sliding distance D_c, so friction follows its steady value "
+                "with a memory of that length",
+            .equation = "d phi/dt = (v/D_c) (f(v) - phi), mu = phi + a asinh(v/(2 v0)), v0 = 1 mm/s",
+            .source =
+                "A. Ruina, J. Geophys. Res. 88 (1983) 10359, doi:10.1029/JB088iB12p10359; "
+                "J. R. Rice, N. Lapusta, K. Ranjith, J. Mech. Phys. Solids 49 (2001) 1865, "
+                "doi:10.1016/S0022-5096(01)00042-4",
+            .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
+            .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, Grows::with_slip_length},
+                           {"a", "1", 1, 0, 0.02, 0, 0, true}}};
   }
 
   template <class T>
