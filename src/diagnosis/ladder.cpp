@@ -75,7 +75,10 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
   // cycles that took no part, needs no such test.
   const double above = poorer.held_out_squares - bench.noise_squares();
-  const bool obvious = !is_narrow(info) && out.fall > limits.obvious_size * bench.noise_squares() &&
+  // Not in records that never stick: their few steps of speed go with time.
+  const auto& slips = level.observations.slips;
+  const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
+  const bool obvious = !is_narrow(info) && breaks >= 30 && out.fall > limits.obvious_size * bench.noise_squares() &&
                        out.fall > limits.obvious_part * above;
   out.passes =
       out.plausible && out.fall > 0 && out.size > limits.least_size && (out.p_value < limits.p_value || obvious);

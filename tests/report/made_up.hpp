@@ -41,6 +41,7 @@ inline Fit made_up_fit(BaseLaw law, double decay, Protocol protocol = Protocol::
   fit.cycle_squares = {1e-5, 2e-5};
   fit.cycle_counts = {3, 3};
   fit.fold_parameters = {fit.values(), fit.values()};
+  fit.cycle_folds = {0, 1};
   return fit;
 }
 
@@ -121,6 +122,7 @@ inline DiagnosedTraces made_up_diagnosis() {
   fit.parameters.push_back(made_up_parameter(fit.model, 4, 0.3, 0.02));
   fit.covariance.assign(25, 0.0);
   fit.fold_parameters = {fit.values(), fit.values()};
+  fit.cycle_folds = {0, 1, 0, 1};  // two traces of two cycles, or one
   out.fits.push_back(fit);
   out.best = 1;
   Diagnosis& d = out.diagnosis;
