@@ -22,6 +22,8 @@ constexpr std::string_view kJumps =
 constexpr std::string_view kPause = "pause ten minutes and restart: heating comes back, run-in does not";
 
 constexpr std::array kPairs = {
+    Pair{"asymmetry", "sensor-offset",
+         "lift the block off the disc and read the force sensor: what it shows without contact is its zero"},
     Pair{"frictional-lag", "channel-delay",
          "double the disc speed: a delay of the channel stays the same in ms, also at re-stick; or tap the block and "
          "align the edges"},
