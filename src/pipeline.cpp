@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -243,8 +244,9 @@ EffectFinding not_found(const Effect& effect, const std::vector<Identification>&
     finding.reason = "the disc speed was recorded: it is used as it is";
   } else if (info.key == "speed-ripple") {
     const Motion& motion = traces[0].motion;
-    const double turns =
-        motion.conditions.speed.known() ? motion.conditions.speed.value * motion.duration() / 6.2831853 : 0;
+    const double turns = motion.conditions.speed.known()
+                             ? motion.conditions.speed.value * motion.duration() / (2 * std::numbers::pi)
+                             : 0;
     if (turns < 2) {
       finding.status = EffectStatus::untestable;
       finding.reason = fmt::format("the record holds {:.1f} revolutions of the disc; two are needed", turns);

@@ -6,7 +6,6 @@
 #include "lines.hpp"
 #include "probes.hpp"
 #include "tribofit/fit/parallel.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -22,17 +21,10 @@ double noise_of(const Level& level, const Trial& trial) {
   return trial.squares / level.values;
 }
 
-std::size_t offset_of(const FrictionModel& model, const std::string& key) {
-  for (std::size_t k = 0; k < model.effects().size(); ++k) {
-    if (describe(model.effects()[k]).key == key) return model.offset(k);
-  }
-  return model.parameters().size();
-}
-
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
 /// the effect says.
 bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info) {
-  const std::size_t offset = offset_of(trial.model, info.key);
+  const std::size_t offset = trial.model.offset_of(info.key);
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
@@ -55,7 +47,7 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   out.trial = std::move(richer);
   const Trial& trial = out.trial;
   if (!trial.usable) return out;
-  const std::size_t offset = offset_of(trial.model, info.key);
+  const std::size_t offset = trial.model.offset_of(info.key);
   const double noise = noise_of(level, trial);
   std::size_t free = 0;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {

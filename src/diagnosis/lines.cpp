@@ -48,6 +48,20 @@ double strength(const Observations& observations, std::span<const double> residu
   return std::abs(total);
 }
 
+/// Median time from break-away to the end of a slip [s]; 0 where fewer than three slips begin with a break-away.
+double median_slip_time(const Observations& observations) {
+  std::vector<double> lengths;
+  for (const auto& slip : observations.slips) {
+    if (slip.from_stick && slip.end > slip.begin) {
+      lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
+    }
+  }
+  if (lengths.size() < 3) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
 }  // namespace
 
 double observation_rate(const Observations& observations) {
@@ -63,16 +77,8 @@ double observation_rate(const Observations& observations) {
 
 double lowest_ringing(const Observations& observations) {
   constexpr double kPeriods = 8;
-  std::vector<double> lengths;
-  for (const auto& slip : observations.slips) {
-    if (slip.from_stick && slip.end > slip.begin) {
-      lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
-    }
-  }
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle > 0 ? kPeriods / *middle : 0;
+  const double length = median_slip_time(observations);
+  return length > 0 ? kPeriods / length : 0;
 }
 
 namespace {
@@ -160,16 +166,8 @@ SpectralLine strongest_line(const Record& record, const Observations& observatio
 SpectralLine strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
   SpectralLine line;
   const double rate = observation_rate(observations);
-  std::vector<double> lengths;
-  for (const auto& slip : observations.slips) {
-    if (slip.from_stick && slip.end > slip.begin) {
-      lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
-    }
-  }
-  if (!(rate > 0) || lengths.size() < 3) return line;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  const auto n = static_cast<std::size_t>(0.6 * *middle * rate);
+  if (!(rate > 0)) return line;
+  const auto n = static_cast<std::size_t>(0.6 * median_slip_time(observations) * rate);
   if (n < 32) return line;
   std::vector<double> total(n, 0.0), count(n, 0.0);
   for (const auto& slip : observations.slips) {
@@ -191,9 +189,7 @@ SpectralLine strongest_ringing(const Observations& observations, std::span<const
     for (std::size_t k = begin; k < end; ++k) mean += total[k] / static_cast<double>(end - begin);
     fast[i] = total[i] - mean;
   }
-  // Padded, so that a short ring is resolved between bins.
-  fast.resize(8 * n, 0.0);
-  line.frequency = peak_frequency(amplitude_spectrum(std::span(fast).first(n), 1 / rate), lowest, 0.45 * rate);
+  line.frequency = peak_frequency(amplitude_spectrum(fast, 1 / rate), lowest, 0.45 * rate);
   line.places = static_cast<double>(n) / 2;
   return line;
 }

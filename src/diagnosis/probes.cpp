@@ -94,8 +94,7 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
 Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial& trial, const Columns& columns,
                             double places, Probe& probe) {
   const Observations& observations = level.observations;
-  std::vector<std::size_t> all(observations.slips.size());
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  const std::vector<std::size_t> all = all_slips(observations);
   ModelResiduals residuals(trial.model, observations, all);
   if (trial.whitening.part > 0) residuals.whiten(trial.whitening);
   Linearised wide;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 
 #include "fit/starts.hpp"
 #include "tribofit/fit/solver.hpp"
@@ -11,12 +11,6 @@
 namespace tribofit::diagnosis {
 
 namespace {
-
-std::vector<std::size_t> all_slips(const Observations& observations) {
-  std::vector<std::size_t> slips(observations.slips.size());
-  std::iota(slips.begin(), slips.end(), std::size_t{0});
-  return slips;
-}
 
 ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
                             const ModelResiduals::Whitening& whitening) {
@@ -76,9 +70,8 @@ Room room_about(const std::vector<double>& start, const Bounds& bounds) {
 
 /// A full turn more or less is the same phase.
 void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
-  constexpr double kPi = 3.14159265358979323846;
   for (std::size_t k = 0; k < p.size(); ++k) {
-    if (model.parameters()[k].parameter.unit == "rad") p[k] = std::remainder(p[k], 2 * kPi);
+    if (model.parameters()[k].parameter.unit == "rad") p[k] = std::remainder(p[k], 2 * std::numbers::pi);
   }
 }
 
@@ -169,10 +162,7 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   const double now = sum(squares_after(base.linear, stay));
 
   // Parameters of the new effect lie somewhere among the others: the model has an order of its own.
-  std::size_t offset = model.base_count();
-  for (std::size_t k = 0; k < model.effects().size(); ++k) {
-    if (describe(model.effects()[k]).key == candidate.info.key) offset = model.offset(k);
-  }
+  const std::size_t offset = model.offset_of(candidate.info.key);
   const std::size_t added = candidate.info.parameters.size();
   const Starts starts = starts_of(candidate, bench.records, bench.fine.observations, residual);
 

@@ -30,6 +30,7 @@ Slip FullRecord::slip(const Observations::Range& range) const {
   slip.time = part(motion.time);
   slip.velocity = part(motion.relative_velocity);
   slip.velocity_variance = {};
+  slip.acceleration = {};
   if (needs_.acceleration) {
     acceleration_ = slip_acceleration(motion, range.samples);
     slip.acceleration = acceleration_;

@@ -26,12 +26,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestCycles = 3;
 
-std::vector<std::size_t> all_slips(const Observations& observations) {
-  std::vector<std::size_t> slips(observations.slips.size());
-  std::iota(slips.begin(), slips.end(), std::size_t{0});
-  return slips;
-}
-
 /// Evenly spread slips with about `values` values: enough to compare starts.
 std::vector<std::size_t> sample_of_slips(const Observations& observations, std::size_t values) {
   const std::size_t every = std::max<std::size_t>(1, observations.size() / values);

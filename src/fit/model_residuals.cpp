@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "tribofit/friction/evaluate.hpp"
@@ -34,6 +35,12 @@ T bend(const T& r, const ModelResiduals::Options& options, double root_weight) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> all_slips(const Observations& observations) {
+  std::vector<std::size_t> slips(observations.slips.size());
+  std::iota(slips.begin(), slips.end(), std::size_t{0});
+  return slips;
+}
 
 ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
                                std::vector<std::size_t> slips, const Options& options)

@@ -11,6 +11,9 @@
 
 namespace tribofit {
 
+/// Indices of every slip.
+std::vector<std::size_t> all_slips(const Observations& observations);
+
 /// Residuals of a friction model over slips: sqrt(weight) (measured - model) for every value of each slip, and
 /// |measured| - level for the break-away that begins it.
 ///

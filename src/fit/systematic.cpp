@@ -145,8 +145,7 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   std::vector<double> squares(p.size(), 0.0);
   const std::vector<Shift> shifts = shifts_of(motion, observations, instruments);
   if (shifts.empty()) return squares;
-  std::vector<std::size_t> all(observations.slips.size());
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  const std::vector<std::size_t> all = all_slips(observations);
   const auto gradient = [&](const Observations& at, Eigen::MatrixXd* curvature) {
     const NormalEquations equations = normal_equations(ModelResiduals(model, at, all), at, p);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));

@@ -58,6 +58,11 @@ FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(la
   }
 }
 
+std::size_t FrictionModel::offset_of(std::string_view key) const {
+  const auto at = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.effect == key; });
+  return static_cast<std::size_t>(at - slots_.begin());
+}
+
 std::vector<std::string> FrictionModel::effect_keys() const {
   std::vector<std::string> keys;
   for (const Effect& effect : effects_) keys.push_back(describe(effect).key);

@@ -32,6 +32,7 @@ SimulatedMotion sine(double f, double duration) {
     motion.acceleration.push_back(w * std::cos(w * t));
     motion.friction.push_back(std::sin(w * t));
     motion.disc_speed.push_back(0.4);
+    motion.relative_velocity.push_back(0.4 * motion.radius - motion.velocity.back());
   }
   return motion;
 }

@@ -32,6 +32,8 @@ class FrictionModel {
   std::size_t base_count() const { return law_ == BaseLaw::coulomb ? 2 : 3; }
   /// First parameter of effect i.
   std::size_t offset(std::size_t i) const { return offsets_[i]; }
+  /// First parameter of the effect of that key; the number of parameters where there is none.
+  std::size_t offset_of(std::string_view key) const;
   std::vector<std::string> effect_keys() const;
   Channels needs() const;
   /// A bristle-like effect is among the effects: the block creeps in stick.
