@@ -137,11 +137,9 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   const std::vector<Candidate> all = candidates(records, fine, own);
 
   const std::vector<BaseLaw> laws = base_laws(records, given);
-  std::vector<Ladder> ladders(laws.size());
-  run_tasks(laws.size(), options.threads, [&](std::size_t k) {
-    ladders[k] = climb(bench, laws[k], all, Limits(), options.most_effects,
-                       [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
-  });
+  const std::vector<Ladder> ladders =
+      climb(bench, laws, all, Limits(), options.most_effects,
+            [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
   const Ladder& ladder = ladders[told_ladder(bench, ladders)];
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
@@ -150,20 +148,13 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
     return out;
   }
 
-  voice.say("where it fails", 0.85);
-  std::vector<std::vector<Probe>> probes(2);
+  voice.say("fitting every rung", 0.85);
   out.fits.resize(ladder.steps.size());
-  run_tasks(2 + ladder.steps.size(), options.threads, [&](std::size_t k) {
-    if (k < 2) {
-      const Trial& trial = k == 0 ? ladder.steps[0].trial : ladder.top();
-      probes[k] =
-          probe_all(bench, try_model(bench, bench.coarse, trial.model, trial.p), trial, residual_of(bench, trial));
-      return;
-    }
-    const Trial& trial = ladder.steps[k - 2].trial;
+  run_tasks(ladder.steps.size(), options.threads, [&](std::size_t k) {
+    const Trial& trial = ladder.steps[k].trial;
     FitOptions warm = fit;
     warm.start = trial.p;
-    out.fits[k - 2] = fit_model(trial.model, records, fine, instruments, warm);
+    out.fits[k] = fit_model(trial.model, records, fine, instruments, warm);
   });
   Floor floor = out.fits.back().floor;
   const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
@@ -172,12 +163,12 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   for (Fit& rung : out.fits) set_floor(floor, rung);
   diagnosis.floor_rmse = floor.rmse;
 
-  const std::vector<Probe> structure = remaining_structure(probes[1]);
+  const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes);
   double left = 0;
   for (const Probe& probe : structure) left = std::max(left, probe.fall);
   const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;
-  diagnosis.where = shares_of(probes[0], climbed + left);
-  diagnosis.remaining = shares_of(probes[1], left);
+  diagnosis.where = shares_of(ladder.steps.front().probes, climbed + left);
+  diagnosis.remaining = shares_of(ladder.steps.back().probes, left);
   diagnosis.effects = findings_of(bench, ladder, all, out.fits, floor.rmse);
   for (std::size_t s = 0; s < ladder.steps.size(); ++s) {
     const LadderStep& step = ladder.steps[s];

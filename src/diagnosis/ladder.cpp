@@ -114,11 +114,11 @@ Choice choose(const Bench& bench, const std::vector<Judged>& judged) {
 
 /// Every testable candidate beside the top of the ladder: searched and judged at low resolution, and those that may
 /// lead or be in the leader's group again at full resolution.
-std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::vector<Candidate>& candidates,
+std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const std::vector<Candidate>& candidates,
                               const Limits& limits) {
+  const Trial &top = step.trial, &coarse_top = step.coarse;
   const std::vector<std::string> present = top.model.effect_keys();
   const std::vector<double> residual = residual_of(bench, top);
-  const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
   // What is too small to be named, or small beside what is wrong for another reason, need not be fitted.
   constexpr double kLeastPart = 0.02;
   const auto enough = [&](double floor, double squares) {
@@ -177,36 +177,40 @@ std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const std::v
   return out;
 }
 
+/// Fills in what is asked of every step.
+void look_beside(const Bench& bench, LadderStep& step) {
+  if (!step.trial.usable) return;
+  step.coarse = try_model(bench, bench.coarse, step.trial.model, step.trial.p);
+  step.probes = probe_all(bench, step.coarse, step.trial, residual_of(bench, step.trial));
+}
+
 /// Takes step s out of a ladder; the steps above are rebuilt without its effect.
 void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s) {
   const std::string& key = candidates[*ladder.steps[s].added].info.key;
   ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
   for (std::size_t later = s; later < ladder.steps.size(); ++later) {
-    Trial& trial = ladder.steps[later].trial;
-    const std::vector<std::string> held = trial.model.effect_keys();
+    LadderStep& step = ladder.steps[later];
+    const std::vector<std::string> held = step.trial.model.effect_keys();
     const auto gone = static_cast<std::size_t>(std::find(held.begin(), held.end(), key) - held.begin());
-    if (gone < held.size()) trial = try_without(bench, bench.fine, trial, gone);
+    if (gone == held.size()) continue;
+    step.trial = try_without(bench, bench.fine, step.trial, gone);
+    look_beside(bench, step);
   }
 }
 
-/// What free functions find beside a trial.
-std::vector<Probe> structure_beside(const Bench& bench, const Trial& trial) {
-  const Trial coarse = try_model(bench, bench.coarse, trial.model, trial.p);
-  return remaining_structure(probe_all(bench, coarse, trial, residual_of(bench, trial)));
-}
-
-double largest_fall(const std::vector<Probe>& structure) {
+double largest_fall(const LadderStep& step) {
+  const std::vector<Probe> structure = remaining_structure(step.probes);
   return structure.empty() ? 0 : structure.front().fall;
 }
 
 /// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
 /// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it.
-void withdraw(const Bench& bench, Ladder& ladder) {
+void withdraw(Ladder& ladder) {
   constexpr double kLeastPart = 0.7;
-  if (ladder.steps.size() < 2 || structure_beside(bench, ladder.top()).empty()) return;
+  if (largest_fall(ladder.steps.back()) == 0) return;
   for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
     const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
-    if (fall >= kLeastPart * largest_fall(structure_beside(bench, ladder.steps[s - 1].trial))) continue;
+    if (fall >= kLeastPart * largest_fall(ladder.steps[s - 1])) continue;
     for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
     ladder.last = ladder.steps[s].judged;
     ladder.steps.resize(s);
@@ -232,47 +236,83 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
   }
 }
 
-}  // namespace
-
-Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& candidates, const Limits& limits,
-             int most_effects, const std::function<void(std::string_view, double)>& progress) {
-  Ladder ladder;
-  ladder.law = law;
-  LadderStep base;
-  base.trial = try_base(bench, bench.fine, FrictionModel(law));
-  ladder.steps.push_back(std::move(base));
-  if (!ladder.top().usable) return ladder;
-  while (true) {
-    if (progress) {
-      const double part = static_cast<double>(ladder.steps.size()) / (most_effects + 2.0);
-      progress(ladder.top().model.name(), part);
-    }
-    ladder.last = judge_all(bench, ladder.top(), candidates, limits);
-    if (static_cast<int>(ladder.steps.size()) > most_effects) break;
-    const Choice choice = choose(bench, ladder.last);
-    if (!choice.leader) break;
-    // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
-    constexpr double kHopeless = 0.35;
-    if (ladder.last[*choice.leader].fall < kHopeless * largest_fall(structure_beside(bench, ladder.top()))) {
-      ladder.withdrawn.push_back(ladder.last[*choice.leader].candidate);
-      break;
-    }
-    LadderStep step;
-    step.judged = std::move(ladder.last);
-    step.added = step.judged[*choice.leader].candidate;
-    step.trial = step.judged[*choice.leader].trial;
-    step.equivalent = choice.group;
-    ladder.steps.push_back(std::move(step));
+/// Adds the effect that leads, if one passes.
+void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits,
+            int most_effects) {
+  ladder.finished = true;
+  ladder.last = judge_all(bench, ladder.steps.back(), candidates, limits);
+  if (static_cast<int>(ladder.steps.size()) > most_effects) return;
+  const Choice choice = choose(bench, ladder.last);
+  if (!choice.leader) return;
+  // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
+  constexpr double kHopeless = 0.35;
+  const Judged& leader = ladder.last[*choice.leader];
+  if (leader.fall < kHopeless * largest_fall(ladder.steps.back())) {
+    ladder.withdrawn.push_back(leader.candidate);
+    return;
   }
+  LadderStep step;
+  step.added = leader.candidate;
+  step.trial = leader.trial;
+  step.equivalent = choice.group;
+  step.judged = std::move(ladder.last);
+  look_beside(bench, step);
+  ladder.steps.push_back(std::move(step));
+  ladder.finished = false;
+}
+
+/// What is done once, when nothing more passes.
+void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
   prune(bench, ladder, candidates, limits);
-  withdraw(bench, ladder);
+  withdraw(ladder);
   // What was added after all is told apart: both are there.
   for (LadderStep& step : ladder.steps) {
     std::erase_if(step.equivalent, [&](std::size_t k) {
       return std::any_of(ladder.steps.begin(), ladder.steps.end(), [&](const LadderStep& s) { return s.added == k; });
     });
   }
+}
+
+Ladder start_ladder(const Bench& bench, BaseLaw law) {
+  Ladder ladder;
+  ladder.law = law;
+  LadderStep base;
+  base.trial = try_base(bench, bench.fine, FrictionModel(law));
+  look_beside(bench, base);
+  ladder.finished = !base.trial.usable;
+  ladder.steps.push_back(std::move(base));
   return ladder;
+}
+
+/// A finished ladder leaves nothing, is no longer and does as well.
+bool is_beaten(const Bench& bench, const Ladder& ladder, const std::vector<Ladder>& all) {
+  return std::any_of(all.begin(), all.end(), [&](const Ladder& other) {
+    return other.finished && other.top().usable && largest_fall(other.steps.back()) == 0 &&
+           ladder.steps.size() >= other.steps.size() && better_ladder(bench, {other, ladder}) == 0;
+  });
+}
+
+}  // namespace
+
+std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
+                          const std::vector<Candidate>& candidates, const Limits& limits, int most_effects,
+                          const std::function<void(std::string_view, double)>& progress) {
+  std::vector<Ladder> ladders(laws.size());
+  run_tasks(laws.size(), bench.threads, [&](std::size_t k) { ladders[k] = start_ladder(bench, laws[k]); });
+  // Beside Coulomb friction the better ladder need not be the one to tell (see told_ladder): all are climbed.
+  const bool all_matter = std::find(laws.begin(), laws.end(), BaseLaw::coulomb) != laws.end();
+  for (double rounds = 0;; ++rounds) {
+    Ladder* next = nullptr;
+    for (Ladder& ladder : ladders) {
+      if (ladder.finished || (!all_matter && is_beaten(bench, ladder, ladders))) continue;
+      if (next == nullptr || ladder.top().held_out_squares < next->top().held_out_squares) next = &ladder;
+    }
+    if (next == nullptr) break;
+    if (progress) progress(next->top().model.name(), rounds / (rounds + 3));
+    extend(bench, *next, candidates, limits, most_effects);
+    if (next->finished) finish(bench, *next, candidates, limits);
+  }
+  return ladders;
 }
 
 std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders) {

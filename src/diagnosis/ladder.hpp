@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "probes.hpp"
 #include "trial.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 
@@ -29,6 +30,8 @@ struct Judged {
 struct LadderStep {
   std::optional<std::size_t> added;     ///< candidate; none for the base law
   Trial trial;                          ///< at full resolution
+  Trial coarse;                         ///< the same at low resolution
+  std::vector<Probe> probes;            ///< what free functions find beside it
   std::vector<std::size_t> equivalent;  ///< candidates that do as well
   std::vector<Judged> judged;           ///< every candidate tried beside the step before
 };
@@ -39,6 +42,7 @@ struct Ladder {
   std::vector<LadderStep> steps;       ///< the base law first
   std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
   std::vector<Judged> last;            ///< candidates judged beside the last rung: none of them passes
+  bool finished = false;               ///< nothing more passes
   const Trial& top() const { return steps.back().trial; }
 };
 
@@ -50,10 +54,14 @@ struct Limits {
   double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is no chance
 };
 
-/// Adds effects to a base law, the best one at a time, until nothing passes; then drops what became redundant.
+/// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.
+///
+/// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
+/// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// progress: may be empty.
-Ladder climb(const Bench& bench, BaseLaw law, const std::vector<Candidate>& candidates, const Limits& limits,
-             int most_effects, const std::function<void(std::string_view, double)>& progress = {});
+std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
+                          const std::vector<Candidate>& candidates, const Limits& limits, int most_effects,
+                          const std::function<void(std::string_view, double)>& progress = {});
 
 /// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.
 std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders);
