@@ -135,44 +135,49 @@ std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const 
     if (!in_stick || !top.model.acts_in_stick()) tried.push_back(k);
   }
   std::vector<Judged> out(tried.size());
-  std::vector<double> places(tried.size());
+  std::vector<Opening> openings(tried.size());
+  const auto judge = [&](std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
+                         const std::vector<double>& start) {
+    out[t] = compare(bench, level, beside, try_model(bench, level, model, start), candidates[tried[t]].info,
+                     openings[t].places * tests, limits);
+    out[t].candidate = tried[t];
+  };
+  const auto search = [&](std::size_t t, const Level& level, const Trial& beside) {
+    const FrictionModel model = with_effect(top.model, candidates[tried[t]].effect);
+    judge(t, level, beside, model, nearest(level, model, beside.whitening, openings[t].starts));
+  };
   run_tasks(tried.size(), bench.threads, [&](std::size_t t) {
     const Candidate& candidate = candidates[tried[t]];
+    out[t].candidate = tried[t];
     const bool narrow = is_narrow(candidate.info);
     const Level& level = narrow ? bench.fine : bench.coarse;
     const Trial& beside = narrow ? top : coarse_top;
-    const Opening opening = opening_of(bench, level, beside, candidate, residual, least, least_plain);
-    Trial trial;
-    const FrictionModel model = with_effect(top.model, candidate.effect);
-    trial.model = model;
-    if (!opening.starts.empty()) {
-      trial = try_model(bench, level, model, nearest(level, model, beside.whitening, opening.starts));
-    }
-    out[t] = compare(bench, level, beside, std::move(trial), candidate.info, opening.places * tests, limits);
-    out[t].candidate = tried[t];
-    places[t] = opening.places;
+    openings[t] = opening_of(bench, level, beside, candidate, residual, least, least_plain);
+    if (!narrow && !openings[t].starts.empty()) search(t, level, beside);
   });
   double best = coarse_top.held_out_squares;
   for (const Judged& judged : out) {
-    const bool coarse = !is_narrow(candidates[judged.candidate].info);
-    if (judged.trial.usable && coarse) best = std::min(best, judged.trial.held_out_squares);
+    if (judged.trial.usable) best = std::min(best, judged.trial.held_out_squares);
   }
   const double fallen = coarse_top.held_out_squares - best;
   run_tasks(out.size(), bench.threads, [&](std::size_t t) {
     Judged& judged = out[t];
-    const Candidate& candidate = candidates[tried[t]];
-    if (!judged.trial.usable || is_narrow(candidate.info)) return;
+    if (is_narrow(candidates[judged.candidate].info)) {
+      // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
+      constexpr double kPutOff = 0.3;
+      judged.hopeless = openings[t].starts.empty() || openings[t].promised < kPutOff * fallen;
+      if (!judged.hopeless) search(t, bench.fine, top);
+      return;
+    }
+    if (!judged.trial.usable) return;
     const double behind = judged.trial.held_out_squares - best;
     const bool small = judged.size < 0.5 * limits.least_size || (judged.p_value > 0.5 && !judged.passes) ||
                        (judged.fall < least && judged.fall < kLeastPart * fallen);
     judged.hopeless = behind > 0.08 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0 || small;
-    if (judged.hopeless) {
-      judged.passes = false;
-      return;
-    }
-    Trial trial = try_model(bench, bench.fine, judged.trial.model, judged.trial.p);
-    judged = compare(bench, bench.fine, top, std::move(trial), candidate.info, places[t] * tests, limits);
-    judged.candidate = tried[t];
+    judged.passes = judged.passes && !judged.hopeless;
+    if (judged.hopeless) return;
+    const Trial coarse = std::move(judged.trial);
+    judge(t, bench.fine, top, coarse.model, coarse.p);
   });
   return out;
 }

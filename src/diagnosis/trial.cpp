@@ -205,7 +205,8 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   Opening opening;
   opening.places = starts.places;
   if (promises.empty()) return opening;
-  if (now - promises[0].squares < least) {
+  opening.promised = now - promises[0].squares;
+  if (opening.promised < least) {
     // What acts through the level of break-away may look like its scatter, which has been taken out.
     Linearised plain;
     plain.rows = residuals_of(level.observations, model, {}).white_rows(promises[0].start.data());

@@ -173,6 +173,7 @@ double mean_about(const std::vector<double>& x, std::size_t i, std::size_t half)
 void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
   constexpr double kLead = 10e-3, kMean = 1e-3;  // [s]
   const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kMean / motion.step));
+  const std::size_t every = std::max<std::size_t>(1, half / 2);
   // Three standard deviations of the mean, twice over for noise that is coloured.
   const double noise = 6 * motion.velocity_noise / std::sqrt(2.0 * static_cast<double>(half) + 1);
   for (auto slip = out.slips.begin(); slip != out.slips.end(); ++slip) {
@@ -191,7 +192,9 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
     while (first > earliest && std::abs(mean_about(motion.relative_velocity, first - 1, half)) > noise) --first;
     slip->lead_friction = mean_about(motion.friction, first - std::min(first, half), half);
     slip->lead_begin = out.lead_time.size();
-    for (std::size_t i = first - std::min(first, half); i < slip->samples.begin; ++i) {
+    first -= std::min(first, half);
+    // Means of a millisecond hold nothing faster than a few points in each; the last point is just before the slip.
+    for (std::size_t i = first + (slip->samples.begin - 1 - first) % every; i < slip->samples.begin; i += every) {
       out.lead_time.push_back(motion.time[i]);
       out.lead_velocity.push_back(mean_about(motion.relative_velocity, i, half));
     }
