@@ -219,21 +219,23 @@ std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe
   // The form is worth offering when the fit takes up most of what the free function does.
   std::string best_form;
   double best = probe.fall * 0.6;
+  const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
   for (const std::string& form : forms) {
     const Formula formula(form);
     const FrictionModel model = with_effect(top.model, formula);
-    std::vector<double> start = top.p;
-    for (const Parameter& q : formula.info().parameters) start.push_back(q.start * q.si);
-    const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
+    const std::vector<Parameter>& own = formula.info().parameters;
+    const std::size_t offset = model.offset_of(formula.info().key);
+    std::vector<double> start = top.p, values;
+    for (const Parameter& q : own) values.push_back(q.start * q.si);
+    start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset), values.begin(), values.end());
     const Trial trial = try_model(bench, bench.coarse, model, start);
     if (!trial.usable || coarse_top.held_out_squares - trial.held_out_squares < best) continue;
     best = coarse_top.held_out_squares - trial.held_out_squares;
-    std::string values;
-    for (std::size_t k = top.p.size(); k < trial.p.size(); ++k) {
-      const Parameter& q = model.parameters()[k].parameter;
-      values += fmt::format("{}{}={:.4g}", values.empty() ? "" : ", ", q.name, trial.p[k] / q.si);
+    std::string text;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      text += fmt::format("{}{}={:.4g}", k == 0 ? "" : ", ", own[k].name, trial.p[offset + k] / own[k].si);
     }
-    best_form = form.substr(0, form.find(';')) + "; " + values;
+    best_form = form.substr(0, form.find(';')) + "; " + text;
   }
   return best_form;
 }
