@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lines.hpp"
 #include "probes.hpp"
@@ -57,7 +58,9 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   }
   // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not.
   const auto cycles = static_cast<double>(trial.held_out.size());
-  const double freedom = std::max(3.0, out.design_effect > 1.2 ? 0.4 * std::pow(cycles, 2.0 / 3) : cycles / 3);
+  // A line stands among as many frequencies as it likes.
+  const bool few = out.design_effect > 1.2 && !is_narrow(info);
+  const double freedom = std::max(3.0, few ? 0.4 * std::pow(cycles, 2.0 / 3) : cycles / 3);
   out.p_value = std::min(1.0, tests * fall_p_value(poorer.squares - trial.squares, std::max<std::size_t>(1, free),
                                                    noise, out.design_effect, freedom));
   out.fall = poorer.held_out_squares - trial.held_out_squares;
@@ -189,17 +192,29 @@ void look_beside(const Bench& bench, LadderStep& step) {
   step.probes = probe_all(bench, step.coarse, step.trial, residual_of(bench, step.trial));
 }
 
-/// Takes step s out of a ladder; the steps above are rebuilt without its effect.
+std::size_t index_of(const FrictionModel& model, const std::string& key) {
+  const std::vector<std::string> keys = model.effect_keys();
+  return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+}
+
+/// Takes step s out of a ladder. The steps that stay are put in order anew, from the top down: what was found beside an
+/// effect that is gone need not have come first.
 void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s) {
-  const std::string& key = candidates[*ladder.steps[s].added].info.key;
+  const auto key = [&](const LadderStep& step) { return candidates[*step.added].info.key; };
+  Trial top = try_without(bench, bench.fine, ladder.top(), index_of(ladder.top().model, key(ladder.steps[s])));
   ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
-  for (std::size_t later = s; later < ladder.steps.size(); ++later) {
-    LadderStep& step = ladder.steps[later];
-    const std::vector<std::string> held = step.trial.model.effect_keys();
-    const auto gone = static_cast<std::size_t>(std::find(held.begin(), held.end(), key) - held.begin());
-    if (gone == held.size()) continue;
-    step.trial = try_without(bench, bench.fine, step.trial, gone);
-    look_beside(bench, step);
+  for (std::size_t last = ladder.steps.size() - 1; last > 0; --last) {
+    std::size_t least = last;
+    Trial below;
+    for (std::size_t k = 1; k <= last; ++k) {
+      Trial without = try_without(bench, bench.fine, top, index_of(top.model, key(ladder.steps[k])));
+      if (!without.usable || (below.usable && without.held_out_squares >= below.held_out_squares)) continue;
+      below = std::move(without);
+      least = k;
+    }
+    std::swap(ladder.steps[least], ladder.steps[last]);
+    ladder.steps[last].trial = std::exchange(top, std::move(below));
+    look_beside(bench, ladder.steps[last]);
   }
 }
 
@@ -228,9 +243,7 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
   for (std::size_t s = 1; s + 1 < ladder.steps.size();) {
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
-    const std::vector<std::string> keys = full.model.effect_keys();
-    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), candidate.info.key) - keys.begin());
-    Trial without = try_without(bench, bench.fine, full, at);
+    const Trial without = try_without(bench, bench.fine, full, index_of(full.model, candidate.info.key));
     const Judged needed = compare(bench, bench.fine, without, full, candidate.info, 1, limits);
     if (!without.usable || needed.passes) {
       ++s;

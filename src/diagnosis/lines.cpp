@@ -76,7 +76,7 @@ double observation_rate(const Observations& observations) {
 }
 
 double lowest_ringing(const Observations& observations) {
-  constexpr double kPeriods = 8;
+  constexpr double kPeriods = 6;
   const double length = median_slip_time(observations);
   return length > 0 ? kPeriods / length : 0;
 }

@@ -75,7 +75,7 @@ struct Opening {
   std::vector<std::vector<double>> starts;  ///< of all parameters [SI], the most promising first; empty: none promises
                                             ///< a fall of the squares
   double places = 1;                        ///< independent places that were looked at
-  double promised = 0;                      ///< fall of the whitened squares that a linear step from the best start says
+  double promised = 0;  ///< fall of the whitened squares that a linear step from the best start says
 };
 
 /// The best two of the starts of an effect beside the model of `base`, a trial at `level`.

@@ -332,11 +332,28 @@ double locate_restick(const Motion& motion, Span slip, std::size_t next, int dir
   return motion.time[first] + std::clamp(where, 0.0, n + 1) * motion.step;
 }
 
+namespace {
+
+/// Where the stretch before `end` begins over which the disc pulls at about the speed it has at the end: a disc that
+/// stood still, or was slower, in the same stick loaded the spring along another line.
+std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t end) {
+  constexpr double kSlower = 0.5;
+  constexpr std::size_t kFewest = 20;  // for a line
+  if (motion.disc_velocity.empty() || end < begin + kFewest) return begin;
+  const double least = kSlower * std::abs(motion.disc_velocity[end - 1]);
+  std::size_t i = end - kFewest;
+  while (i > begin && std::abs(motion.disc_velocity[i - 1]) > least) --i;
+  return i;
+}
+
+}  // namespace
+
 StickFriction friction_at(const Motion& motion, Span stick, double time, int direction) {
   StickFriction result;
-  const std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
+  std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
   std::size_t end = std::min(stick.end, motion.size());
   while (end > begin && motion.time[end - 1] >= time - motion.step) --end;
+  begin = begin_of_pull(motion, begin, end);
   if (end < begin + 3) {
     result.value = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");
     result.std_error = result.slope = std::nan("");
