@@ -41,6 +41,43 @@ bool is_narrow(const EffectInfo& info) {
   return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
 }
 
+/// The larger of the design effects of the free parameters of an effect, and how many of them there are.
+struct Added {
+  double design_effect = 1;
+  std::size_t free = 0;
+};
+
+Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, double noise) {
+  Added out;
+  for (std::size_t k = offset; k < offset + count; ++k) {
+    if (!linear.free[k]) continue;
+    ++out.free;
+    out.design_effect = std::max(out.design_effect, design_effect(linear, k, noise));
+  }
+  out.free = std::max<std::size_t>(1, out.free);
+  return out;
+}
+
+/// Degrees of freedom of what correlates between n cycles: see mean_error().
+double few_frequencies(double n) {
+  return std::max(3.0, 0.4 * std::pow(n, 2.0 / 3));
+}
+
+/// Whether an effect explains what otherwise is scatter of break-away from cycle to cycle.
+///
+/// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
+/// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
+/// Here the squares themselves are compared, with the correlation between cycles as it is.
+bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info, double tests,
+                     const Limits& limits, double floor) {
+  const double fall = poorer.plain_minimum - trial.plain_minimum;
+  if (poorer.plain_held_out - trial.plain_held_out <= limits.least_size * floor) return false;
+  const double noise = trial.plain_minimum / level.values;
+  const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
+  return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < limits.p_value;
+}
+
 /// How much better `richer` is than `poorer`, from which it differs by one effect.
 Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const EffectInfo& info,
                double tests, const Limits& limits) {
@@ -48,24 +85,19 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   out.trial = std::move(richer);
   const Trial& trial = out.trial;
   if (!trial.usable) return out;
-  const std::size_t offset = trial.model.offset_of(info.key);
   const double noise = noise_of(level, trial);
-  std::size_t free = 0;
-  for (std::size_t k = 0; k < info.parameters.size(); ++k) {
-    if (!trial.linear.free[offset + k]) continue;
-    ++free;
-    out.design_effect = std::max(out.design_effect, design_effect(trial.linear, offset + k, noise));
-  }
-  // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not.
+  const Added added = added_by(trial.linear, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  out.design_effect = added.design_effect;
+  // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
+  // line stands among as many frequencies as it likes.
   const auto cycles = static_cast<double>(trial.held_out.size());
-  // A line stands among as many frequencies as it likes.
   const bool few = out.design_effect > 1.2 && !is_narrow(info);
-  const double freedom = std::max(3.0, few ? 0.4 * std::pow(cycles, 2.0 / 3) : cycles / 3);
-  out.p_value = std::min(1.0, tests * fall_p_value(poorer.squares - trial.squares, std::max<std::size_t>(1, free),
-                                                   noise, out.design_effect, freedom));
+  const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
+  out.p_value = std::min(
+      1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
   out.fall = poorer.held_out_squares - trial.held_out_squares;
-  out.size = std::max(out.fall / bench.noise_squares(),
-                      (poorer.plain_squares - trial.plain_squares) / bench.floor_squares(trial.whitening));
+  const double floor = bench.floor_squares(trial.whitening);
+  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
   out.plausible = is_plausible(bench, trial, info);
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
   // cycles that took no part, needs no such test.
@@ -73,10 +105,13 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   // Not in records that never stick: their few steps of speed go with time.
   const auto& slips = level.observations.slips;
   const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
-  const bool obvious = !is_narrow(info) && breaks >= 30 && out.fall > limits.obvious_size * bench.noise_squares() &&
+  const bool sticks = breaks >= 30;
+  const bool obvious = !is_narrow(info) && sticks && out.fall > limits.obvious_size * bench.noise_squares() &&
                        out.fall > limits.obvious_part * above;
-  out.passes =
-      out.plausible && out.fall > 0 && out.size > limits.least_size && (out.p_value < limits.p_value || obvious);
+  const bool seen = out.p_value < limits.p_value || obvious;
+  out.by_level = out.plausible && out.fall > 0 && !seen && sticks && !is_narrow(info) &&
+                 passes_by_level(level, poorer, trial, info, tests, limits, floor);
+  out.passes = out.plausible && out.fall > 0 && out.size > limits.least_size && (seen || out.by_level);
   return out;
 }
 
@@ -176,7 +211,8 @@ std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const 
     const double behind = judged.trial.held_out_squares - best;
     const bool small = judged.size < 0.5 * limits.least_size || (judged.p_value > 0.5 && !judged.passes) ||
                        (judged.fall < least && judged.fall < kLeastPart * fallen);
-    judged.hopeless = behind > 0.08 * fallen + 0.05 * bench.noise_squares() || judged.fall < 0 || small;
+    const bool far = behind > 0.08 * fallen + 0.05 * bench.noise_squares();
+    judged.hopeless = !judged.by_level && (far || judged.fall < 0 || small);
     judged.passes = judged.passes && !judged.hopeless;
     if (judged.hopeless) return;
     const Trial coarse = std::move(judged.trial);

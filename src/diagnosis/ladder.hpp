@@ -25,6 +25,7 @@ struct Judged {
   bool hopeless = false;  ///< far behind the best already at low resolution, and judged there only
   bool plausible = true;  ///< no telling parameter on its bound
   bool passes = false;
+  bool by_level = false;  ///< it passes by the levels of break-away alone
 };
 
 struct LadderStep {

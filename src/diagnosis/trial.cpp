@@ -47,6 +47,18 @@ void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& 
   trial.held_out_squares = sum(trial.held_out);
 }
 
+/// The same as if there were no scatter to whiten against.
+void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, Trial& trial) {
+  Linearised& plain = trial.plain;
+  plain.rows = residuals.white_rows(trial.p.data());
+  plain.free = trial.linear.free;
+  trial.plain_squares = sum(squares_after(plain, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(trial.p.size()))));
+  const Eigen::VectorXd step = gauss_newton_step(plain);
+  for (Eigen::MatrixXd& rows : plain.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
+  trial.plain_minimum = sum(squares_after(plain, Eigen::VectorXd::Zero(step.size())));
+  trial.plain_held_out = sum(held_out_squares(plain, blocks));
+}
+
 SolverOptions quick_search(int iterations) {
   SolverOptions options;
   options.max_iterations = iterations;
@@ -109,7 +121,7 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   const ModelResiduals again = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
   judge(bench.blocks, again, bounds, trial);
-  if (trial.usable) trial.plain_squares = sum(again.squares(trial.p.data()));
+  if (trial.usable) judge_plainly(bench.blocks, residuals_of(observations, model, {}), trial);
   return trial;
 }
 

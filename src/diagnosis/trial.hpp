@@ -27,6 +27,8 @@ struct Trial {
   double squares = 0;            ///< of all cycles, at p
   double plain_squares = 0;      ///< the same not whitened: scatter of break-away counts in full
   double held_out_squares = 0;   ///< sum of held_out
+  Linearised plain;              ///< not whitened, stepped to its own minimum
+  double plain_minimum = 0, plain_held_out = 0;  ///< squares there, and on held-out cycles
 };
 
 /// The observations at one resolution.
