@@ -95,7 +95,9 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
     job.whitening = plain.whitening_at(p.data());
     if (pass < kPasses - 1) p = job.solve(all, p, quick).p;
   }
-  return job.solve(all, p, SolverOptions());
+  SolverOptions careful;
+  careful.relative_cost = 1e-13;  // along a flat valley nothing is gained by going on
+  return job.solve(all, p, careful);
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
