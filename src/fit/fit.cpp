@@ -61,7 +61,7 @@ struct Job {
 
   ModelResiduals residuals(const std::vector<std::size_t>& slips) const {
     ModelResiduals out(model, observations, slips, loss);
-    if (whitening.part > 0) out.whiten(whitening);
+    if (whitening.part > 0) out.whiten(whitening, true);
     return out;
   }
   SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
@@ -90,11 +90,14 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   std::vector<double> p = job.solve(all, tries[best].p, quick).p;
   // The direction in which a slip scatters is that of the law: known better once it has been taken out.
   const ModelResiduals plain(job.model, job.observations, all, job.loss);
-  for (int pass = 0; pass < 2; ++pass) {
+  constexpr int kPasses = 3;
+  for (int pass = 0; pass < kPasses; ++pass) {
     job.whitening = plain.whitening_at(p.data());
-    if (pass == 0) p = job.solve(all, p, quick).p;
+    if (pass < kPasses - 1) p = job.solve(all, p, quick).p;
   }
-  return job.solve(all, p, SolverOptions());
+  SolverOptions careful;
+  careful.relative_cost = 1e-13;  // along a flat valley nothing is gained by going on
+  return job.solve(all, p, careful);
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.

@@ -48,7 +48,13 @@ ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& o
 
 /// Calls write(row, residual) for every row of a slip; false where the model is not finite.
 template <class T, class Write>
-bool ModelResiduals::run(const Observations::Range& range, const T* p, Write&& write) const {
+bool ModelResiduals::run(const Observations::Range& range, const T* p, double level, Write&& write) const {
+  std::vector<T> at_level;
+  if (level != 0) {
+    at_level.assign(p, p + parameter_count());
+    at_level[0] += level;
+    p = at_level.data();
+  }
   const Slip slip = observations_.slip(range);
   std::vector<T> velocity(slip.size()), mu(slip.size());
   std::transform(slip.velocity.begin(), slip.velocity.end(), velocity.begin(), [](double v) { return T(v); });
@@ -67,13 +73,16 @@ bool ModelResiduals::run(const Observations::Range& range, const T* p, Write&& w
   return true;
 }
 
-bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Block& block) const {
+bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain) const {
+  const bool whitens = whitening_ != nullptr && whitening_->part > 0 && !plain;
+  const double level = whitens && own_levels_ ? whitening_->level[slips_[k]] : 0;
   const auto& range = observations_.slips[slips_[k]];
   const std::size_t n = with_jacobian ? parameter_count() : 0;
   const auto residual = static_cast<Eigen::Index>(n);
   block.resize(static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0)), residual + 2);
   if (!with_jacobian) {
-    if (!run<double>(range, p, [&](std::size_t row, double r) { block(Eigen::Index(row), 0) = r; })) return false;
+    if (!run<double>(range, p, level, [&](std::size_t row, double r) { block(Eigen::Index(row), 0) = r; }))
+      return false;
   }
   std::vector<Dual> dual(n);
   for (std::size_t first = 0; first < n; first += kStride) {
@@ -81,15 +90,17 @@ bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Bl
     for (std::size_t j = 0; j < n; ++j) {
       dual[j] = j >= first && j < last ? Dual(p[j], static_cast<int>(j - first)) : Dual(p[j]);
     }
-    const bool finite = run<Dual>(range, dual.data(), [&](std::size_t row, const Dual& r) {
+    const bool finite = run<Dual>(range, dual.data(), level, [&](std::size_t row, const Dual& r) {
       const auto i = static_cast<Eigen::Index>(row);
       block(i, residual) = r.a;
       for (std::size_t j = first; j < last; ++j) block(i, Eigen::Index(j)) = r.v[Eigen::Index(j - first)];
     });
     if (!finite) return false;
   }
-  if (whitening_ != nullptr && whitening_->part > 0) {
-    block.col(residual + 1) = whitening_->g[slips_[k]];
+  if (whitens) {
+    const Eigen::VectorXd& g = whitening_->g[slips_[k]];
+    block.col(residual + 1) = g;
+    if (level != 0) block.col(residual) -= level * g;
   } else {
     block.col(residual + 1).setZero();
   }
@@ -120,30 +131,50 @@ bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector
   return true;
 }
 
-std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Block>& blocks, double part) const {
+std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Block>& blocks) const {
   std::vector<Eigen::RowVectorXd> out;
-  if (part <= 0 || blocks.empty()) return out;
+  if (whitening_ == nullptr || whitening_->part <= 0 || blocks.empty()) return out;
   const Eigen::Index columns = blocks[0].cols() - 1;
   Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(columns);
-  double norms = 0;
-  for (const Block& block : blocks) {
-    const auto g = block.col(columns);
-    const double norm = g.squaredNorm();
-    const Eigen::RowVectorXd projection = g.transpose() * block.leftCols(columns);
-    mean += projection;
-    norms += norm;
+  double weights = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const auto g = blocks[k].col(columns);
+    const double norm = g.squaredNorm(), weight = whitening_->weight[slips_[k]];
+    const Eigen::RowVectorXd projection = g.transpose() * blocks[k].leftCols(columns);
     out.push_back(norm > 0 ? Eigen::RowVectorXd(projection / norm) : Eigen::RowVectorXd::Zero(columns));
+    mean += weight * out.back();
+    weights += weight;
   }
-  if (norms > 0) mean /= norms;
-  for (Eigen::RowVectorXd& own : out) own = part * (mean - own);
+  if (weights > 0) mean /= weights;
+  for (Eigen::RowVectorXd& own : out) own = whitening_->part * (mean - own);
   return out;
+}
+
+void ModelResiduals::transpose_whitening(const std::vector<Block>& blocks, std::vector<Eigen::MatrixXd>& rows) const {
+  if (whitening_ == nullptr || whitening_->part <= 0 || blocks.empty()) return;
+  const Eigen::Index last = blocks[0].cols() - 1;
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(rows[0].cols());
+  double weights = 0;
+  std::vector<Eigen::RowVectorXd> projections;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    projections.push_back(blocks[k].col(last).transpose() * rows[k]);
+    sum += projections.back();
+    weights += whitening_->weight[slips_[k]];
+  }
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const auto g = blocks[k].col(last);
+    const double norm = g.squaredNorm();
+    if (!(norm > 0) || !(weights > 0)) continue;
+    const double share = whitening_->weight[slips_[k]] / weights;
+    rows[k] += g * (whitening_->part / norm * (share * sum - projections[k]));
+  }
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
   const auto n = static_cast<Eigen::Index>(jacobian != nullptr ? parameter_count() : 0);
   std::vector<Block> blocks;
   if (!compressed(p, jacobian != nullptr, blocks)) return false;
-  const auto added = corrections(blocks, whitening_ != nullptr ? whitening_->part : 0);
+  const auto added = corrections(blocks);
   std::fill_n(residual, count(), 0.0);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
@@ -163,18 +194,16 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   const auto n = static_cast<Eigen::Index>(parameter_count());
   std::vector<Block> blocks;
   if (!compressed(p, true, blocks)) return {};
-  const double part = whitening_ != nullptr ? whitening_->part : 0;
-  const auto once = corrections(blocks, part), twice = corrections(blocks, 2 * part - part * part);  // M and M M
-  std::vector<Normal> out;
+  const auto added = corrections(blocks);
+  std::vector<Eigen::MatrixXd> white;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const Block& block = blocks[k];
-    Eigen::MatrixXd white = block.leftCols(n), whiter = white;
-    if (!once.empty()) {
-      white += block.col(n + 1) * once[k].head(n);
-      whiter += block.col(n + 1) * twice[k].head(n);
-    }
-    out.push_back({white.transpose() * white, whiter.transpose() * block.col(n)});
+    white.push_back(blocks[k].leftCols(n));
+    if (!added.empty()) white.back() += blocks[k].col(n + 1) * added[k].head(n);
   }
+  std::vector<Normal> out;
+  for (const Eigen::MatrixXd& rows : white) out.push_back({rows.transpose() * rows, {}});
+  transpose_whitening(blocks, white);  // now M'M J
+  for (std::size_t k = 0; k < blocks.size(); ++k) out[k].gradient = white[k].transpose() * blocks[k].col(n);
   return out;
 }
 
@@ -182,7 +211,7 @@ std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const F
   std::vector<Block> blocks;
   if (!compressed(p, true, blocks, further) || blocks.empty()) return {};
   const Eigen::Index columns = blocks[0].cols() - 1;
-  const auto added = corrections(blocks, whitening_ != nullptr ? whitening_->part : 0);
+  const auto added = corrections(blocks);
   std::vector<Eigen::MatrixXd> out;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     out.push_back(blocks[k].leftCols(columns));
@@ -195,7 +224,7 @@ std::vector<double> ModelResiduals::squares(const double* p) const {
   std::vector<double> out;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, false, block)) return {};
+    if (!fill(k, p, false, block, true)) return {};
     out.push_back(block.col(0).squaredNorm());
   }
   return out;
@@ -205,6 +234,8 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   const auto residual = static_cast<Eigen::Index>(parameter_count());
   Whitening out;
   out.g.resize(observations_.slips.size());
+  out.level.assign(observations_.slips.size(), 0.0);
+  out.weight.assign(observations_.slips.size(), 0.0);
   const bool breaks_away =
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
@@ -214,13 +245,14 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   double left = 0, freedom = 0, norms = 0;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, true, block)) return out;
+    if (!fill(k, p, true, block, true)) return out;
     Eigen::VectorXd& g = out.g[slips_[k]];
     g = block.col(0);
     const double norm = g.squaredNorm();
     if (!(norm > 0)) continue;
     const double projection = g.dot(block.col(residual));
     deltas.push_back(projection / norm);
+    out.level[slips_[k]] = -deltas.back();
     records.push_back(observations_.slips[slips_[k]].record);
     left += block.col(residual).squaredNorm() - projection * projection / norm;
     freedom += static_cast<double>(g.size()) - 1;
@@ -244,7 +276,12 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   scatter = std::max(0.0, scatter - noise / information);
   out.part = 1 - 1 / std::sqrt(1 + scatter * information / noise);
   out.noise = noise;
-  for (const Eigen::VectorXd& g : out.g) out.log_spread.push_back(std::log1p(scatter * g.squaredNorm() / noise));
+  for (std::size_t k = 0; k < out.g.size(); ++k) {
+    const double share = scatter * out.g[k].squaredNorm() / noise;
+    out.log_spread.push_back(std::log1p(share));
+    out.weight[k] = share / (1 + share);
+    out.level[k] *= out.weight[k];
+  }
   return out;
 }
 

@@ -27,9 +27,15 @@ std::vector<std::size_t> all_slips(const Observations& observations);
 /// plain least squares would blame the law for it: mu_k and the decay factor come out biased. Once the scatter is known
 /// the rows are therefore whitened against delta_i ~ N(0, s^2) (a random effect, N. M. Laird, J. H. Ware, Biometrics 38
 /// (1982) 963, doi:10.2307/2529876): r_i becomes r_i - c g_i (d_i - d), with d_i the least-squares delta_i of the slip
-/// and d their mean, so that only differences between cycles lose weight. s^2 comes from what neighbouring cycles
-/// differ by (half the mean square), so that a slow change, which may be an effect the model lacks, is not taken for
-/// scatter. In matrix form M = I - c (P_g - P_G), symmetric.
+/// and d their mean, so that only differences between cycles lose weight. The mean weighs each slip by how well its
+/// delta_i is known beside the scatter, not by g_i'g_i, which is less the higher a slip broke away. s^2 comes from what
+/// neighbouring cycles differ by (half the mean square), so that a slow change, which may be an effect the model lacks,
+/// is not taken for scatter. In matrix form r becomes M r.
+///
+/// g_i follows the parameters too: a slip that broke away higher bends differently with them. So each slip is evaluated
+/// at its own level mu_s + delta_i, with delta_i as predicted where the whitening was made (Lindstrom and Bates'
+/// linearisation of a mixed model, Biometrics 46 (1990) 673, doi:10.2307/2532087) and taken back along g_i; without
+/// that whitening and parameters settle slowly, or elsewhere.
 class ModelResiduals final : public Residuals {
  public:
   struct Options {
@@ -42,6 +48,8 @@ class ModelResiduals final : public Residuals {
     std::vector<Eigen::VectorXd> g;  ///< of every slip of the observations: its rows, then its break-away if it has one
     double part = 0;                 ///< c = 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
     double noise = 0;                ///< sigma^2, variance of a row
+    std::vector<double> level;   ///< delta_i of every slip as predicted: the least-squares one, shrunk by the scatter
+    std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
   };
 
@@ -56,7 +64,7 @@ class ModelResiduals final : public Residuals {
   std::span<const std::size_t> slips() const { return slips_; }
 
   /// J'J and J'r of one slip, whitened; the gradient as the part of the whole gradient that is linear in the slip's own
-  /// residuals, (M M J)_i' r_i, which is what one cycle contributes to the estimate's error.
+  /// residuals, (M'M J)_i' r_i, which is what one cycle contributes to the estimate's error.
   struct Normal {
     Eigen::MatrixXd curvature;
     Eigen::VectorXd gradient;
@@ -75,8 +83,12 @@ class ModelResiduals final : public Residuals {
   /// Sum of squares of every slip at p, break-away included, not whitened. Empty where the model is not finite.
   std::vector<double> squares(const double* p) const;
 
-  /// Whitens; `whitening` must outlive this object.
-  void whiten(const Whitening& whitening) { whitening_ = &whitening; }
+  /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
+  /// the whitening was made with.
+  void whiten(const Whitening& whitening, bool own_levels = false) {
+    whitening_ = &whitening;
+    own_levels_ = own_levels && options_.loss == Loss::squares;
+  }
   /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
   Whitening whitening_at(const double* p) const;
 
@@ -84,19 +96,22 @@ class ModelResiduals final : public Residuals {
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
   using Block = Eigen::MatrixXd;
   std::size_t rows_per_slip() const { return parameter_count() + 2; }
-  bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block) const;
+  bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
-  std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks, double part) const;
+  std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
+  /// Applies M' to the rows of every slip.
+  void transpose_whitening(const std::vector<Block>& blocks, std::vector<Eigen::MatrixXd>& rows) const;
   template <class T, class Write>
-  bool run(const Observations::Range& range, const T* p, Write&& write) const;
+  bool run(const Observations::Range& range, const T* p, double level, Write&& write) const;
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
   const Observations& observations_;
   std::vector<std::size_t> slips_;
   Options options_;
   const Whitening* whitening_ = nullptr;
+  bool own_levels_ = false;
 };
 
 }  // namespace tribofit

@@ -90,6 +90,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
       range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
       range.break_away_time = motion.time[range.samples.begin];
       range.tail_friction = friction_after(motion, segmentation, range.segment);
+      range.restick_time = cycle.restick_time;
       range.stick_time = std::numeric_limits<double>::quiet_NaN();
       if (range.from_stick) {
         range.break_away_time = std::min(cycle.break_away_time, motion.time[range.samples.begin]);
@@ -236,6 +237,7 @@ Slip Observations::slip(const Range& range) const {
   slip.stick_time = range.stick_time;
   slip.stick_slope = range.stick_slope;
   slip.tail_friction = range.tail_friction;
+  slip.restick_time = range.restick_time;
   slip.direction = range.direction;
   slip.mean_load = mean_load;
   slip.mean_temperature = mean_temperature;

@@ -57,6 +57,19 @@ class Page {
   double rmse(std::size_t rung) const { return d_.ladder[rung].held_out_rmse; }
   bool at_floor(std::size_t rung) const { return rung >= d_.ladder.size() || !(rmse(rung) > kNoise * d_.floor_rmse); }
 
+  /// Cycles; samples where nothing sticks.
+  std::string amount_of_data() const {
+    std::size_t cycles = 0, samples = 0;
+    bool sticks = false;
+    for (const Identification& trace : result_.traces) {
+      cycles += count_of_cycles(trace.segmentation);
+      samples += trace.motion.size();
+      sticks |= trace.segmentation.kind == MotionKind::stick_slip;
+    }
+    if (!sticks) return grouped(samples) + " samples, no stick";
+    return grouped(cycles) + (cycles == 1 ? " cycle" : " cycles");
+  }
+
   /// The distinct values of one condition over the traces, "1, 2, 4, 8 rpm"; empty where none is known.
   std::string condition(Condition Conditions::*which, double unit, std::string_view name) const {
     std::vector<std::string> values;
@@ -74,12 +87,10 @@ class Page {
   void header() {
     std::string title = fmt::format("{} traces", result_.traces.size());
     if (result_.traces.size() == 1) title = result_.traces.front().path;
-    std::size_t cycles = 0;
-    for (const Identification& trace : result_.traces) cycles += count_of_cycles(trace.segmentation);
     std::string facts;
     for (const std::string& fact :
          {condition(&Conditions::radius, kMillimetre, "mm"), condition(&Conditions::speed, kRpm, "rpm"),
-          condition(&Conditions::load, 1, "N"), grouped(cycles) + (cycles == 1 ? " cycle" : " cycles")}) {
+          condition(&Conditions::load, 1, "N"), amount_of_data()}) {
       if (!fact.empty()) facts += (facts.empty() ? "" : "; ") + fact;
     }
     text_ += fmt::format("{}{}{}", style_.bold, wrapped(shortened(title), style_.width, 2), style_.off);

@@ -248,6 +248,41 @@ TEST(ChannelDelay, ShiftsTheChannel) {
   EXPECT_NEAR(ChannelDelay{}.sense_break_away(&delay, slip, 0.5), 0.5 - 3 * delay, 1e-12);
 }
 
+TEST(ChannelDelay, ShowsTheJumpOfReStickAsOneRampAboutItsTime) {
+  std::vector<double> time, velocity(50, 0.05), early(50, 0.4);
+  for (int i = 0; i < 50; ++i) time.push_back(1e-3 * i);
+  Slip slip;
+  slip.time = time;
+  slip.velocity = velocity;
+  slip.tail_friction = -0.2;
+  slip.restick_time = 49.9e-3;  // nine tenths of an interval after the last sample
+  const double back = -9.5e-3;  // the samples lie half an interval off the grid
+  ChannelDelay{}.sense(&back, slip, 0.5, std::span<double>(early));
+  EXPECT_NEAR(early[39], 0.4, 1e-12);              // of 48.5 ms
+  EXPECT_NEAR(early[40], 0.4 - 0.6 * 0.1, 1e-12);  // of 49.5 ms, the ramp is from 49.4 to 50.4 ms
+  EXPECT_NEAR(early[41], -0.2, 1e-12);             // of 50.5 ms
+}
+
+/// The level that stands for break-away is read off a straight line through the second half of the stick.
+TEST(Interference, ReachesTheLevelOfBreakAwayAsThroughALineFit) {
+  for (const double f : {0.5, 5.0, 13.0, 50.0}) {
+    const double p[] = {0.01, f, 0.7};
+    Slip slip;
+    slip.stick_time = 0.18;
+    slip.break_away_time = 1.234;
+    const int n = 20000;  // least squares of a line over the half stick, taken at its end
+    double y0 = 0, y1 = 0, u2 = 0;
+    for (int i = 0; i < n; ++i) {
+      const double u = (i + 0.5) / n - 1;  // of the half, from -1 to 0
+      const double y = 0.01 * std::cos(2 * std::numbers::pi * f * (1.234 + 0.09 * u) + 0.7);
+      y0 += y / n;
+      y1 += (u + 0.5) * y / n;
+      u2 += (u + 0.5) * (u + 0.5) / n;
+    }
+    EXPECT_NEAR(Interference{}.sense_break_away(p, slip, 0.5), 0.5 + y0 + 0.5 * y1 / u2, 1e-7) << f;
+  }
+}
+
 TEST(ForceBandwidth, FollowsARampLateAndAnswersAStepInClosedForm) {
   const double corner = 200, zeta = 0.6, w = 2 * std::numbers::pi * corner, wd = w * std::sqrt(1 - zeta * zeta);
   const double p[] = {corner, zeta};

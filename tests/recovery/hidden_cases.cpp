@@ -276,7 +276,13 @@ Model true_model(const Case& c) {
   return out;
 }
 
-Drive drive_of(const Case& c, const Run& run, Random& random) {
+/// Mean of sin(2 pi t/period + phase) over a record.
+double mean_of_sine(double duration, double period, double phase) {
+  const double turns = 2 * std::numbers::pi * duration / period;
+  return (std::cos(phase) - std::cos(phase + turns)) / turns;
+}
+
+Drive drive_of(const Case& c, const Run& run, double duration, Random& random) {
   Drive drive;
   drive.radius = run.radius > 0 ? run.radius : c.radius;
   drive.mean_load = c.load;
@@ -294,13 +300,15 @@ Drive drive_of(const Case& c, const Run& run, Random& random) {
   }
   if (run.setting == Setting::load_swings) {
     const double share = random.uniform(0.4, 0.6), period = random.uniform(17, 26), phase = random.phase();
-    drive.load = [=, mean = c.load](double t) {
-      return mean * (1 + share * std::sin(2 * std::numbers::pi * t / period + phase));
+    drive.load = [=, middle = c.load](double t) {
+      return middle * (1 + share * std::sin(2 * std::numbers::pi * t / period + phase));
     };
+    // N0 and T0 are the means of the record: parameters refer to them.
+    drive.mean_load = c.load * (1 + share * mean_of_sine(duration, period, phase));
   }
   if (run.setting == Setting::temperature_swings) {
     const double swing = random.uniform(15, 20), period = random.uniform(17, 26), phase = random.phase();
-    drive.mean_temperature = 40;
+    drive.mean_temperature = 40 + swing * mean_of_sine(duration, period, phase);
     drive.temperature = [=](double t) { return 40 + swing * std::sin(2 * std::numbers::pi * t / period + phase); };
   }
   return drive;
@@ -327,10 +335,10 @@ std::pair<double, double> duration_and_rate(Setting setting) {
 /// Record number `number` of a case, from its own random numbers.
 Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
   Random random((c.seed ^ 0x5bd1e995u) + number);
-  const Drive drive = drive_of(c, run, random);
   SimulationOptions options;
   std::tie(options.duration, options.rate) = duration_and_rate(run.setting);
   if (run.duration > 0) options.duration = run.duration;
+  const Drive drive = drive_of(c, run, options.duration, random);
   if (run.setting != Setting::both_directions) options.settle = settling_time(c.rig, drive, truth.p);
   options.scatter = {c.scatter, c.wander};
   options.seed = c.seed + number;

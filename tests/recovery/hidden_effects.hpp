@@ -163,6 +163,14 @@ std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool
 /// The tables that stand in the README, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
+/// A case fitted with the law and the effects it was made with (those of friction), started at the truth.
+struct KnownFit {
+  tribofit::Fit fit;
+  std::vector<double> truth;  ///< of its parameters [SI]
+};
+/// What the fit does where nothing had to be found first.
+KnownFit fit_known(const Case& c, const Simulated& simulated);
+
 /// Upper end of the one-sided 95 % interval of a rate after `hits` in `n` (Clopper-Pearson).
 double upper_bound_95(std::size_t hits, std::size_t n);
 

@@ -38,6 +38,7 @@ struct Observations {
     std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
     double lead_friction = 0;                  ///< signed, at the first of them
     double tail_friction = 0;                  ///< signed, in the stick right after the slip; NaN where there is none
+    double restick_time = 0;                   ///< [s]; NaN where there is none
   };
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]

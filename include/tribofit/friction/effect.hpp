@@ -37,7 +37,7 @@ namespace tribofit {
 ///   T    read(p, const Instant<T>&, const T& mu)          what the sensor adds to it
 ///   void sense(p, const Slip&, const T& level, std::span<T> mu)   what the sensor makes of a whole slip; `level`:
 ///        signed friction at break-away, up to which the spring pulled at slip.stick_slope
-///   T    sense_break_away(p, const Slip&, const T& level)  and of that level (default: level)
+///   T    sense_break_away(p, const Slip&, const T& level)  and of that level (default: what `read` makes of it)
 ///
 /// All memories of the catalogue are linear in their state, which makes a step over any interval exact and stable.
 

@@ -254,8 +254,11 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
     if (!sensed) return;
     // The line through the stick before break-away knows nothing of what break-away strikes.
     at.since_break_away = std::numeric_limits<double>::quiet_NaN();
-    if constexpr (hooks::Reads<E, T>) mu = effect.read(q, at, mu);
-    if constexpr (hooks::SensesBreakAway<E, T>) mu = effect.sense_break_away(q, slip, mu);
+    if constexpr (hooks::SensesBreakAway<E, T>) {
+      mu = effect.sense_break_away(q, slip, mu);
+    } else if constexpr (hooks::Reads<E, T>) {
+      mu = effect.read(q, at, mu);
+    }
   });
   return mu;
 }

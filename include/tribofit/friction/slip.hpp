@@ -47,6 +47,7 @@ struct Slip {
   double lead_friction = 0;
   /// Friction (signed) read in the stick right after the slip; NaN where there is none.
   double tail_friction = std::numeric_limits<double>::quiet_NaN();
+  double restick_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN where there is none
   bool from_stick = false;      ///< it begins with a break-away; otherwise the record (or a reversal) begins it
   double break_away_time = 0;   ///< [s], where from_stick
   double stick_time = 0;        ///< of the stick before [s]; NaN when its beginning was not recorded

@@ -36,11 +36,18 @@ struct ChannelDelay {
       while (k > 0 && slip.time[k] > at) --k;
       const T late = slip.time[i] - p[0];
       if (at > slip.time[n - 1] && std::isfinite(slip.tail_friction)) {
-        // Re-stick happens within the sample after the last of the slip.
+        // Friction goes on as it was and jumps at re-stick, which samples show as a ramp over one interval; where the
+        // time of re-stick is not known, within the sample after the last of the slip.
         const double step = slip.time[n - 1] - slip.time[n - 2];
-        const T part = (late - slip.time[n - 1]) / step;
-        mu[i] = scalar_part(part) < 1 ? T(true_mu[n - 1] + part * (slip.tail_friction - true_mu[n - 1]))
-                                      : T(slip.tail_friction + 0.0 * p[0]);
+        const double known = slip.restick_time - 0.5 * step;
+        const double begin = known > slip.time[n - 1] ? known : slip.time[n - 1];  // NaN: not known
+        const T part = (late - begin) / step;
+        mu[i] = true_mu[n - 1] + (true_mu[n - 1] - true_mu[n - 2]) * ((late - slip.time[n - 1]) / step);
+        if (scalar_part(part) >= 1) {
+          mu[i] = slip.tail_friction + 0.0 * p[0];
+        } else if (scalar_part(part) > 0) {
+          mu[i] = (1.0 - part) * mu[i] + part * slip.tail_friction;
+        }
         continue;
       }
       if (at >= slip.time[0]) {
