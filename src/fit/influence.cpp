@@ -19,13 +19,15 @@ NormalEquations normal_equations(const ModelResiduals& residuals, const Observat
   NormalEquations equations;
   equations.curvature.assign(observations.cycles, Eigen::MatrixXd::Zero(n, n));
   equations.gradient.assign(observations.cycles, Eigen::VectorXd::Zero(n));
+  equations.level_gradient = equations.gradient;
   equations.total = Eigen::MatrixXd::Zero(n, n);
   const std::vector<ModelResiduals::Normal> slips = residuals.normal_equations(p.data());
   equations.finite = !slips.empty();
   for (std::size_t k = 0; k < slips.size(); ++k) {
     const std::size_t cycle = observations.slips[residuals.slips()[k]].cycle;
     equations.curvature[cycle] += slips[k].curvature;
-    equations.gradient[cycle] += slips[k].gradient;
+    equations.gradient[cycle] += slips[k].gradient + slips[k].level_gradient;
+    equations.level_gradient[cycle] += slips[k].level_gradient;
   }
   for (const Eigen::MatrixXd& c : equations.curvature) equations.total += c;
   return equations;
@@ -85,11 +87,13 @@ Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bo
   const auto cycles = static_cast<Eigen::Index>(equations.curvature.size());
   const auto n = static_cast<double>(cycles);
   Eigen::MatrixXd out(cycles, equations.total.rows());
+  const Eigen::MatrixXd of_all = inverse_over(equations.total, free);
   for (Eigen::Index c = 0; c < cycles; ++c) {
     const auto i = static_cast<std::size_t>(c);
     const Eigen::MatrixXd inverse = inverse_over(equations.total - equations.curvature[i], free);
     // (n-1) is the jackknife's; the rows then average to the error of the estimate.
-    out.row(c) = -(n - 1) * (inverse * equations.gradient[i]).transpose();
+    const Eigen::VectorXd& level = equations.level_gradient[i];
+    out.row(c) = -(n - 1) * (inverse * (equations.gradient[i] - level) + of_all * level).transpose();
   }
   return out;
 }

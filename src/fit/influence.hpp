@@ -12,8 +12,11 @@ namespace tribofit {
 struct NormalEquations {
   std::vector<Eigen::MatrixXd> curvature;  ///< J'J of each cycle
   std::vector<Eigen::VectorXd> gradient;   ///< J'r of each cycle
-  Eigen::MatrixXd total;                   ///< sum of the curvatures
-  bool finite = false;                     ///< the model could be evaluated at p
+  /// The part of it that acts through the mean of the levels: it moves mu_s alone, and leaving the cycle out does not
+  /// change that.
+  std::vector<Eigen::VectorXd> level_gradient;
+  Eigen::MatrixXd total;  ///< sum of the curvatures
+  bool finite = false;    ///< the model could be evaluated at p
 
   /// Parameters the data say nothing about: their column of J is zero.
   std::vector<bool> silent() const;

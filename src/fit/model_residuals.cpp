@@ -150,26 +150,6 @@ std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Bl
   return out;
 }
 
-void ModelResiduals::transpose_whitening(const std::vector<Block>& blocks, std::vector<Eigen::MatrixXd>& rows) const {
-  if (whitening_ == nullptr || whitening_->part <= 0 || blocks.empty()) return;
-  const Eigen::Index last = blocks[0].cols() - 1;
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(rows[0].cols());
-  double weights = 0;
-  std::vector<Eigen::RowVectorXd> projections;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    projections.push_back(blocks[k].col(last).transpose() * rows[k]);
-    sum += projections.back();
-    weights += whitening_->weight[slips_[k]];
-  }
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const auto g = blocks[k].col(last);
-    const double norm = g.squaredNorm();
-    if (!(norm > 0) || !(weights > 0)) continue;
-    const double share = whitening_->weight[slips_[k]] / weights;
-    rows[k] += g * (whitening_->part / norm * (share * sum - projections[k]));
-  }
-}
-
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
   const auto n = static_cast<Eigen::Index>(jacobian != nullptr ? parameter_count() : 0);
   std::vector<Block> blocks;
@@ -195,15 +175,29 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   std::vector<Block> blocks;
   if (!compressed(p, true, blocks)) return {};
   const auto added = corrections(blocks);
-  std::vector<Eigen::MatrixXd> white;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    white.push_back(blocks[k].leftCols(n));
-    if (!added.empty()) white.back() += blocks[k].col(n + 1) * added[k].head(n);
-  }
+  // M'M J of a slip is (I - c P_g) of its white rows, and through the mean of all slips g' (white rows) summed over
+  // them.
   std::vector<Normal> out;
-  for (const Eigen::MatrixXd& rows : white) out.push_back({rows.transpose() * rows, {}});
-  transpose_whitening(blocks, white);  // now M'M J
-  for (std::size_t k = 0; k < blocks.size(); ++k) out[k].gradient = white[k].transpose() * blocks[k].col(n);
+  Eigen::VectorXd through_mean = Eigen::VectorXd::Zero(n);
+  double weights = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const auto g = blocks[k].col(n + 1), r = blocks[k].col(n);
+    Eigen::MatrixXd white = blocks[k].leftCols(n);
+    if (added.empty()) {
+      out.push_back({white.transpose() * white, white.transpose() * r, Eigen::VectorXd::Zero(n)});
+      continue;
+    }
+    white += g * added[k].head(n);
+    const double norm = g.squaredNorm(), own = norm > 0 ? g.dot(r) / norm : 0;
+    const Eigen::VectorXd projection = white.transpose() * g;
+    out.push_back({white.transpose() * white, white.transpose() * r - whitening_->part * own * projection,
+                   Eigen::VectorXd::Constant(n, whitening_->part * own * whitening_->weight[slips_[k]])});
+    through_mean += projection;
+    weights += whitening_->weight[slips_[k]];
+  }
+  if (weights > 0) {
+    for (Normal& slip : out) slip.level_gradient.array() *= through_mean.array() / weights;
+  }
   return out;
 }
 

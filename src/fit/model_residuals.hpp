@@ -64,10 +64,11 @@ class ModelResiduals final : public Residuals {
   std::span<const std::size_t> slips() const { return slips_; }
 
   /// J'J and J'r of one slip, whitened; the gradient as the part of the whole gradient that is linear in the slip's own
-  /// residuals, (M'M J)_i' r_i, which is what one cycle contributes to the estimate's error.
+  /// residuals, (M'M J)_i' r_i, which is what one cycle contributes to the estimate's error: through its own rows, and
+  /// through the mean of the levels.
   struct Normal {
     Eigen::MatrixXd curvature;
-    Eigen::VectorXd gradient;
+    Eigen::VectorXd gradient, level_gradient;
   };
   /// One for each slip given. Empty where the model is not finite.
   std::vector<Normal> normal_equations(const double* p) const;
@@ -101,8 +102,6 @@ class ModelResiduals final : public Residuals {
                   const FurtherColumns& further = {}) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
   std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
-  /// Applies M' to the rows of every slip.
-  void transpose_whitening(const std::vector<Block>& blocks, std::vector<Eigen::MatrixXd>& rows) const;
   template <class T, class Write>
   bool run(const Observations::Range& range, const T* p, double level, Write&& write) const;
 
