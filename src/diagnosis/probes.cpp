@@ -96,7 +96,7 @@ Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial&
   const Observations& observations = level.observations;
   const std::vector<std::size_t> all = all_slips(observations);
   ModelResiduals residuals(trial.model, observations, all);
-  if (trial.whitening.part > 0) residuals.whiten(trial.whitening, true);
+  if (trial.whitening.part > 0) residuals.whiten(trial.whitening);
   Linearised wide;
   wide.rows = residuals.white_rows(trial.p.data(), columns);
   if (!wide.finite()) return {};

@@ -13,9 +13,9 @@ namespace tribofit::diagnosis {
 namespace {
 
 ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
-                            const ModelResiduals::Whitening& whitening, bool own_levels = false) {
+                            const ModelResiduals::Whitening& whitening) {
   ModelResiduals residuals(model, observations, all_slips(observations));
-  if (whitening.part > 0) residuals.whiten(whitening, own_levels);
+  if (whitening.part > 0) residuals.whiten(whitening);
   return residuals;
 }
 
@@ -113,12 +113,12 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   const Observations& observations = level.observations;
   const Bounds bounds = bounds_of(model, observations);
   trial.whitening = residuals_of(observations, model, {}).whitening_at(start.data());
-  const ModelResiduals residuals = residuals_of(observations, model, trial.whitening, true);
+  const ModelResiduals residuals = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(20)).p;
   wrap_phases(model, trial.p);
   // Scatter is known better once the model is: a start may see as scatter what an effect explains.
   trial.whitening = residuals_of(observations, model, {}).whitening_at(trial.p.data());
-  const ModelResiduals again = residuals_of(observations, model, trial.whitening, true);
+  const ModelResiduals again = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
   judge(bench.blocks, again, bounds, trial);
   if (trial.usable) judge_plainly(bench.blocks, residuals_of(observations, model, {}), trial);
