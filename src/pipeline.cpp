@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "diagnosis/own_effects.hpp"
+#include "fit/stick.hpp"
+#include "fit/stick_evidence.hpp"
 #include "tribofit/fit/parallel.hpp"
 
 namespace tribofit {
@@ -255,12 +257,58 @@ EffectFinding not_found(const Effect& effect, const std::vector<Identification>&
   return finding;
 }
 
+constexpr double kLeastGap = 0.004, kGapSigmas = 5;  ///< of the plateau, that call for a correction
+
 /// The plateau is not where the stated speed and radius put it.
 bool plateau_is_off(const Motion& motion) {
-  constexpr double kLeast = 0.004, kSigmas = 5;
   const double off = std::abs(motion.plateau_ratio - 1);
-  return off > kLeast && off > kSigmas * motion.plateau_ratio_std_error && motion.plateau_ratio > 0.85 &&
+  return off > kLeastGap && off > kGapSigmas * motion.plateau_ratio_std_error && motion.plateau_ratio > 0.85 &&
          motion.plateau_ratio < 1.15;
+}
+
+/// A trace as the diagnosis reads it. A high-pass that nobody declared is not undone where a contact that turns with
+/// the disc lets the plateau sag as well or better; a plateau that is off is put right. motion: what was done in the
+/// end, but for the plateau.
+Identification prepare_to_diagnose(const TraceInput& input, const IdentifyOptions& options, MotionOptions& motion) {
+  Identification trace = prepare(input, options, motion);
+  if (trace.analysed && trace.motion.high_pass > 0 && !options.instruments.vibrometer.high_pass) {
+    MotionOptions raw = motion;
+    raw.undo_high_pass = false;
+    Identification plain = prepare(input, options, raw);
+    // One in 1e4; but where the high-pass would leave the plateau off, the spin explains by one what else takes two.
+    const double at_least = plateau_is_off(trace.motion) ? 0 : 15;
+    if (plain.analysed && spins_rather_than_sags(plain.motion, plain.segmentation, at_least)) {
+      motion = raw;
+      trace = std::move(plain);
+    }
+  }
+  if (trace.analysed && motion.plateau == PlateauCorrection::none && plateau_is_off(trace.motion)) {
+    MotionOptions corrected = motion;
+    corrected.plateau = PlateauCorrection::radius;
+    trace = prepare(input, options, corrected);
+  }
+  return trace;
+}
+
+/// Takes back corrections of the plateau that nobody asked for, where the effect that was found lets the block creep as
+/// much: a plateau below omega r is then what that effect does. True when there was one.
+bool undo_needless_corrections(const std::vector<TraceInput>& inputs, const IdentifyOptions& options,
+                               const std::vector<MotionOptions>& motions, const Diagnosed& diagnosed,
+                               std::vector<Identification>& traces) {
+  if (options.motion.plateau != PlateauCorrection::none || diagnosed.fits.empty()) return false;
+  const Fit& fit = diagnosed.fits.back();
+  if (!fit.model.acts_in_stick() || fit.parameters.empty()) return false;
+  bool undone = false;
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    if (traces[k].motion.plateau_correction == PlateauCorrection::none) continue;
+    Identification plain = prepare(inputs[k], options, motions[k]);
+    if (plain.motion.plateau_correction != PlateauCorrection::none) continue;  // asked for by its effect
+    const Measure gap = gap_beside_creep(fit.model, fit.values(), plain.motion, plain.segmentation);
+    if (std::abs(gap.value) > std::max(kLeastGap, kGapSigmas * gap.std_error)) continue;
+    traces[k] = std::move(plain);
+    undone = true;
+  }
+  return undone;
 }
 
 /// Puts what kinematics/ found into a diagnosis: rungs below all others, and a finding each.
@@ -369,14 +417,11 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   own.erase(std::remove_if(own.begin(), own.end(),
                            [](const Effect& effect) { return !std::holds_alternative<Formula>(effect); }),
             own.end());
-  for (const TraceInput& input : inputs) {
-    out.traces.push_back(prepare(input, options, options.motion));
+  std::vector<MotionOptions> motions(inputs.size(), options.motion);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const TraceInput& input = inputs[k];
+    out.traces.push_back(prepare_to_diagnose(input, options, motions[k]));
     Identification& trace = out.traces.back();
-    if (trace.analysed && options.motion.plateau == PlateauCorrection::none && plateau_is_off(trace.motion)) {
-      MotionOptions corrected = options.motion;
-      corrected.plateau = PlateauCorrection::radius;
-      trace = prepare(input, options, corrected);
-    }
     require_channels(given, trace.motion, trace.warnings, trace.analysed);
     for (const Effect& effect : own) {
       const std::string trouble =
@@ -391,10 +436,14 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     out.diagnosis.verdict = Verdict::not_enough_data;
     return out;
   }
-  const std::vector<Record> records = records_of(out.traces);
   DiagnosisOptions inner = more.diagnosis;
   inner.threads = options.threads;
-  Diagnosed diagnosed = diagnose(records, options.laws, own, options.instruments, options.fit, inner);
+  const auto diagnose_all = [&] {
+    const std::vector<Record> records = records_of(out.traces);
+    return diagnose(records, options.laws, own, options.instruments, options.fit, inner);
+  };
+  Diagnosed diagnosed = diagnose_all();
+  if (undo_needless_corrections(inputs, options, motions, diagnosed, out.traces)) diagnosed = diagnose_all();
   out.diagnosis = std::move(diagnosed.diagnosis);
   std::optional<Fit> uncorrected;
   const Motion& motion = out.traces[0].motion;

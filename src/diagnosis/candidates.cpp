@@ -123,6 +123,12 @@ std::vector<double> grid_of(const Parameter& parameter, double lower, double upp
     for (int k = 0; k < parameter.grid; ++k) values.push_back(2 * std::numbers::pi * (k / n - 0.5 + 0.5 / n));
     return values;
   }
+  if (parameter.neutral == 0 && lower == 0) {  // a size of which nothing is known: octaves about the usual one
+    for (int k = 0; k < parameter.grid; ++k) {
+      values.push_back(std::clamp(parameter.start * parameter.si * std::exp2(1 - k), lower, upper));
+    }
+    return values;
+  }
   for (int k = 0; k < parameter.grid; ++k) {
     const double u = (k + 0.5) / n;
     const bool wide = lower > 0 && upper > 20 * lower;

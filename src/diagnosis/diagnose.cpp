@@ -45,10 +45,13 @@ Channels all_channels(std::span<const Record> records) {
   return all;
 }
 
-Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip) {
+/// noise: of a sample of friction [1 or N]; it sets what a stick counts for.
+Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip,
+                         double noise) {
   std::vector<Observations> parts;
   for (const Record& record : records) {
     parts.push_back(observe(*record.motion, *record.segmentation, channels, values_per_slip));
+    add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
   }
   return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
 }
@@ -129,9 +132,11 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   voice.say("reading slips", 0.02);
   const Channels channels = all_channels(records);
   constexpr std::size_t kFineValues = 20000, kCoarseValues = 5000;
-  const Observations fine = observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400));
-  const Observations coarse = observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40));
   const Floor leaves = floor_of(records);
+  const Observations fine =
+      observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400), leaves.noise);
+  const Observations coarse =
+      observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40), leaves.noise);
   Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
   bench.threads = options.threads;
   const std::vector<Candidate> all = candidates(records, fine, own);
@@ -168,6 +173,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   for (const Probe& probe : structure) left = std::max(left, probe.fall);
   const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;
   diagnosis.where = shares_of(ladder.steps.front().probes, climbed + left);
+  add_share_of_stick(ladder, climbed + left, diagnosis.where);
   diagnosis.remaining = shares_of(ladder.steps.back().probes, left);
   diagnosis.effects = findings_of(bench, ladder, all, out.fits, floor.rmse);
   for (std::size_t s = 0; s < ladder.steps.size(); ++s) {

@@ -96,7 +96,9 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
     if (last.judged != nullptr) {
       // Whitened squares fall as the squares themselves do.
       const double before = fits[last.step].error.held_out_rmse;
-      const double squared = std::max(0.0, before * before - last.judged->fall / bench.fine.samples);
+      const auto in_stick = [](const Trial& trial) { return trial.stick.rigid - trial.stick.left; };
+      const double in_slip = last.judged->fall - in_stick(last.judged->trial) + in_stick(ladder.steps[last.step].trial);
+      const double squared = std::max(0.0, before * before - in_slip / bench.fine.samples);
       finding.held_out_rmse = std::sqrt(squared);
       finding.p_value = last.judged->p_value;
       finding.parameters = parameters_of(last.judged->trial, finding.key);
@@ -142,6 +144,22 @@ std::vector<Share> shares_of(const std::vector<Probe>& probes, double above) {
   }
   std::stable_sort(out.begin(), out.end(), [](const Share& a, const Share& b) { return a.share > b.share; });
   return out;
+}
+
+void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& shares) {
+  const Trial& top = ladder.top();
+  const double gain = top.stick.rigid - top.stick.left;
+  if (!(gain > 0) || !(above > 0)) return;
+  double p_value = 1;
+  for (const LadderStep& step : ladder.steps) {
+    for (const Judged& judged : step.judged) {
+      const bool added = step.added == judged.candidate && judged.trial.stick.rows > 0;
+      if (added) p_value = judged.p_value;
+    }
+  }
+  const Share share = {"stick", std::min(1.0, gain / above), p_value};
+  const auto below = [&](const Share& other) { return other.share < share.share; };
+  shares.insert(std::find_if(shares.begin(), shares.end(), below), share);
 }
 
 std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& all,

@@ -18,6 +18,9 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
 /// above: the squares above the floor.
 std::vector<Share> shares_of(const std::vector<Probe>& probes, double above);
 
+/// Adds the share that goes with the stick, where the last rung explains how the block moves there.
+void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& shares);
+
 /// What to do next: the test that splits the groups of the ladder, or what remains to be looked at.
 std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& all,
                             const std::vector<Probe>& structure);

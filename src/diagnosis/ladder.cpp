@@ -18,10 +18,6 @@ namespace {
 constexpr double kToldApart = 40;
 constexpr double kToldApartSize = 0.003;  ///< and by this part of the squares of the noise
 
-double noise_of(const Level& level, const Trial& trial) {
-  return trial.squares / level.values;
-}
-
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
 /// the effect says.
 bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info) {
@@ -72,10 +68,19 @@ bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial
                      const Limits& limits, double floor) {
   const double fall = poorer.plain_minimum - trial.plain_minimum;
   if (poorer.plain_held_out - trial.plain_held_out <= limits.least_size * floor) return false;
-  const double noise = trial.plain_minimum / level.values;
+  const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
   const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
   return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < limits.p_value;
+}
+
+/// What a trial gains from the stick but has not earned: of all that v_r shows there beyond its noise a law of creep
+/// must explain most; less than that, something else moves the block.
+double unearned(const Bench& bench, const Trial& trial) {
+  constexpr double kLeastPart = 0.5;
+  const double gain = trial.stick.rigid - trial.stick.left;
+  const double shown = trial.stick.rigid - trial.stick.rows * bench.noise * bench.noise;
+  return gain > 0 && gain < kLeastPart * shown ? gain : 0;
 }
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect.
@@ -93,11 +98,12 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   const auto cycles = static_cast<double>(trial.held_out.size());
   const bool few = out.design_effect > 1.2 && !is_narrow(info);
   const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
+  const double less = unearned(bench, trial) - unearned(bench, poorer);
   out.p_value = std::min(
-      1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
-  out.fall = poorer.held_out_squares - trial.held_out_squares;
+      1.0, tests * fall_p_value(poorer.squares - trial.squares - less, added.free, noise, out.design_effect, freedom));
+  out.fall = poorer.held_out_squares - trial.held_out_squares - less;
   const double floor = bench.floor_squares(trial.whitening);
-  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
+  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares - less) / floor);
   out.plausible = is_plausible(bench, trial, info);
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
   // cycles that took no part, needs no such test.
@@ -379,7 +385,7 @@ std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders
       continue;
     }
     const double difference = first.held_out_squares - second.held_out_squares;
-    const double noise = std::min(first.squares, second.squares) / bench.fine.values;
+    const double noise = std::min(noise_of(bench.fine, first), noise_of(bench.fine, second));
     // A longer ladder must earn every rung that the other does without.
     const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
     const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.noise_squares();

@@ -111,10 +111,11 @@ Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial&
   Linearised flat;
   flat.rows = plain.white_rows(trial.p.data(), columns);
   flat.free = wide.free;
-  const double fall = trial.plain_squares - sum(squares_after(flat, gauss_newton_step(flat)));
+  const double left = sum(squares_after(flat, gauss_newton_step(flat))) - trial.stick.rigid;
+  const double fall = trial.plain_squares - left;
   probe.size = std::max(probe.fall / bench.noise_squares(), fall / bench.floor_squares(trial.whitening));
   for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
-  const double noise = after / level.values;
+  const double noise = (after - trial.stick.left) / level.values;
   double design = 1;
   for (std::size_t k = own; k < width; ++k) design = std::max(design, design_effect(wide, k, noise));
   const double freedom = std::max(3.0, 0.4 * std::pow(static_cast<double>(wide.rows.size()), 2.0 / 3));

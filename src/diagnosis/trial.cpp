@@ -26,6 +26,16 @@ void pay_for_scatter(const ModelResiduals::Whitening& whitening, std::vector<dou
   }
 }
 
+ModelResiduals::StickSquares all_sticks(const std::vector<ModelResiduals::StickSquares>& sticks) {
+  ModelResiduals::StickSquares all;
+  for (const auto& stick : sticks) {
+    all.rigid += stick.rigid;
+    all.left += stick.left;
+    all.rows += stick.rows;
+  }
+  return all;
+}
+
 /// Fills what a trial says from its parameters.
 void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
   trial.linear.rows = residuals.white_rows(trial.p.data());
@@ -43,6 +53,12 @@ void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& 
   trial.held_out = held_out_squares(trial.linear, blocks);
   pay_for_scatter(trial.whitening, squares);
   pay_for_scatter(trial.whitening, trial.held_out);
+  const std::vector<ModelResiduals::StickSquares> sticks = residuals.stick_squares(trial.p.data());
+  trial.stick = all_sticks(sticks);
+  for (std::size_t c = 0; c < sticks.size(); ++c) {
+    squares[c] -= sticks[c].rigid;
+    trial.held_out[c] -= sticks[c].rigid;
+  }
   trial.squares = sum(squares);
   trial.held_out_squares = sum(trial.held_out);
 }
@@ -52,11 +68,13 @@ void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, Trial&
   Linearised& plain = trial.plain;
   plain.rows = residuals.white_rows(trial.p.data());
   plain.free = trial.linear.free;
-  trial.plain_squares = sum(squares_after(plain, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(trial.p.size()))));
+  const double rigid = trial.stick.rigid;
+  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(trial.p.size()));
+  trial.plain_squares = sum(squares_after(plain, stay)) - rigid;
   const Eigen::VectorXd step = gauss_newton_step(plain);
   for (Eigen::MatrixXd& rows : plain.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
-  trial.plain_minimum = sum(squares_after(plain, Eigen::VectorXd::Zero(step.size())));
-  trial.plain_held_out = sum(held_out_squares(plain, blocks));
+  trial.plain_minimum = sum(squares_after(plain, stay)) - rigid;
+  trial.plain_held_out = sum(held_out_squares(plain, blocks)) - rigid;
 }
 
 SolverOptions quick_search(int iterations) {
@@ -105,6 +123,10 @@ double Bench::floor_squares(const ModelResiduals::Whitening& whitening) const {
   double sensitivity = 0;
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   return noise_squares() + scatter * scatter * sensitivity;
+}
+
+double noise_of(const Level& level, const Trial& trial) {
+  return (trial.squares - trial.stick.left + trial.stick.rigid) / level.values;
 }
 
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start) {
@@ -171,7 +193,7 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
   const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
-  const double now = sum(squares_after(base.linear, stay));
+  const double now = sum(squares_after(base.linear, stay)) - base.stick.rigid;
 
   // Parameters of the new effect lie somewhere among the others: the model has an order of its own.
   const std::size_t offset = model.offset_of(candidate.info.key);
@@ -199,8 +221,9 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
     if (!linear.finite()) continue;
     linear.free.assign(promise.start.size(), true);
     const Room room = room_about(promise.start, bounds);
-    const double here = sum(squares_after(linear, Eigen::VectorXd::Zero(room.lower.size())));
-    const double there = sum(squares_after(linear, bounded_step(linear, room.lower, room.upper)));
+    const double rigid = all_sticks(residuals.stick_squares(promise.start.data())).rigid;
+    const double here = sum(squares_after(linear, Eigen::VectorXd::Zero(room.lower.size()))) - rigid;
+    const double there = sum(squares_after(linear, bounded_step(linear, room.lower, room.upper))) - rigid;
     promise.squares = std::min(here, there);
     // A linear step promises the same from every phase; the start that is lower now is the nearer one.
     promise.score = there + 1e-2 * here;
@@ -221,10 +244,12 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   if (opening.promised < least) {
     // What acts through the level of break-away may look like its scatter, which has been taken out.
     Linearised plain;
-    plain.rows = residuals_of(level.observations, model, {}).white_rows(promises[0].start.data());
+    const ModelResiduals flat = residuals_of(level.observations, model, {});
+    plain.rows = flat.white_rows(promises[0].start.data());
     plain.free.assign(promises[0].start.size(), true);
     const Room room = room_about(promises[0].start, bounds);
-    const double left = sum(squares_after(plain, bounded_step(plain, room.lower, room.upper)));
+    const double left = sum(squares_after(plain, bounded_step(plain, room.lower, room.upper))) -
+                        all_sticks(flat.stick_squares(promises[0].start.data())).rigid;
     if (base.plain_squares - left < least_plain) return opening;
   }
   constexpr std::size_t kMost = 2;

@@ -15,7 +15,9 @@ namespace tribofit::diagnosis {
 ///
 /// Squares are whitened against the scatter of break-away as this model sees it, and every cycle pays noise log(1 + s^2
 /// g'g/noise) for that scatter: minus twice the logarithm of the likelihood in units of the noise, so that models that
-/// see less scatter are the better ones.
+/// see less scatter are the better ones. Models that let the block creep in stick are judged there too: their squares
+/// are those of the slips plus what v_r in stick leaves, less what a rigid stick would leave there. Models of rigid
+/// stick are thus what they were without that evidence.
 struct Trial {
   FrictionModel model{BaseLaw::exponential};
   std::vector<double> p;  ///< SI
@@ -29,12 +31,13 @@ struct Trial {
   double held_out_squares = 0;   ///< sum of held_out
   Linearised plain;              ///< not whitened, stepped to its own minimum
   double plain_minimum = 0, plain_held_out = 0;  ///< squares there, and on held-out cycles
+  ModelResiduals::StickSquares stick;            ///< of all sticks; zero where the model is rigid there
 };
 
 /// The observations at one resolution.
 struct Level {
   const Observations& observations;
-  double values = 0;   ///< rows of the problem, over which the noise of a row is taken
+  double values = 0;   ///< rows of friction, over which the noise of a row is taken
   double samples = 0;  ///< behind them
 
   explicit Level(const Observations& given);
@@ -58,6 +61,9 @@ struct Bench {
   /// Squares that noise and scatter leave together, in slips whose friction follows break-away as the whitening says.
   double floor_squares(const ModelResiduals::Whitening& whitening) const;
 };
+
+/// Variance of a row of friction beside the model of a trial.
+double noise_of(const Level& level, const Trial& trial);
 
 /// Fits a model from a start, with the scatter of break-away as the model sees it there.
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start);

@@ -7,7 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "tribofit/friction/evaluate.hpp"
+#include "stick_evidence.hpp"
+#include "tribofit/friction/creep.hpp"
 
 namespace tribofit {
 
@@ -44,11 +45,35 @@ std::vector<std::size_t> all_slips(const Observations& observations) {
 
 ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& observations,
                                std::vector<std::size_t> slips, const Options& options)
-    : model_(model), observations_(observations), slips_(std::move(slips)), options_(options) {}
+    : model_(model), observations_(observations), slips_(std::move(slips)), options_(options) {
+  if (observations_.sticks.empty() || !model_.acts_in_stick()) return;
+  const CreepLaw law = creep_law(model_);
+  first_part_ = law.first_part;
+  weights_ = stick_weights(observations_, law);
+}
+
+/// Weighted differences between v_r and the creep of the model in the stick before a slip.
+template <class T>
+std::vector<T> ModelResiduals::stick_residuals(const Observations::Range& range, const T* p) const {
+  const auto n = static_cast<std::size_t>(stick_rows(range));
+  std::vector<T> rows(n, T(0.0 * p[0]));
+  if (n == 0) return rows;
+  const Eigen::MatrixXd& weights = weights_[range.record];
+  const StickCreep& stick = observations_.sticks[range.stick];
+  const Slip slip = observations_.slip(range);
+  for (std::size_t k = 0; k + first_part_ < stick.parts.size(); ++k) {
+    const StickPart& part = stick.parts[first_part_ + k];
+    const T left = part.relative_velocity -
+                   creep_in_stick(model_, p, slip, StickMoment{part.friction, part.friction_rate, range.disc_speed});
+    for (std::size_t j = 0; j < n; ++j) rows[j] += weights(Eigen::Index(j), Eigen::Index(k)) * left;
+  }
+  return rows;
+}
 
 /// Calls write(row, residual) for every row of a slip; false where the model is not finite.
 template <class T, class Write>
 bool ModelResiduals::run(const Observations::Range& range, const T* p, double level, Write&& write) const {
+  const T* mean = p;  // the noise of stick holds what the levels of the slips do there
   std::vector<T> at_level;
   if (level != 0) {
     at_level.assign(p, p + parameter_count());
@@ -70,6 +95,11 @@ bool ModelResiduals::run(const Observations::Range& range, const T* p, double le
     if (!std::isfinite(scalar_part(r))) return false;
     write(slip.size(), bend(r, options_, 1.0));
   }
+  auto row = static_cast<std::size_t>(friction_rows(range));
+  for (const T& r : stick_residuals(range, mean)) {
+    if (!std::isfinite(scalar_part(r))) return false;
+    write(row++, r);
+  }
   return true;
 }
 
@@ -79,7 +109,7 @@ bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Bl
   const auto& range = observations_.slips[slips_[k]];
   const std::size_t n = with_jacobian ? parameter_count() : 0;
   const auto residual = static_cast<Eigen::Index>(n);
-  block.resize(static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0)), residual + 2);
+  block.resize(friction_rows(range) + stick_rows(range), residual + 2);
   if (!with_jacobian) {
     if (!run<double>(range, p, level, [&](std::size_t row, double r) { block(Eigen::Index(row), 0) = r; }))
       return false;
@@ -97,12 +127,11 @@ bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Bl
     });
     if (!finite) return false;
   }
+  block.col(residual + 1).setZero();  // the scatter of stick is in its own noise
   if (whitens) {
     const Eigen::VectorXd& g = whitening_->g[slips_[k]];
-    block.col(residual + 1) = g;
-    if (level != 0) block.col(residual) -= level * g;
-  } else {
-    block.col(residual + 1).setZero();
+    block.col(residual + 1).head(g.size()) = g;
+    if (level != 0) block.col(residual).head(g.size()) -= level * g;
   }
   return true;
 }
@@ -119,6 +148,8 @@ bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector
       for (std::size_t i = range.begin; i < range.end; ++i) {
         more.row(static_cast<Eigen::Index>(i - range.begin)) *= observations_.root_weight[i];
       }
+      more.conservativeResize(block.rows(), Eigen::NoChange);
+      more.bottomRows(stick_rows(range)).setZero();
       Block wider(block.rows(), block.cols() + more.cols());
       wider << block.leftCols(block.cols() - 2), more, block.rightCols(2);
       block = std::move(wider);
@@ -219,7 +250,20 @@ std::vector<double> ModelResiduals::squares(const double* p) const {
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     if (!fill(k, p, false, block, true)) return {};
-    out.push_back(block.col(0).squaredNorm());
+    out.push_back(block.col(0).head(friction_rows(observations_.slips[slips_[k]])).squaredNorm());
+  }
+  return out;
+}
+
+std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const double* p) const {
+  std::vector<StickSquares> out(slips_.size());
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    const auto& range = observations_.slips[slips_[k]];
+    if (stick_rows(range) == 0) continue;
+    const Eigen::VectorXd v = stick_velocities(observations_.sticks[range.stick], first_part_);
+    out[k].rigid = (weights_[range.record] * v).squaredNorm();
+    out[k].rows = static_cast<double>(stick_rows(range));
+    for (const double r : stick_residuals(range, p)) out[k].left += r * r;
   }
   return out;
 }
@@ -241,14 +285,15 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     if (!fill(k, p, true, block, true)) return out;
     Eigen::VectorXd& g = out.g[slips_[k]];
-    g = block.col(0);
+    const Eigen::Index rows = friction_rows(observations_.slips[slips_[k]]);
+    g = block.col(0).head(rows);
     const double norm = g.squaredNorm();
     if (!(norm > 0)) continue;
-    const double projection = g.dot(block.col(residual));
+    const double projection = g.dot(block.col(residual).head(rows));
     deltas.push_back(projection / norm);
     out.level[slips_[k]] = -deltas.back();
     records.push_back(observations_.slips[slips_[k]].record);
-    left += block.col(residual).squaredNorm() - projection * projection / norm;
+    left += block.col(residual).head(rows).squaredNorm() - projection * projection / norm;
     freedom += static_cast<double>(g.size()) - 1;
     norms += norm;
   }

@@ -15,7 +15,8 @@ namespace tribofit {
 std::vector<std::size_t> all_slips(const Observations& observations);
 
 /// Residuals of a friction model over slips: sqrt(weight) (measured - model) for every value of each slip, and
-/// |measured| - level for the break-away that begins it.
+/// |measured| - level for the break-away that begins it. Where the model acts in stick and the observations hold its
+/// evidence (add_stick_evidence), the rows of the stick before the slip follow: measured v_r - creep, weighted.
 ///
 /// A solver sees the rows of each slip compressed by a QR decomposition of [J r g] to a few rows: J'J, J'r and r'r, all
 /// that least squares uses, are unchanged, and a long record stays in the cache.
@@ -81,8 +82,18 @@ class ModelResiduals final : public Residuals {
   /// columns [J more r]. Empty where the model is not finite.
   std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further = {}) const;
 
-  /// Sum of squares of every slip at p, break-away included, not whitened. Empty where the model is not finite.
+  /// Sum of squares of every slip at p, break-away included, stick not, not whitened. Empty where the model is not
+  /// finite.
   std::vector<double> squares(const double* p) const;
+
+  /// What the rows of stick are worth against a rigid stick.
+  struct StickSquares {
+    double rigid = 0;  ///< squares of those rows without any creep
+    double left = 0;   ///< at p
+    double rows = 0;
+  };
+  /// One for each slip; all zero where the model does not act in stick.
+  std::vector<StickSquares> stick_squares(const double* p) const;
 
   /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
   /// the whitening was made with.
@@ -97,6 +108,15 @@ class ModelResiduals final : public Residuals {
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
   using Block = Eigen::MatrixXd;
   std::size_t rows_per_slip() const { return parameter_count() + 2; }
+  /// Rows of friction: values and break-away.
+  static Eigen::Index friction_rows(const Observations::Range& range) {
+    return static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0));
+  }
+  Eigen::Index stick_rows(const Observations::Range& range) const {
+    return range.stick == Observations::npos || weights_.empty() ? 0 : weights_[range.record].rows();
+  }
+  template <class T>
+  std::vector<T> stick_residuals(const Observations::Range& range, const T* p) const;
   bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
@@ -111,6 +131,8 @@ class ModelResiduals final : public Residuals {
   Options options_;
   const Whitening* whitening_ = nullptr;
   bool own_levels_ = false;
+  std::size_t first_part_ = 0;            ///< of a stick, from which the model's creep holds
+  std::vector<Eigen::MatrixXd> weights_;  ///< of the parts of a stick, for each record
 };
 
 }  // namespace tribofit

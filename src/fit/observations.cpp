@@ -299,10 +299,13 @@ Observations join(std::vector<Observations> records) {
       slip.cycle += out.cycles;
       slip.lead_begin += out.lead_time.size();
       slip.lead_end += out.lead_time.size();
+      if (slip.stick != Observations::npos) slip.stick += out.sticks.size();
       slip.record = r;
       out.slips.push_back(slip);
     }
     out.cycles += next.cycles;
+    out.sticks.insert(out.sticks.end(), next.sticks.begin(), next.sticks.end());
+    out.stick_noise.insert(out.stick_noise.end(), next.stick_noise.begin(), next.stick_noise.end());
     // Channels missing on one side cannot be used by an effect of all.
     const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
       if (to.empty() || from.empty()) {

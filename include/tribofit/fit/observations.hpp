@@ -9,6 +9,7 @@
 #include "tribofit/friction/slip.hpp"
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/segmentation/stick_motion.hpp"
 
 namespace tribofit {
 
@@ -39,6 +40,18 @@ struct Observations {
     double lead_friction = 0;                  ///< signed, at the first of them
     double tail_friction = 0;                  ///< signed, in the stick right after the slip; NaN where there is none
     double restick_time = 0;                   ///< [s]; NaN where there is none
+    std::size_t stick = npos;                  ///< index in `sticks` of the stick before it; npos: none
+  };
+  static constexpr std::size_t npos = static_cast<std::size_t>(-1);
+
+  /// How v_r scatters over the parts of a stick in one record.
+  struct StickNoise {
+    /// Covariance of the parts: half the mean product of what neighbouring sticks differ by [m^2/s^2], row by row;
+    /// empty where there are too few sticks to know it.
+    std::vector<double> covariance;
+    std::vector<double> mean;  ///< of v_r in each part [m/s]
+    double sticks = 0;         ///< behind them
+    bool ramps = false;  ///< v_r may also change evenly over a stick: a high-pass was undone, never to the last bit
   };
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]
@@ -47,7 +60,10 @@ struct Observations {
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<Range> slips;
-  std::size_t cycles = 0;  ///< units of evidence
+  std::vector<StickCreep> sticks;       ///< creep as evidence; empty unless add_stick_evidence() filled it
+  std::vector<StickNoise> stick_noise;  ///< of each record
+  double stick_unit = 0;                ///< residual that stands for one standard deviation of v_r in stick [1 or N]
+  std::size_t cycles = 0;               ///< units of evidence
   std::size_t samples_per_value = 1;
   double mean_load = 1;         ///< N0 [N]
   double mean_temperature = 0;  ///< T0 [degC]
@@ -64,6 +80,14 @@ struct Observations {
 /// values_per_slip: means are taken so that the median slip has about this many; 0 keeps every sample.
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs = {},
                      std::size_t values_per_slip = 80);
+
+/// Adds how the block moves in stick to the observations of one record, as evidence for what lets it creep there.
+///
+/// Compared are the differences between the parts of a stick: what all of them share says nothing of creep (a wrong
+/// radius or gain, a speed that is not quite the stated one), and where a high-pass was undone nor does what changes
+/// evenly with time. Their noise, with its colour, is what neighbouring sticks differ by.
+/// unit: weight of one standard deviation of that noise beside residuals of friction [1 or N]: the sensor noise.
+void add_stick_evidence(const Motion& motion, const Segmentation& segmentation, double unit, Observations& out);
 
 /// The observations of several records as one; channels that not all of them have are dropped, and N0 and T0 are the
 /// means of all.

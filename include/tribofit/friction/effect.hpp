@@ -31,7 +31,8 @@ namespace tribofit {
 ///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
 ///        (phi starts at mu_s at break-away; where the memory acts in stick, at the friction measured a little before
 ///        it)
-///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick
+///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick; without it,
+///        `spread` says at which speed the block creeps
 ///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
 ///   void modulate_all(p, const Slip&, std::span<const T> velocity, std::span<T> mu)   the same, a whole slip at a time
 ///   T    read(p, const Instant<T>&, const T& mu)          what the sensor adds to it

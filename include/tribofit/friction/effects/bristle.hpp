@@ -38,6 +38,13 @@ struct Bristle {
     return force + p[1] * x.velocity * (1.0 - x.direction * force / steady);
   }
 
+  /// The block rings on its bristles after re-stick, and creeps more while it does: the law of creep holds from the
+  /// middle of the stick on.
+  static constexpr std::size_t first_part_of_creep = 3;
+  /// To this part: the block rings on a little, and every stick has a mu_s of its own, near which creep grows without
+  /// bound.
+  static constexpr double inaccuracy_of_creep = 0.3;
+
   /// v_r [m/s] in stick while the spring raises friction from `mu` at `slope` [1/s]: dF/dt = sigma0 v (1 - F/mu_s).
   template <class T>
   T creep(const T* p, const T& mu_s, double mu, double slope) const {

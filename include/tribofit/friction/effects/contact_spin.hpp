@@ -30,7 +30,7 @@ struct ContactSpin {
                 "doi:10.1103/PhysRevLett.90.248302",
             .experiment =
                 "9 mm at 8 rpm against 18 mm at 4 rpm: the same sliding speed with half the spin; or a smaller pad",
-            .parameters = {{"R_c", "mm", 1e-3, 0, 10, 2, 0}},
+            .parameters = {{"R_c", "mm", 1e-3, 0, 10, 2, 0, false, false, 5}},
             .needs = {.plateau = true}};
   }
 

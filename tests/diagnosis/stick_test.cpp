@@ -1,0 +1,163 @@
+/// Creep in stick as evidence, on records made with a known truth.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../fit/synthetic.hpp"
+#include "fit/stick_evidence.hpp"
+#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/rig.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+constexpr double kOmega = 0.419, kUnit = 0.003;
+
+/// Sticks of 0.1 s with noise of v_r that is correlated from sample to sample, and `creep(time in stick)` on top.
+template <class F>
+Observations sticks_with(double colour, std::uint64_t seed, bool high_pass, F creep) {
+  synthetic::Options options;
+  options.cycles = 400;
+  options.seed = seed;
+  synthetic::Record made = synthetic::make(FrictionModel(BaseLaw::exponential), {0.509, 0.318, 52.14}, options);
+  boost::random::mt19937_64 engine(seed);
+  synthetic::ColouredNoise noise(colour, engine);
+  for (const Cycle& cycle : made.segmentation.cycles) {
+    for (std::size_t i = cycle.stick.begin; i < cycle.stick.end; ++i) {
+      const double t = static_cast<double>(i - cycle.stick.begin) * made.motion.step;
+      made.motion.relative_velocity[i] = creep(t) + 2e-5 * noise();
+    }
+  }
+  if (high_pass) made.motion.high_pass = 0.1;
+  Observations out = observe(made.motion, made.segmentation);
+  add_stick_evidence(made.motion, made.segmentation, kUnit, out);
+  return out;
+}
+
+/// Mean square of the weighted rows over the square of their unit: 1 for noise alone.
+double size_of(const Observations& observations) {
+  const auto weights = stick_weights(observations);
+  double squares = 0, rows = 0;
+  for (const StickCreep& stick : observations.sticks) {
+    squares += (weights[0] * stick_velocities(stick, 0)).squaredNorm();
+    rows += static_cast<double>(weights[0].rows());
+  }
+  return squares / rows / (kUnit * kUnit);
+}
+
+TEST(StickEvidence, NoiseOfAnyColourCountsForItsUnit) {
+  for (const double colour : {0.0, 0.9, 0.98}) {
+    const auto rigid = sticks_with(colour, 7, false, [](double) { return 0.0; });
+    // 400 sticks of 5 rows: the mean square is known to 1/sqrt(1000) = 3 %.
+    EXPECT_NEAR(size_of(rigid), 1, 0.1) << colour;
+  }
+}
+
+TEST(StickEvidence, AConstantGapIsNoCreep) {
+  const auto rigid = sticks_with(0.9, 7, false, [](double) { return 0.0; });
+  const auto gap = sticks_with(0.9, 7, false, [](double) { return 3e-4; });
+  EXPECT_NEAR(size_of(gap), size_of(rigid), 1e-9);
+  const auto ramp = sticks_with(0.9, 7, false, [](double t) { return 3e-3 * t; });
+  EXPECT_GT(size_of(ramp), 10 * size_of(rigid));
+}
+
+TEST(StickEvidence, BehindAHighPassARampIsNoCreepEither) {
+  const auto rigid = sticks_with(0.9, 7, true, [](double) { return 0.0; });
+  const auto ramp = sticks_with(0.9, 7, true, [](double t) { return 3e-4 + 3e-3 * t; });
+  EXPECT_NEAR(size_of(ramp), size_of(rigid), 1e-9);
+  const auto bent = sticks_with(0.9, 7, true, [](double t) { return 0.3 * t * t; });
+  EXPECT_GT(size_of(bent), 10 * size_of(rigid));
+}
+
+TEST(StickEvidence, ALawThatIsWrongByAPartBindsNoCloserThanThat) {
+  const auto creeping = sticks_with(0.9, 7, false, [](double t) { return 3e-3 * t; });
+  const auto rigid = sticks_with(0.9, 7, false, [](double) { return 0.0; });
+  const auto worth = [](const Observations& o) {  // of all sticks together, in standard deviations squared
+    const Eigen::MatrixXd weights = stick_weights(o, {0, 0.3})[0];
+    double squares = 0;
+    for (const StickCreep& stick : o.sticks) squares += (weights * stick_velocities(stick, 0)).squaredNorm();
+    return squares / (kUnit * kUnit) - static_cast<double>(weights.rows()) * static_cast<double>(o.sticks.size());
+  };
+  EXPECT_LT(worth(creeping), 6 / (0.3 * 0.3));
+  EXPECT_GT(stick_weights(rigid, {0, 0.3})[0].squaredNorm() / stick_weights(rigid)[0].squaredNorm(), 0.8);
+}
+
+TEST(StickEvidence, IsSilentWhereNoiseIsNotKnown) {
+  Observations few = sticks_with(0, 7, false, [](double) { return 0.0; });
+  few.stick_noise[0].covariance.clear();
+  EXPECT_EQ(stick_weights(few)[0].rows(), 0);
+}
+
+/// The diagnosis of a record of the published 15 mm rig.
+DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double>& effect, double colour) {
+  const Rig rig = rig_with_damping_ratio(0.85, 16.2e3, 0.02);
+  Drive drive;
+  drive.radius = 0.015;
+  drive.mean_load = 50;
+  drive.speed = constant_speed(kOmega);
+  std::vector<double> p = {0.509, 0.318, 52.14};
+  p.insert(p.end(), effect.begin(), effect.end());
+  SimulationOptions options;
+  options.duration = 10;
+  options.rate = 10e3;
+  options.settle = 3;
+  options.scatter = {0.004, 0};
+  options.seed = 11;
+  Sensors sensors;
+  sensors.friction_noise = 0.003;
+  sensors.velocity_noise = 2e-5;
+  sensors.noise_colour = colour;
+  sensors.seed = 12;
+  const FrictionModel model(BaseLaw::exponential, {make_effect(key)});
+  Hidden hidden = hide(model, p, rig, drive, options, sensors);
+  TraceInput input;
+  input.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
+  return diagnose({input}, IdentifyOptions());
+}
+
+EffectFinding finding(const DiagnosedTraces& result, const std::string& key) {
+  for (const EffectFinding& found : result.diagnosis.effects) {
+    if (found.key == key) return found;
+  }
+  return {};
+}
+
+TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
+  for (const double colour : {0.0, 0.9}) {
+    const DiagnosedTraces result = diagnose_hidden("contact-spin", {0.5e-3}, colour);
+    const EffectFinding spin = finding(result, "contact-spin");
+    ASSERT_EQ(spin.status, EffectStatus::missing) << colour;
+    EXPECT_NEAR(spin.parameters[0].value, 0.5e-3, 0.05e-3);
+    EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::unsupported);
+    EXPECT_EQ(finding(result, "bristle").status == EffectStatus::missing, false);
+    const auto& where = result.diagnosis.where;
+    EXPECT_TRUE(std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == "stick"; }));
+  }
+}
+
+TEST(StickEvidence, AWrongRadiusIsNoCreep) {
+  const DiagnosedTraces result = diagnose_hidden("radius-offset", {0.97}, 0.9);
+  EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::missing);
+  EXPECT_EQ(finding(result, "contact-spin").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding(result, "bristle").status, EffectStatus::unsupported);
+}
+
+TEST(StickEvidence, RigidMemoriesAreNoBristle) {
+  for (const auto& [key, p] : {std::pair<std::string, std::vector<double>>("rate-state", {50e-6, 0}),
+                               std::pair<std::string, std::vector<double>>("frictional-lag", {1e-3})}) {
+    const DiagnosedTraces result = diagnose_hidden(key, p, 0.9);
+    EXPECT_EQ(finding(result, key).status, EffectStatus::missing) << key;
+    EXPECT_NE(finding(result, "bristle").status, EffectStatus::missing) << key;
+    EXPECT_NE(finding(result, "bristle").status, EffectStatus::equivalent) << key;
+  }
+}
+
+}  // namespace
