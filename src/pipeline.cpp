@@ -13,6 +13,8 @@
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
 #include "tribofit/fit/parallel.hpp"
+#include "tribofit/segmentation/load_coupling.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
 
 namespace tribofit {
 
@@ -179,10 +181,11 @@ void fit_all(const IdentifyOptions& options, Identification& out) {
   share_floor(out.fits, out.best);
 }
 
-/// What kinematics/ found and undid, as effects.
-std::vector<EffectFinding> motion_findings(const Motion& motion) {
+/// What was found in the motion and in the load channel, and undone, as effects.
+std::vector<EffectFinding> motion_findings(const Identification& trace) {
+  const Motion& motion = trace.motion;
   std::vector<EffectFinding> out;
-  const auto add = [&](const char* key, std::vector<std::pair<double, double>> values) {
+  const auto add = [&](const char* key, const std::vector<std::pair<double, double>>& values) {
     EffectFinding finding;
     finding.key = key;
     finding.status = EffectStatus::missing;
@@ -219,6 +222,10 @@ std::vector<EffectFinding> motion_findings(const Motion& motion) {
     other.reason = std::string("these data cannot tell it from ") + (gain ? "velocity-gain" : "radius-offset");
   }
   if (motion.high_pass > 0) add("velocity-highpass", {{motion.high_pass, motion.high_pass_std_error}});
+  if (trace.load_coupling.value != 0) {
+    add("load-coupling", {{trace.load_coupling.value, trace.load_coupling.std_error}});
+    out.back().reason = "the load channel follows friction within every cycle; that part was taken out of it";
+  }
   return out;
 }
 
@@ -266,6 +273,16 @@ bool plateau_is_off(const Motion& motion) {
          motion.plateau_ratio < 1.15;
 }
 
+/// A load that follows friction within every cycle would pass for friction that follows the load.
+void take_out_load_coupling(Identification& trace) {
+  constexpr double kLeast = 0.01, kChance = 0.01 / 28;  // one of the catalogue's effects
+  const Measure kappa = load_coupling(trace.motion, trace.segmentation);
+  if (!(std::abs(kappa.value) > kLeast)) return;
+  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > kChance) return;
+  uncouple_load(kappa.value, trace.motion);
+  trace.load_coupling = kappa;
+}
+
 /// A trace as the diagnosis reads it. A high-pass that nobody declared is not undone where a contact that turns with
 /// the disc lets the plateau sag as well or better; a plateau that is off is put right. motion: what was done in the
 /// end, but for the plateau.
@@ -287,6 +304,7 @@ Identification prepare_to_diagnose(const TraceInput& input, const IdentifyOption
     corrected.plateau = PlateauCorrection::radius;
     trace = prepare(input, options, corrected);
   }
+  if (trace.analysed) take_out_load_coupling(trace);
   return trace;
 }
 
@@ -304,7 +322,7 @@ bool undo_needless_corrections(const std::vector<TraceInput>& inputs, const Iden
     Identification plain = prepare(inputs[k], options, motions[k]);
     if (plain.motion.plateau_correction != PlateauCorrection::none) continue;  // asked for by its effect
     const Measure gap = gap_beside_creep(fit.model, fit.values(), plain.motion, plain.segmentation);
-    if (std::abs(gap.value) > std::max(kLeastGap, kGapSigmas * gap.std_error)) continue;
+    if (!plain.analysed || !(std::abs(gap.value) <= std::max(kLeastGap, kGapSigmas * gap.std_error))) continue;
     traces[k] = std::move(plain);
     undone = true;
   }
@@ -315,18 +333,20 @@ bool undo_needless_corrections(const std::vector<TraceInput>& inputs, const Iden
 void add_motion(const std::vector<Identification>& traces, const std::optional<Fit>& uncorrected,
                 DiagnosedTraces& out) {
   Diagnosis& diagnosis = out.diagnosis;
-  const std::vector<EffectFinding> found = motion_findings(traces[0].motion);
+  const std::vector<EffectFinding> found = motion_findings(traces[0]);
   std::vector<EffectFinding> findings;
   for (const Effect& effect : effect_catalogue()) {
     const std::string key = describe(effect).key;
     const auto named = [&](const EffectFinding& f) { return f.key == key; };
-    if (!is_of_motion(effect)) {
-      const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(), named);
-      if (at != diagnosis.effects.end()) findings.push_back(*at);
-      continue;
+    const auto before = std::find_if(found.begin(), found.end(), named);
+    const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(), named);
+    if (before != found.end()) {
+      findings.push_back(*before);
+    } else if (is_of_motion(effect)) {
+      findings.push_back(not_found(effect, traces));
+    } else if (at != diagnosis.effects.end()) {
+      findings.push_back(*at);
     }
-    const auto at = std::find_if(found.begin(), found.end(), named);
-    findings.push_back(at != found.end() ? *at : not_found(effect, traces));
   }
   for (const EffectFinding& finding : diagnosis.effects) {  // the user's own
     const auto same = [&](const EffectFinding& f) { return f.key == finding.key; };
@@ -349,8 +369,8 @@ void add_motion(const std::vector<Identification>& traces, const std::optional<F
     Rung rung = diagnosis.ladder.front();
     rung.added = finding.key;
     for (const EffectFinding& other : found) {
-      const bool pair = other.status == EffectStatus::equivalent && finding.key != "speed-ripple" &&
-                        finding.key != "velocity-highpass";
+      const bool pair = other.status == EffectStatus::equivalent &&
+                        (finding.key == "radius-offset" || finding.key == "velocity-gain");
       if (pair) rung.equivalent.push_back(other.key);
     }
     rungs.push_back(rung);

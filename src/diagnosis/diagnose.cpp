@@ -142,10 +142,9 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   const std::vector<Candidate> all = candidates(records, fine, own);
 
   const std::vector<BaseLaw> laws = base_laws(records, given);
-  const std::vector<Ladder> ladders =
-      climb(bench, laws, all, Limits(), options.most_effects,
-            [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
-  const Ladder& ladder = ladders[told_ladder(bench, ladders)];
+  std::vector<Ladder> ladders = climb(bench, laws, all, Limits(), options.most_effects,
+                                      [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
+  Ladder& ladder = ladders[told_ladder(bench, ladders)];
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;
@@ -161,6 +160,12 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
     warm.start = trial.p;
     out.fits[k] = fit_model(trial.model, records, fine, instruments, warm);
   });
+  // A rung that cannot be fitted at full resolution is none.
+  const auto failed = std::find_if(out.fits.begin() + 1, out.fits.end(), [](const Fit& rung) {
+    return rung.parameters.empty() || !(rung.error.held_out_rmse > 0);
+  });
+  ladder.steps.resize(static_cast<std::size_t>(failed - out.fits.begin()));
+  out.fits.erase(failed, out.fits.end());
   Floor floor = out.fits.back().floor;
   const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
   floor.noise = bench.noise;
@@ -190,7 +195,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
                       : ladder.steps.size() > 1 ? Verdict::effect_found
                                                 : Verdict::sufficient;
   // Far above the floor, an error that goes with no variable of these data is not explained either.
-  constexpr double kFar = 2;
+  const double kFar = ladder.steps.size() > 1 ? 2 : 1.5;
   const double left_over = out.fits.back().error.held_out_rmse / floor.rmse;
   if (structure.empty() && left_over > kFar) {
     diagnosis.verdict = Verdict::unexplained;

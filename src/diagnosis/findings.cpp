@@ -151,11 +151,10 @@ void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& 
   const double gain = top.stick.rigid - top.stick.left;
   if (!(gain > 0) || !(above > 0)) return;
   double p_value = 1;
-  for (const LadderStep& step : ladder.steps) {
-    for (const Judged& judged : step.judged) {
-      const bool added = step.added == judged.candidate && judged.trial.stick.rows > 0;
-      if (added) p_value = judged.p_value;
-    }
+  const auto creeping = std::find_if(ladder.steps.begin(), ladder.steps.end(),
+                                     [](const LadderStep& step) { return step.trial.stick.rows > 0; });
+  for (const Judged& judged : creeping->judged) {
+    if (creeping->added == judged.candidate) p_value = judged.p_value;
   }
   const Share share = {"stick", std::min(1.0, gain / above), p_value};
   const auto below = [&](const Share& other) { return other.share < share.share; };

@@ -18,14 +18,29 @@ namespace {
 constexpr double kToldApart = 40;
 constexpr double kToldApartSize = 0.003;  ///< and by this part of the squares of the noise
 
+/// The data draw a parameter that is on its bound beyond it: a tenth of its range inside, the others following, the
+/// squares are larger than chance would make them.
+bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
+  constexpr double kInside = 0.1, kSigmas = 3;
+  const Parameter& q = trial.model.parameters()[k].parameter;
+  const double range = (q.upper - q.lower) * q.si, middle = 0.5 * (q.upper + q.lower) * q.si;
+  Linearised inside = trial.linear;
+  const double before = sum(squares_after(inside, gauss_newton_step(inside)));
+  const double step = kInside * range * (trial.p[k] > middle ? -1 : 1);
+  for (Eigen::MatrixXd& rows : inside.rows) rows.col(rows.cols() - 1) += rows.col(static_cast<Eigen::Index>(k)) * step;
+  return sum(squares_after(inside, gauss_newton_step(inside))) - before > kSigmas * kSigmas * least_squares;
+}
+
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
-/// the effect says.
-bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info) {
+/// the effect says, where the data draw it there. noise: variance of a residual, correlation counted.
+bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info, double noise) {
   const std::size_t offset = trial.model.offset_of(info.key);
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
-    if (telling && trial.at_bound[offset + k]) return false;
+    const bool away = k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > 0.5 * (q.upper - q.lower) * q.si;
+    const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, noise);
+    if (telling && trial.at_bound[offset + k] && !flat) return false;
     if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
       return false;
   }
@@ -66,21 +81,14 @@ double few_frequencies(double n) {
 /// Here the squares themselves are compared, with the correlation between cycles as it is.
 bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info, double tests,
                      const Limits& limits, double floor) {
+  // A break-away that is high by chance makes its own stick longer, and explains some of itself like that.
+  constexpr double kLeastSize = 0.15;
   const double fall = poorer.plain_minimum - trial.plain_minimum;
-  if (poorer.plain_held_out - trial.plain_held_out <= limits.least_size * floor) return false;
+  if (poorer.plain_held_out - trial.plain_held_out <= kLeastSize * floor) return false;
   const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
   const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
   return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < limits.p_value;
-}
-
-/// What a trial gains from the stick but has not earned: of all that v_r shows there beyond its noise a law of creep
-/// must explain most; less than that, something else moves the block.
-double unearned(const Bench& bench, const Trial& trial) {
-  constexpr double kLeastPart = 0.5;
-  const double gain = trial.stick.rigid - trial.stick.left;
-  const double shown = trial.stick.rigid - trial.stick.rows * bench.noise * bench.noise;
-  return gain > 0 && gain < kLeastPart * shown ? gain : 0;
 }
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect.
@@ -98,13 +106,12 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   const auto cycles = static_cast<double>(trial.held_out.size());
   const bool few = out.design_effect > 1.2 && !is_narrow(info);
   const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
-  const double less = unearned(bench, trial) - unearned(bench, poorer);
   out.p_value = std::min(
-      1.0, tests * fall_p_value(poorer.squares - trial.squares - less, added.free, noise, out.design_effect, freedom));
-  out.fall = poorer.held_out_squares - trial.held_out_squares - less;
+      1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
+  out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = bench.floor_squares(trial.whitening);
-  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares - less) / floor);
-  out.plausible = is_plausible(bench, trial, info);
+  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
+  out.plausible = is_plausible(bench, trial, info, noise * out.design_effect);
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
   // cycles that took no part, needs no such test.
   const double above = poorer.held_out_squares - bench.noise_squares();
@@ -204,12 +211,16 @@ std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const 
     if (judged.trial.usable) best = std::min(best, judged.trial.held_out_squares);
   }
   const double fallen = coarse_top.held_out_squares - best;
+  double next = 0;  // what may be added before a line
+  for (const Judged& judged : out) {
+    if (judged.passes) next = std::max(next, judged.fall);
+  }
   run_tasks(out.size(), bench.threads, [&](std::size_t t) {
     Judged& judged = out[t];
     if (is_narrow(candidates[judged.candidate].info)) {
       // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
       constexpr double kPutOff = 0.3;
-      judged.hopeless = openings[t].starts.empty() || openings[t].promised < kPutOff * fallen;
+      judged.hopeless = openings[t].starts.empty() || openings[t].promised < kPutOff * next;
       if (!judged.hopeless) search(t, bench.fine, top);
       return;
     }
@@ -239,24 +250,25 @@ std::size_t index_of(const FrictionModel& model, const std::string& key) {
   return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
 }
 
-/// Takes step s out of a ladder. The steps that stay are put in order anew, from the top down: what was found beside an
-/// effect that is gone need not have come first.
-void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s) {
+/// Takes step s out of a ladder; `top` is the last trial without its effect. The steps that stay are put in order anew,
+/// from the top down: what was found beside an effect that is gone need not have come first.
+void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s, Trial top) {
   const auto key = [&](const LadderStep& step) { return candidates[*step.added].info.key; };
-  Trial top = try_without(bench, bench.fine, ladder.top(), index_of(ladder.top().model, key(ladder.steps[s])));
   ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
   for (std::size_t last = ladder.steps.size() - 1; last > 0; --last) {
     std::size_t least = last;
     Trial below;
-    for (std::size_t k = 1; k <= last; ++k) {
+    for (std::size_t k = 1; k <= last && last > 1; ++k) {
       Trial without = try_without(bench, bench.fine, top, index_of(top.model, key(ladder.steps[k])));
       if (!without.usable || (below.usable && without.held_out_squares >= below.held_out_squares)) continue;
       below = std::move(without);
       least = k;
     }
     std::swap(ladder.steps[least], ladder.steps[last]);
-    ladder.steps[last].trial = std::exchange(top, std::move(below));
+    ladder.steps[last].trial = std::move(top);
     look_beside(bench, ladder.steps[last]);
+    if (!below.usable) return;  // nothing lower can be fitted: the steps below stay as they were
+    top = std::move(below);
   }
 }
 
@@ -285,13 +297,13 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
   for (std::size_t s = 1; s + 1 < ladder.steps.size();) {
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
-    const Trial without = try_without(bench, bench.fine, full, index_of(full.model, candidate.info.key));
+    Trial without = try_without(bench, bench.fine, full, index_of(full.model, candidate.info.key));
     const Judged needed = compare(bench, bench.fine, without, full, candidate.info, 1, limits);
     if (!without.usable || needed.passes) {
       ++s;
       continue;
     }
-    remove(bench, ladder, candidates, s);
+    remove(bench, ladder, candidates, s, std::move(without));
     s = 1;
   }
 }
@@ -323,7 +335,9 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
 
 /// What is done once, when nothing more passes.
 void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+  const std::size_t before = ladder.steps.size();
   prune(bench, ladder, candidates, limits);
+  if (ladder.steps.size() < before) ladder.last = judge_all(bench, ladder.steps.back(), candidates, limits);
   withdraw(ladder);
   // What was added after all is told apart: both are there.
   for (LadderStep& step : ladder.steps) {
@@ -344,11 +358,23 @@ Ladder start_ladder(const Bench& bench, BaseLaw law) {
   return ladder;
 }
 
+/// The second predicts held-out cycles better, or as well with fewer parameters.
+bool is_better(const Bench& bench, const Trial& first, const Trial& second) {
+  if (!second.usable || !first.usable) return second.usable;
+  const double difference = first.held_out_squares - second.held_out_squares;
+  const double noise = std::min(noise_of(bench.fine, first), noise_of(bench.fine, second));
+  // A longer ladder must earn every rung that the other does without.
+  const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
+  const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.noise_squares();
+  const bool apart = std::abs(difference) > std::max(kToldApart * noise, least);
+  return apart || more == 0 ? difference > 0 : second.p.size() < first.p.size();
+}
+
 /// A finished ladder leaves nothing, is no longer and does as well.
 bool is_beaten(const Bench& bench, const Ladder& ladder, const std::vector<Ladder>& all) {
   return std::any_of(all.begin(), all.end(), [&](const Ladder& other) {
     return other.finished && other.top().usable && largest_fall(other.steps.back()) == 0 &&
-           ladder.steps.size() >= other.steps.size() && better_ladder(bench, {other, ladder}) == 0;
+           ladder.steps.size() >= other.steps.size() && !is_better(bench, other.top(), ladder.top());
   });
 }
 
@@ -378,19 +404,7 @@ std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
 std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < ladders.size(); ++k) {
-    const Trial &first = ladders[best].top(), &second = ladders[k].top();
-    if (!second.usable) continue;
-    if (!first.usable) {
-      best = k;
-      continue;
-    }
-    const double difference = first.held_out_squares - second.held_out_squares;
-    const double noise = std::min(noise_of(bench.fine, first), noise_of(bench.fine, second));
-    // A longer ladder must earn every rung that the other does without.
-    const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
-    const double least = std::max(kToldApartSize, 0.02 * static_cast<double>(more)) * bench.noise_squares();
-    const bool apart = std::abs(difference) > std::max(kToldApart * noise, least);
-    if (apart || more == 0 ? difference > 0 : second.p.size() < first.p.size()) best = k;
+    if (is_better(bench, ladders[best].top(), ladders[k].top())) best = k;
   }
   return best;
 }

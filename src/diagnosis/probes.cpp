@@ -280,32 +280,19 @@ std::optional<Probe> over_load(const Bench& bench, const Trial& trial, const Gro
   return probe;
 }
 
-/// Logarithm of the stick time of each slip, without what its own break-away level made of it: at the same speed a
-/// slip that breaks away higher was loaded for longer. NaN where it is not known.
-std::vector<double> given_stick_times(const Observations& o) {
-  std::vector<double> mean, count;
-  for (const auto& range : o.slips) {
-    if (range.record >= mean.size()) {
-      mean.resize(range.record + 1, 0.0);
-      count.resize(range.record + 1, 0.0);
-    }
-    if (!range.from_stick) continue;
-    mean[range.record] += range.break_away_friction;
-    count[range.record] += 1;
-  }
+/// Logarithm of the stick time of each slip. NaN where it is not known.
+std::vector<double> log_stick_times(const Observations& o) {
   std::vector<double> out;
   for (const auto& range : o.slips) {
-    const double pulled = std::abs(range.stick_slope) * range.stick_time;
-    const bool known = range.from_stick && std::isfinite(pulled) && pulled > 0;
-    const double level = known ? range.break_away_friction - mean[range.record] / count[range.record] : 0;
-    out.push_back(known ? std::log(range.stick_time) - level / pulled : std::numeric_limits<double>::quiet_NaN());
+    const bool known = range.from_stick && std::isfinite(range.stick_time) && range.stick_time > 0;
+    out.push_back(known ? std::log(range.stick_time) : std::numeric_limits<double>::quiet_NaN());
   }
   return out;
 }
 
 std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
   const Observations& o = bench.coarse.observations;
-  const std::vector<double> given = given_stick_times(o);
+  const std::vector<double> given = log_stick_times(o);
   std::vector<double> sticks;
   for (const double x : given) {
     if (std::isfinite(x)) sticks.push_back(x);

@@ -36,11 +36,19 @@ ModelResiduals::StickSquares all_sticks(const std::vector<ModelResiduals::StickS
   return all;
 }
 
-/// Fills what a trial says from its parameters.
-void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
+/// Whether a law of creep has earned what it gains in stick: of all that v_r shows there beyond its noise it must
+/// explain most; less than that, something else moves the block.
+bool is_earned(const ModelResiduals::StickSquares& stick, double noise) {
+  constexpr double kLeastPart = 0.5;
+  const double gain = stick.rigid - stick.left, shown = stick.rigid - stick.rows * noise * noise;
+  return gain <= 0 || gain >= kLeastPart * shown;
+}
+
+/// Fills what a trial says from its parameters; what is to be taken off the squares for the stick is returned.
+double judge(const Bench& bench, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
   trial.linear.rows = residuals.white_rows(trial.p.data());
   trial.usable = trial.linear.finite();
-  if (!trial.usable) return;
+  if (!trial.usable) return 0;
   const std::size_t n = trial.p.size();
   trial.at_bound.assign(n, false);
   trial.linear.free.assign(n, true);
@@ -50,31 +58,36 @@ void judge(const Blocks& blocks, const ModelResiduals& residuals, const Bounds& 
     trial.linear.free[k] = !trial.at_bound[k];
   }
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
-  trial.held_out = held_out_squares(trial.linear, blocks);
+  trial.held_out = held_out_squares(trial.linear, bench.blocks);
   pay_for_scatter(trial.whitening, squares);
   pay_for_scatter(trial.whitening, trial.held_out);
   const std::vector<ModelResiduals::StickSquares> sticks = residuals.stick_squares(trial.p.data());
   trial.stick = all_sticks(sticks);
+  const bool earned = is_earned(trial.stick, bench.noise);
+  double off = 0;
   for (std::size_t c = 0; c < sticks.size(); ++c) {
-    squares[c] -= sticks[c].rigid;
-    trial.held_out[c] -= sticks[c].rigid;
+    const double own = earned ? sticks[c].rigid : sticks[c].left;
+    squares[c] -= own;
+    trial.held_out[c] -= own;
+    off += own;
   }
+  if (!earned) trial.stick = {};
   trial.squares = sum(squares);
   trial.held_out_squares = sum(trial.held_out);
+  return off;
 }
 
-/// The same as if there were no scatter to whiten against.
-void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, Trial& trial) {
+/// The same as if there were no scatter to whiten against. off: for the stick.
+void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, double off, Trial& trial) {
   Linearised& plain = trial.plain;
   plain.rows = residuals.white_rows(trial.p.data());
   plain.free = trial.linear.free;
-  const double rigid = trial.stick.rigid;
   const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(trial.p.size()));
-  trial.plain_squares = sum(squares_after(plain, stay)) - rigid;
+  trial.plain_squares = sum(squares_after(plain, stay)) - off;
   const Eigen::VectorXd step = gauss_newton_step(plain);
   for (Eigen::MatrixXd& rows : plain.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
-  trial.plain_minimum = sum(squares_after(plain, stay)) - rigid;
-  trial.plain_held_out = sum(held_out_squares(plain, blocks)) - rigid;
+  trial.plain_minimum = sum(squares_after(plain, stay)) - off;
+  trial.plain_held_out = sum(held_out_squares(plain, blocks)) - off;
 }
 
 SolverOptions quick_search(int iterations) {
@@ -142,8 +155,8 @@ Trial try_model(const Bench& bench, const Level& level, const FrictionModel& mod
   trial.whitening = residuals_of(observations, model, {}).whitening_at(trial.p.data());
   const ModelResiduals again = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
-  judge(bench.blocks, again, bounds, trial);
-  if (trial.usable) judge_plainly(bench.blocks, residuals_of(observations, model, {}), trial);
+  const double off = judge(bench, again, bounds, trial);
+  if (trial.usable) judge_plainly(bench.blocks, residuals_of(observations, model, {}), off, trial);
   return trial;
 }
 

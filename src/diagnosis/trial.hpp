@@ -31,7 +31,9 @@ struct Trial {
   double held_out_squares = 0;   ///< sum of held_out
   Linearised plain;              ///< not whitened, stepped to its own minimum
   double plain_minimum = 0, plain_held_out = 0;  ///< squares there, and on held-out cycles
-  ModelResiduals::StickSquares stick;            ///< of all sticks; zero where the model is rigid there
+  /// Of all sticks; zero where the model is rigid there, and where it explains so little of what v_r shows in stick
+  /// that something else moves the block: it is then judged by the slips alone.
+  ModelResiduals::StickSquares stick;
 };
 
 /// The observations at one resolution.

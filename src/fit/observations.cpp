@@ -64,6 +64,26 @@ void trim_rest(const Motion& motion, Span& samples) {
   }
 }
 
+/// Takes out of each stick time what the levels of its own re-stick and break-away made of it. A break-away that is
+/// high by chance is reached later: left in, its scatter would pass for ageing. What stays is how long the disc took.
+void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips) {
+  constexpr double kLeastLeft = 0.1;
+  std::vector<double> pulled(slips.size(), std::numeric_limits<double>::quiet_NaN());
+  double sum = 0, count = 0;
+  for (std::size_t k = 1; k < slips.size(); ++k) {
+    if (!slips[k].from_stick) continue;
+    pulled[k] = slips[k].break_away_friction - slips[k].direction * slips[k - 1].tail_friction;
+    if (!std::isfinite(pulled[k])) continue;
+    sum += pulled[k];
+    count += 1;
+  }
+  for (std::size_t k = 1; k < slips.size(); ++k) {
+    const double late = (pulled[k] - sum / count) / std::abs(slips[k].stick_slope);
+    if (!std::isfinite(late)) continue;
+    slips[k].stick_time = std::max(kLeastLeft * slips[k].stick_time, slips[k].stick_time - late);
+  }
+}
+
 /// One range per slip of the segmentation; slips without stick are cut into pieces of about equal length.
 std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Observations::Range> ranges;
@@ -102,6 +122,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
     }
   }
   fill_stick_times(ranges);
+  free_stick_times_of_their_own_level(ranges);
   return ranges;
 }
 

@@ -1,5 +1,6 @@
 #include "stick.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -55,7 +56,6 @@ double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p
 
 Measure gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
                          const Segmentation& segmentation) {
-  constexpr double kPartOfCreep = 0.3;  // its law holds in equilibrium, and every stick has a mu_s of its own
   const Prediction predict(model, p, motion, segmentation);
   std::vector<double> gaps;
   double sum = 0, creeps = 0;
@@ -73,11 +73,13 @@ Measure gap_beside_creep(const FrictionModel& model, const std::vector<double>& 
     creeps += creep / disc;
   }
   Measure out;
+  out.value = std::numeric_limits<double>::quiet_NaN();
   if (gaps.empty()) return out;
   const auto n = static_cast<double>(gaps.size());
   const MeanError error = mean_error(gaps);
-  out.value = sum / n;
-  out.std_error = std::hypot(error.std_error, kPartOfCreep * creeps / n);
+  const double allowed = creep_law(model).inaccuracy * std::abs(creeps) / n;
+  out.value = std::copysign(std::max(0.0, std::abs(sum / n) - allowed), sum);
+  out.std_error = error.std_error;
   out.degrees_of_freedom = error.degrees_of_freedom;
   return out;
 }

@@ -101,6 +101,10 @@ class Page {
     for (const Identification& trace : result_.traces) {
       for (const std::string& note : trace.notes) remark("", note, trace, said);
       for (const std::string& warning : trace.warnings) remark("warning: ", warning, trace, said);
+      // What is wrong with the data comes before what is wrong with the law.
+      for (const HealthItem& check : trace.motion.health) {
+        if (check.status == HealthItem::Status::problem) remark("problem: ", check.message, trace, said);
+      }
     }
   }
 

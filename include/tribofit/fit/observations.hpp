@@ -31,7 +31,8 @@ struct Observations {
     std::size_t record = 0;          ///< which of several records
     bool from_stick = false;
     double break_away_time = 0;  ///< [s]
-    double stick_time = 0;       ///< [s]; the median where its beginning was not recorded, NaN where none was
+    double stick_time = 0;       ///< [s], without what its own break-away level made of it; the median where its
+                                 ///< beginning was not recorded, NaN where none was
     double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
     double direction = 1;
     double disc_speed = 0;                     ///< omega [rad/s]; 0 where it is not known
