@@ -1,0 +1,147 @@
+/// What a disc that pauses and a load that follows friction show, on records made with a known truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "tribofit/fit/observations.hpp"
+#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/rig.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/segmentation/load_coupling.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+constexpr double kOmega = 0.419, kMuS = 0.509;
+
+struct Made {
+  std::shared_ptr<const Trace> trace;
+  Motion motion;
+  Segmentation segmentation;
+};
+
+/// 30 s of the published 15 mm rig.
+Made make(const std::vector<Effect>& effects, const std::vector<double>& values, const Drive& given, double scatter) {
+  Drive drive = given;
+  drive.radius = 0.015;
+  drive.mean_load = 50;
+  std::vector<double> p = {kMuS, 0.318, 52.14};
+  p.insert(p.end(), values.begin(), values.end());
+  SimulationOptions options;
+  options.duration = 30;
+  options.rate = 5e3;
+  options.settle = 3;
+  options.scatter = {scatter, 0};
+  options.seed = 21;
+  Sensors sensors;
+  sensors.friction_noise = 0.001;
+  sensors.velocity_noise = 2e-5;
+  sensors.seed = 22;
+  const FrictionModel model(BaseLaw::exponential, effects);
+  Hidden hidden = hide(model, p, rig_with_damping_ratio(0.85, 16.2e3, 0.02), drive, options, sensors);
+  Made made;
+  made.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
+  made.motion = compute_motion(Trace(*made.trace));
+  made.segmentation = find_cycles(made.motion);
+  return made;
+}
+
+Drive steady() {
+  Drive drive;
+  drive.speed = constant_speed(kOmega);
+  return drive;
+}
+
+Drive with_pauses() {
+  Drive drive;
+  std::vector<Pause> pauses;
+  for (double t = 1.3, length = 0.3; t < 27; t += length + 1.1, length = length < 2 ? 1.6 * length : 0.3) {
+    pauses.push_back({t, length});
+  }
+  drive.speed = stepped_speed({0}, {kOmega}, pauses);
+  return drive;
+}
+
+double correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mx += x[i] / n;
+    my += y[i] / n;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mx) * (x[i] - mx);
+    yy += (y[i] - my) * (y[i] - my);
+    xy += (x[i] - mx) * (y[i] - my);
+  }
+  return xy / std::sqrt(xx * yy);
+}
+
+TEST(LoadCoupling, ComesBackFromTheLoadChannel) {
+  for (const double kappa : {-0.2, -0.1, 0.1, 0.2}) {
+    Made made = make({make_effect("load-coupling")}, {kappa}, steady(), 0.004);
+    ASSERT_FALSE(made.motion.load.empty());
+    const Measure found = load_coupling(made.motion, made.segmentation);
+    EXPECT_NEAR(found.value, kappa, 0.005) << kappa;
+    uncouple_load(found.value, made.motion);
+    for (const double load : made.motion.load) ASSERT_NEAR(load, 50, 0.25);
+  }
+}
+
+TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
+  Drive drive = steady();
+  drive.load = [](double t) { return 50 + 20 * std::sin(2 * std::numbers::pi * t / 17); };
+  const Made made = make({}, {}, drive, 0.004);
+  const Measure found = load_coupling(made.motion, made.segmentation);
+  EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.01);
+}
+
+TEST(Pauses, BreakAwayAfterAPauseIsReadFromTheStretchThatPulls) {
+  const Made made = make({}, {}, with_pauses(), 0);
+  int after_pause = 0;
+  for (const Cycle& cycle : made.segmentation.cycles) {
+    if (!std::isfinite(cycle.break_away_friction)) continue;
+    EXPECT_NEAR(cycle.break_away_friction, kMuS, 0.003) << cycle.break_away_time;
+    after_pause += cycle.stick_time > 0.4 ? 1 : 0;
+  }
+  EXPECT_GE(after_pause, 8);
+}
+
+TEST(Pauses, StickTimesDoNotFollowTheirOwnBreakAway) {
+  const Made made = make({}, {}, steady(), 0.01);
+  Channels channels;
+  channels.stick_time = true;
+  const Observations observations = observe(made.motion, made.segmentation, channels, 40);
+  std::vector<double> raw, freed, level;
+  for (std::size_t k = 1; k < observations.slips.size(); ++k) {
+    const auto& slip = observations.slips[k];
+    if (!slip.from_stick || !made.segmentation.cycles[slip.segment].stick_complete) continue;
+    raw.push_back(made.segmentation.cycles[slip.segment].stick_time);
+    freed.push_back(slip.stick_time);
+    level.push_back(slip.break_away_friction);
+  }
+  ASSERT_GE(level.size(), 80u);
+  EXPECT_GT(correlation(raw, level), 0.5);
+  EXPECT_LT(std::abs(correlation(freed, level)), 0.3);  // three standard errors of nothing
+}
+
+TEST(Pauses, NameAgeingWhereItIsAndOnlyThere) {
+  for (const bool ages : {false, true}) {
+    const Made made = ages ? make({make_effect("ageing")}, {0.016, 0.1}, with_pauses(), 0.006)
+                           : make({}, {}, with_pauses(), 0.006);
+    TraceInput input;
+    input.trace = made.trace;
+    const DiagnosedTraces result = diagnose({input}, IdentifyOptions());
+    std::vector<std::string> named;
+    for (const Rung& rung : result.diagnosis.ladder) {
+      if (!rung.added.empty()) named.push_back(rung.added);
+    }
+    EXPECT_EQ(named, ages ? std::vector<std::string>{"ageing"} : std::vector<std::string>{});
+  }
+}
+
+}  // namespace
