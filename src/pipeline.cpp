@@ -124,6 +124,11 @@ void require_channels(const IdentifyOptions& options, const Motion& motion, std:
     analysed = false;
   };
   missing(needs.load, !motion.load.empty(), "load");
+  if (needs.force && motion.friction_kind != FrictionKind::force && motion.load.empty() &&
+      !motion.conditions.load.known()) {
+    warnings.push_back("an effect needs the normal force, which is not known: give it with --load 50N");
+    analysed = false;
+  }
   missing(needs.temperature, !motion.temperature.empty(), "temperature");
   missing(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }

@@ -84,11 +84,19 @@ class Sentences {
       case Verdict::not_enough_data:
         break;
     }
-    const std::string reason = d_.messages.empty() ? "too few cycles to hold any out" : d_.messages.front();
-    return "No diagnosis can be made from these data: " + reason + ".";
+    return "No diagnosis can be made from these data: " + obstacle() + ".";
   }
 
  private:
+  /// What stands in the way of any diagnosis.
+  std::string obstacle() const {
+    if (!d_.messages.empty()) return d_.messages.front();
+    for (const Identification& trace : result_.traces) {
+      if (!trace.analysed && !trace.warnings.empty()) return trace.warnings.back();
+    }
+    return "too few cycles to hold any out";
+  }
+
   std::string level(double value) const { return significant(value, 3) + (is_force(result_) ? " N" : ""); }
   double last() const { return d_.ladder.empty() ? std::nan("") : d_.ladder.back().held_out_rmse; }
   std::string law() const { return std::string(to_string(d_.law)); }

@@ -280,6 +280,10 @@ class Page {
     heading("On runs that took no part");
     for (const Confirmation& c : d_.confirmations) {
       const std::string unit = is_force() ? " N" : "";
+      if (!std::isfinite(c.final_rmse)) {
+        line(c.path + ": could not be tried: this run cannot carry the analysis (identify says why)");
+        continue;
+      }
       if (d_.ladder.size() < 2) {
         line(fmt::format("{}: the law leaves {}{}", c.path, significant(c.final_rmse, 3), unit));
         continue;
