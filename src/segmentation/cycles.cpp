@@ -104,7 +104,44 @@ std::vector<Cycle> phases(const Motion& motion, const std::vector<RawSlip>& slip
   return cycles;
 }
 
+/// First samples after a gap in the clock.
+std::vector<std::size_t> gaps_of(const Motion& motion) {
+  constexpr double longest = 1.5;  // samples
+  std::vector<std::size_t> gaps;
+  for (const Step& step : motion.steps) {
+    const std::size_t b = step.begin;
+    if (b > 0 && b < motion.size() && motion.time[b] - motion.time[b - 1] > longest * motion.step) gaps.push_back(b);
+  }
+  return gaps;
+}
+
+/// No phase runs across a gap: nobody knows what happened there. A stick begins anew behind it, a slip ends before it,
+/// and a break-away that was found with samples from both sides is none.
+void cut_at_gaps(const Motion& motion, std::vector<Cycle>& cycles) {
+  for (const std::size_t gap : gaps_of(motion)) {
+    for (Cycle& c : cycles) {
+      const bool in_stick = c.stick.begin < gap && gap <= c.slip.begin,
+                 in_slip = c.slip.begin < gap && gap < c.slip.end;
+      if (in_stick) c.stick.begin = std::min(gap, c.stick.end);
+      if (in_stick || in_slip) c.stick_complete = false;
+      if (in_slip || (in_stick && c.stick.size() < least_stick)) {
+        c.stick = {};
+        c.break_away_time = c.break_away_time_std_error = unknown;
+      }
+      if (!in_slip) continue;
+      c.slip.end = gap;
+      c.slip_complete = false;
+      c.restick_time = unknown;
+    }
+  }
+}
+
 void measure(const Motion& motion, std::vector<Cycle>& cycles) {
+  const std::vector<std::size_t> gaps = gaps_of(motion);
+  const auto torn = [&](std::size_t begin, std::size_t end) {
+    return std::any_of(gaps.begin(), gaps.end(), [&](std::size_t gap) { return begin < gap && gap <= end; });
+  };
+
   const std::span<const double> friction(motion.friction), velocity(motion.relative_velocity);
   for (std::size_t k = 0; k < cycles.size(); ++k) {
     Cycle& c = cycles[k];
@@ -118,7 +155,9 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
       c.break_away_friction = at_break.value;
       c.break_away_friction_std_error = at_break.std_error;
       c.stick_slope = at_break.slope;
-      if (c.stick_complete) c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
+      if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
+        c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
+      }
     }
     const auto [weakest, strongest] = kinematics::extremes(friction.subspan(c.slip.begin, c.slip.size()));
     const auto [slowest, fastest] = kinematics::extremes(velocity.subspan(c.slip.begin, c.slip.size()));
@@ -127,7 +166,8 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
     c.branch_difference = segmentation::branch_difference(velocity.subspan(c.slip.begin, c.slip.size()),
                                                           friction.subspan(c.slip.begin, c.slip.size()), c.direction);
     if (c.slip_complete) c.slip_time = c.restick_time - c.break_away_time;
-    if (k + 1 < cycles.size() && cycles[k + 1].direction == c.direction) {
+    const bool follows = k + 1 < cycles.size() && !torn(c.slip.begin, cycles[k + 1].slip.begin);
+    if (follows && cycles[k + 1].direction == c.direction) {
       c.period = cycles[k + 1].break_away_time - c.break_away_time;
     }
   }
@@ -221,6 +261,7 @@ Segmentation find_cycles(const Motion& motion) {
   result.rms_velocity = rms_block_velocity(motion);
   const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
   result.cycles = phases(motion, slips, t);
+  cut_at_gaps(motion, result.cycles);
   const auto& cycles = result.cycles;
   const bool ends_in_stick =
       !cycles.empty() && cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size();

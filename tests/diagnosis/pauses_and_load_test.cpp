@@ -131,8 +131,8 @@ TEST(Pauses, StickTimesDoNotFollowTheirOwnBreakAway) {
 
 TEST(Pauses, NameAgeingWhereItIsAndOnlyThere) {
   for (const bool ages : {false, true}) {
-    const Made made = ages ? make({make_effect("ageing")}, {0.016, 0.1}, with_pauses(), 0.006)
-                           : make({}, {}, with_pauses(), 0.006);
+    const Made made =
+        ages ? make({make_effect("ageing")}, {0.016, 0.1}, with_pauses(), 0.006) : make({}, {}, with_pauses(), 0.006);
     TraceInput input;
     input.trace = made.trace;
     const DiagnosedTraces result = diagnose({input}, IdentifyOptions());

@@ -42,6 +42,35 @@ void expect_ordered(const Segmentation& s, std::size_t n) {
   EXPECT_LE(at, n);
 }
 
+TEST(Cycles, NoPhaseRunsAcrossAGap) {
+  truth::Rig rig;
+  rig.duration = 12;
+  const truth::Run run = truth::simulate(rig);
+  const Segmentation whole = find_cycles(compute_motion(run.trace));
+  ASSERT_GT(whole.cycles.size(), 20u);
+  const Cycle& torn = whole.cycles[10];
+  // Half a second is lost from the middle of a stick, of a slip, and between the two.
+  for (const std::size_t first :
+       {torn.stick.begin + torn.stick.size() / 2, (torn.slip.begin + torn.slip.end) / 2, torn.slip.end + 1}) {
+    Trace trace = run.trace;
+    const auto begin = static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(0.5 * trace.rate());
+    for (auto* channel : {&trace.time, &trace.friction, &trace.velocity}) {
+      channel->erase(channel->begin() + begin, channel->begin() + end);
+    }
+    trace.steps = {{0, first, "", {}}, {first, trace.time.size(), "", {}}};
+    const Segmentation s = find_cycles(compute_motion(std::move(trace)));
+    for (const Cycle& c : s.cycles) {
+      if (std::isfinite(c.break_away_friction)) {
+        EXPECT_NEAR(c.break_away_friction, whole.cycles[10].break_away_friction, 0.02);
+      }
+      EXPECT_FALSE(c.stick_time > 1.2 * whole.stick_time.value) << c.stick_time;
+      EXPECT_FALSE(c.slip_time > 1.2 * whole.slip_time.value) << c.slip_time;
+      EXPECT_FALSE(c.period > 1.2 / whole.frequency.value) << c.period;
+    }
+  }
+}
+
 TEST(Cycles, CountsAndMeasuresOfATwin) {
   for (double rho : {0.0, 0.9}) {
     for (double scatter : {0.0, 0.004, 0.012}) {
