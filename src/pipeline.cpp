@@ -410,7 +410,8 @@ Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, co
   Confirmation out;
   out.path = input.path;
   out.base_rmse = out.final_rmse = std::numeric_limits<double>::quiet_NaN();
-  const Identification trace = prepare(input, options, options.motion);
+  MotionOptions motion = options.motion;
+  const Identification trace = prepare_to_diagnose(input, options, motion);
   if (!trace.analysed) return out;
   const Fit frozen_base = frozen_on(base, trace.motion, trace.segmentation);
   const Fit frozen_last = frozen_on(last, trace.motion, trace.segmentation);

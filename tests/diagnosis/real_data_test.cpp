@@ -82,7 +82,8 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   const DiagnosedTraces alone = diagnosed("drill-string/drillstring_175.csv", read);
   ASSERT_TRUE(alone.analysed);
   EXPECT_EQ(alone.traces[0].motion.friction_kind, FrictionKind::force);
-  EXPECT_GT(fall(alone), 0);
+  // A quarter is aimed at: a plain regression on velocity, acceleration and time reaches 0.37 in sample.
+  EXPECT_GE(fall(alone), 0.15);
   EXPECT_EQ(alone.diagnosis.verdict, Verdict::unexplained);
   const bool said = std::any_of(alone.diagnosis.remaining.begin(), alone.diagnosis.remaining.end(),
                                 [](const Share& s) { return s.share > 0; });
@@ -91,7 +92,7 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   read.columns["load"] = "weight_on_bit_N";
   const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read);
   ASSERT_TRUE(weighted.analysed);
-  EXPECT_GE(fall(weighted), 0);
+  EXPECT_GT(fall(weighted), 0.02);  // a tenth is aimed at
   EXPECT_EQ(weighted.diagnosis.verdict, Verdict::unexplained);
 }
 

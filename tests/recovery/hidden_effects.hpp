@@ -169,7 +169,7 @@ struct KnownFit {
   std::vector<double> truth;  ///< of its parameters [SI]
 };
 /// What the fit does where nothing had to be found first.
-KnownFit fit_known(const Case& c, const Simulated& simulated);
+KnownFit fit_known(const Simulated& simulated);
 
 /// Upper end of the one-sided 95 % interval of a rate after `hits` in `n` (Clopper-Pearson).
 double upper_bound_95(std::size_t hits, std::size_t n);

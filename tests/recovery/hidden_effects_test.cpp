@@ -45,14 +45,8 @@ std::vector<Case> slice(Kind kind, const PlanOptions& options) {
   return cases;
 }
 
-/// What takes longest is left to the full benchmark: joint records, and effects whose like is in the slice.
-bool is_costly(const Case& c) {
-  return c.setting == Setting::four_speeds || c.hidden[0].key == "rate-state" || c.hidden[0].key == "run-in" ||
-         c.hidden[0].key == "heating";
-}
-
 constexpr PlanOptions kSlice = {
-    .runs = 1, .pairs = 0, .nothing = 8, .aliens = 2, .unknowable = 1, .largest_only = true};
+    .runs = 1, .pairs = 0, .nothing = 10, .aliens = 2, .unknowable = 1, .largest_only = true};
 
 TEST(HiddenEffects, EveryEffectOfTheCatalogueIsInTheBenchmark) {
   std::set<std::string> hidden;
@@ -79,9 +73,7 @@ TEST(HiddenEffects, ACaseFollowsFromItsNameAlone) {
 }
 
 TEST(HiddenEffects, AreNamed) {
-  std::vector<Case> cases = slice(Kind::single, kSlice);
-  std::erase_if(cases, is_costly);
-  const std::vector<Outcome> outcomes = run_cases(cases, 0);
+  const std::vector<Outcome> outcomes = run_cases(slice(Kind::single, kSlice), 0);
   EXPECT_GE(count_right(outcomes), outcomes.size() - 3);
 }
 
@@ -89,7 +81,7 @@ TEST(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
   const std::vector<Outcome> outcomes = run_cases(slice(Kind::nothing, kSlice), 0);
   for (const Outcome& o : outcomes) EXPECT_TRUE(o.names.empty()) << o.of.name << ": " << names(o);
   // The verdict may call scatter a structure now and then.
-  EXPECT_GE(count_right(outcomes), outcomes.size() - 2);
+  EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
 }
 
 TEST(HiddenEffects, OfNoCatalogueAreCalledUnexplained) {
