@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "change_point.hpp"
 #include "errors.hpp"
 #include "influence.hpp"
 #include "messages.hpp"
@@ -59,14 +61,18 @@ struct Job {
   ModelResiduals::Options loss{};
   ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
-  ModelResiduals residuals(const std::vector<std::size_t>& slips) const {
+  ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
     ModelResiduals out(model, observations, slips, loss);
-    if (whitening.part > 0) out.whiten(whitening, true);
+    if (whitening.part > 0) out.whiten(whitening, own_levels);
     return out;
   }
   SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
+                     const SolverOptions& solver, const Bounds& within) const {
+    return minimize(residuals(slips), start, within.lower, within.upper, solver);
+  }
+  SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
                      const SolverOptions& solver) const {
-    return minimize(residuals(slips), start, bounds.lower, bounds.upper, solver);
+    return solve(slips, start, solver, bounds);
   }
 };
 
@@ -88,16 +94,22 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
     fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
   const std::vector<std::size_t> all = all_slips(job.observations);
   std::vector<double> p = job.solve(all, tries[best].p, quick).p;
+  const std::optional<ChangePoint> change = change_point_of(job.model);
+  Bounds held = job.bounds;
   // The direction in which a slip scatters is that of the law: known better once it has been taken out.
   const ModelResiduals plain(job.model, job.observations, all, job.loss);
   constexpr int kPasses = 3;
   for (int pass = 0; pass < kPasses; ++pass) {
     job.whitening = plain.whitening_at(p.data());
-    if (pass < kPasses - 1) p = job.solve(all, p, quick).p;
+    if (change) {  // slips at levels of their own would hide a change that is misplaced
+      p[change->time] = best_change(*change, job.residuals(all, false), job.observations, p);
+      held.lower[change->time] = held.upper[change->time] = p[change->time];
+    }
+    if (pass < kPasses - 1) p = job.solve(all, p, quick, held).p;
   }
   SolverOptions careful;
   careful.relative_cost = 1e-13;  // along a flat valley nothing is gained by going on
-  return job.solve(all, p, careful);
+  return job.solve(all, p, careful, held);
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
@@ -185,35 +197,6 @@ bool on_bound(double value, double lower, double upper) {
 std::string in_newtons(const std::string& unit) {
   if (unit == "1") return "N";
   return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
-}
-
-/// How far a parameter may move from its best value, the others staying, before the squares tell (a rise by
-/// chi-squared's 95 % point). For places where the derivative is nil: the time of a step that happened in stick.
-std::pair<double, double> silent_interval(const Job& job, const ModelResiduals& residuals, std::vector<double> p,
-                                          std::size_t k) {
-  constexpr double kRise = 3.84;
-  const auto squares = [&](double value) {
-    p[k] = value;
-    double total = 0;
-    for (const double s : residuals.squares(p.data())) total += s;
-    return total;
-  };
-  const double best = p[k], least = squares(best);
-  const double noise = least / std::max(1.0, static_cast<double>(job.observations.size()));
-  const auto reach = [&](double bound) {
-    double inside = 0, outside = 1e-7;
-    while (outside < 1 && squares(best + outside * (bound - best)) < least + kRise * noise) {
-      inside = outside;
-      outside *= 2;
-    }
-    outside = std::min(outside, 1.0);
-    for (int i = 0; i < 20; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (squares(best + middle * (bound - best)) < least + kRise * noise ? inside : outside) = middle;
-    }
-    return best + outside * (bound - best);
-  };
-  return {reach(job.bounds.lower[k]), reach(job.bounds.upper[k])};
 }
 
 void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution,
@@ -346,12 +329,16 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
                       "the model is not finite on these data: an effect or formula divides by zero, "
                       "overflows or leaves its domain");
   }
-  const std::vector<bool> silent = equations.silent();
+  std::vector<bool> silent = equations.silent();
+  // A change point is known far better than what depends on it smoothly, or not by a derivative: held for the others.
+  const std::optional<ChangePoint> change = published ? std::nullopt : change_point_of(model);
+  if (change) silent[change->time] = false;
   std::vector<bool> free(p.size()), inside(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
     free[k] = !silent[k] && job.bounds.lower[k] < job.bounds.upper[k];
     inside[k] = free[k] && !on_bound(p[k], job.bounds.lower[k], job.bounds.upper[k]);
   }
+  if (change) free[change->time] = inside[change->time] = false;
   Eigen::MatrixXd influences =
       published ? published_influence(equations, free, extremes) : influence(equations, inside);
   if (!published && inside != free) {
@@ -363,14 +350,11 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     }
   }
   fill_parameters(job, given, solution, start, influences, fit);
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    FitParameter& parameter = fit.parameters[k];
-    const double range = job.bounds.upper[k] - job.bounds.lower[k];
-    if (!inside[k] || parameter.parameter.name != "t_c") continue;
-    // Its likelihood is flat with steep walls: a derivative says nothing of it.
-    std::tie(parameter.lower95, parameter.upper95) = silent_interval(job, residuals, p, k);
-    parameter.std_error = std::min(range, (parameter.upper95 - parameter.lower95) / std::sqrt(12.0));
-    inside[k] = false;
+  if (change) {
+    FitParameter& time = fit.parameters[change->time];
+    std::tie(time.lower95, time.upper95) = interval_of_change(*change, job.residuals(all_slips(observations), false),
+                                                              observations, equations, job.bounds, p);
+    time.std_error = (time.upper95 - time.lower95) / 4;
   }
 
   const FullRecord record(records, observations, model.needs());

@@ -14,23 +14,28 @@ struct Line {
   bool known = false;
 };
 
+/// Noise on friction would flatten the line of least squares. Friction a twentieth of the cycle earlier and later
+/// serves as an instrument: it follows the same course and does not share the noise (Reiersol 1945).
 Line line_of(const Motion& motion, std::size_t begin, std::size_t end) {
   Line line;
-  const auto n = static_cast<double>(end - begin);
-  double mean_load = 0, mean_friction = 0;
-  for (std::size_t i = begin; i < end; ++i) {
+  const std::size_t shift = (end - begin) / 20;
+  const auto n = static_cast<double>(end - begin - 2 * shift);
+  const auto instrument = [&](std::size_t i) { return motion.friction[i - shift] + motion.friction[i + shift]; };
+  double mean_load = 0, mean_friction = 0, mean_instrument = 0;
+  for (std::size_t i = begin + shift; i < end - shift; ++i) {
     mean_load += motion.load[i] / n;
     mean_friction += motion.friction[i] / n;
+    mean_instrument += instrument(i) / n;
   }
-  double product = 0, square = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double x = motion.friction[i] - mean_friction;
-    product += x * (motion.load[i] - mean_load);
-    square += x * x;
+  double with_load = 0, with_friction = 0;
+  for (std::size_t i = begin + shift; i < end - shift; ++i) {
+    const double z = instrument(i) - mean_instrument;
+    with_load += z * (motion.load[i] - mean_load);
+    with_friction += z * (motion.friction[i] - mean_friction);
   }
-  line.known = square > 0;
+  line.known = with_friction > 0;
   if (!line.known) return line;
-  line.slope = product / square;
+  line.slope = with_load / with_friction;
   line.level = mean_load - line.slope * mean_friction;
   return line;
 }
