@@ -250,11 +250,10 @@ std::size_t index_of(const FrictionModel& model, const std::string& key) {
   return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
 }
 
-/// Takes step s out of a ladder; `top` is the last trial without its effect. The steps that stay are put in order anew,
-/// from the top down: what was found beside an effect that is gone need not have come first.
-void remove(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, std::size_t s, Trial top) {
+/// Puts the steps of a ladder in order anew, from the top down: what was found beside an effect that is gone need not
+/// have come first. top: the trial with the effects of all its steps.
+void put_in_order(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, Trial top) {
   const auto key = [&](const LadderStep& step) { return candidates[*step.added].info.key; };
-  ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
   for (std::size_t last = ladder.steps.size() - 1; last > 0; --last) {
     std::size_t least = last;
     Trial below;
@@ -303,9 +302,64 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
       ++s;
       continue;
     }
-    remove(bench, ladder, candidates, s, std::move(without));
+    ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
+    put_in_order(bench, ladder, candidates, std::move(without));
     s = 1;
   }
+}
+
+/// The model of `without` with the effect of a judged candidate, at the values found when it was judged.
+Trial try_instead(const Bench& bench, const Trial& without, const Candidate& candidate, const Trial& judged) {
+  FrictionModel model = with_effect(without.model, candidate.effect);
+  const std::size_t offset = model.offset_of(candidate.info.key), added = candidate.info.parameters.size();
+  const std::size_t from = judged.model.offset_of(candidate.info.key);
+  std::vector<double> start = without.p;
+  start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset),
+               judged.p.begin() + static_cast<std::ptrdiff_t>(from),
+               judged.p.begin() + static_cast<std::ptrdiff_t>(from + added));
+  return try_model(bench, bench.fine, model, std::move(start));
+}
+
+/// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with
+/// those that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
+/// replaced.
+bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+  constexpr double kNearly = 0.5;
+  for (std::size_t s = 1; s < ladder.steps.size() && ladder.steps.size() > 2; ++s) {
+    LadderStep& step = ladder.steps[s];
+    const Trial& full = ladder.top();
+    const std::vector<std::string> present = full.model.effect_keys();
+    const auto chosen = std::find_if(step.judged.begin(), step.judged.end(),
+                                     [&](const Judged& j) { return j.candidate == *step.added; });
+    std::vector<const Judged*> rivals;
+    for (const Judged& judged : step.judged) {
+      const std::string& key = candidates[judged.candidate].info.key;
+      const bool is_present = std::find(present.begin(), present.end(), key) != present.end();
+      const bool near = chosen == step.judged.end() || judged.fall > kNearly * chosen->fall;
+      if (judged.trial.usable && judged.plausible && !is_present && near) rivals.push_back(&judged);
+    }
+    if (rivals.empty()) continue;
+    const Candidate& now = candidates[*step.added];
+    const Trial without = try_without(bench, bench.fine, full, index_of(full.model, now.info.key));
+    if (!without.usable) continue;
+    std::vector<Judged> judged(rivals.size() + 1);
+    judged[0] = compare(bench, bench.fine, without, full, now.info, 1, limits);
+    judged[0].candidate = *step.added;
+    run_tasks(rivals.size(), bench.threads, [&](std::size_t r) {
+      const Candidate& rival = candidates[rivals[r]->candidate];
+      judged[r + 1] = compare(bench, bench.fine, without, try_instead(bench, without, rival, rivals[r]->trial),
+                              rival.info, 1, limits);
+      judged[r + 1].candidate = rivals[r]->candidate;
+    });
+    const Choice choice = choose(bench, judged);
+    if (!choice.leader) continue;
+    step.equivalent = choice.group;
+    if (*choice.leader == 0) continue;
+    step.added = judged[*choice.leader].candidate;
+    put_in_order(bench, ladder, candidates, std::move(judged[*choice.leader].trial));
+    return true;
+  }
+  return false;
 }
 
 /// Adds the effect that leads, if one passes.
@@ -337,7 +391,13 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
 void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
   const std::size_t before = ladder.steps.size();
   prune(bench, ladder, candidates, limits);
-  if (ladder.steps.size() < before) ladder.last = judge_all(bench, ladder.steps.back(), candidates, limits);
+  bool replaced = false;
+  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {  // as often as there are effects, at the most
+    if (!reconsider(bench, ladder, candidates, limits)) break;
+    replaced = true;
+  }
+  if (replaced) prune(bench, ladder, candidates, limits);
+  if (replaced || ladder.steps.size() < before) ladder.last = judge_all(bench, ladder.steps.back(), candidates, limits);
   withdraw(ladder);
   // What was added after all is told apart: both are there.
   for (LadderStep& step : ladder.steps) {
