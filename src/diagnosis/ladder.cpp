@@ -277,13 +277,16 @@ double largest_fall(const LadderStep& step) {
 }
 
 /// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
-/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it.
+/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it. Not
+/// where the effects above it have explained nearly all of that after all.
 void withdraw(Ladder& ladder) {
-  constexpr double kLeastPart = 0.7;
-  if (largest_fall(ladder.steps.back()) == 0) return;
+  constexpr double kLeastPart = 0.7, kLittle = 0.05;
+  const double left = largest_fall(ladder.steps.back());
+  if (left == 0) return;
   for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
     const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
-    if (fall >= kLeastPart * largest_fall(ladder.steps[s - 1])) continue;
+    const double shown = largest_fall(ladder.steps[s - 1]);
+    if (fall >= kLeastPart * shown || left < kLittle * shown) continue;
     for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
     ladder.last = ladder.steps[s].judged;
     ladder.steps.resize(s);
