@@ -27,10 +27,10 @@ std::size_t median_size(const std::vector<Observations::Range>& slips) {
 double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
   constexpr double kGap = 0.5e-3, kMean = 2e-3;  // [s]
   const Cycle& cycle = segmentation.cycles[segment];
-  if (!cycle.slip_complete || segment + 1 >= segmentation.cycles.size()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const Span& stick = segmentation.cycles[segment + 1].stick;
+  if (!cycle.slip_complete) return std::numeric_limits<double>::quiet_NaN();
+  // The stick after the last slip belongs to no cycle: it has no slip.
+  const bool last = segment + 1 >= segmentation.cycles.size();
+  const Span stick = last ? Span{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
   const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
   const std::size_t end =
       std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));

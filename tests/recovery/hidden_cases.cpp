@@ -82,8 +82,8 @@ const std::vector<Recipe>& recipes() {
          return std::vector{s, 0.001};
        }},
       {"contact-spin", Setting::fast, {0.5, 1, 2}, just},
-      {"ageing", Setting::four_speeds, {0.008, 0.012, 0.016}, ageing},
-      {"ageing", Setting::pauses, {0.008, 0.012, 0.016}, ageing},
+      {"ageing", Setting::four_speeds, {0.01, 0.015, 0.02}, ageing},
+      {"ageing", Setting::pauses, {0.01, 0.015, 0.02}, ageing},
       {"asymmetry", Setting::both_directions, {0.93, 1.07, 1.15}, just},
       {"heating",
        Setting::slow,
@@ -389,10 +389,12 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
     });
   }
   // Nothing is hidden in records of every kind, mostly the plain ones.
-  constexpr Setting kSettings[] = {
-      Setting::fast,   Setting::slow,           Setting::fast,        Setting::slow,
-      Setting::fast,   Setting::slow,           Setting::load_swings, Setting::temperature_swings,
-      Setting::pauses, Setting::both_directions};
+  constexpr Setting kSettings[] = {Setting::fast,        Setting::slow,
+                                   Setting::fast,        Setting::slow,
+                                   Setting::fast,        Setting::slow,
+                                   Setting::load_swings, Setting::temperature_swings,
+                                   Setting::pauses,      Setting::both_directions,
+                                   Setting::pauses,      Setting::four_speeds};
   add("nothing", options.nothing, Kind::nothing, Setting::fast,
       [&](Case& c, Random& random) { c.setting = kSettings[random.below(std::size(kSettings))]; });
   for (const auto& [key, setting, variable] :
@@ -437,7 +439,10 @@ Simulated simulate_case(const Case& c, const std::vector<Run>& more) {
   std::vector<Run> runs = {{.setting = c.setting}};
   if (c.setting == Setting::four_speeds) {
     runs.clear();
-    for (const double speed : {0.25, 0.5, 1.0, 2.0}) runs.push_back({.setting = c.setting, .speed = speed});
+    // As many cycles at each speed: a slow run takes longer.
+    for (const double speed : {0.25, 0.5, 1.0, 2.0}) {
+      runs.push_back({.setting = c.setting, .speed = speed, .duration = 20 / speed});
+    }
   }
   runs.insert(runs.end(), more.begin(), more.end());
   double squares = 0;
