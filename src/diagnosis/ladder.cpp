@@ -74,7 +74,7 @@ double few_frequencies(double n) {
   return std::max(3.0, 0.4 * std::pow(n, 2.0 / 3));
 }
 
-/// Whether an effect explains what otherwise is scatter of break-away from cycle to cycle.
+/// Whether an effect of the stick time explains what otherwise is scatter of break-away from cycle to cycle.
 ///
 /// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
 /// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
@@ -121,10 +121,10 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   const bool sticks = breaks >= 30;
   const bool obvious = !is_narrow(info) && sticks && out.fall > limits.obvious_size * bench.noise_squares() &&
                        out.fall > limits.obvious_part * above;
-  const bool seen = out.p_value < limits.p_value || obvious;
-  out.by_level = out.plausible && out.fall > 0 && !seen && sticks && !is_narrow(info) &&
+  const bool seen = out.fall > 0 && (out.p_value < limits.p_value || obvious);
+  out.by_level = out.plausible && !seen && sticks && info.needs.stick_time &&
                  passes_by_level(level, poorer, trial, info, tests, limits, floor);
-  out.passes = out.plausible && out.fall > 0 && out.size > limits.least_size && (seen || out.by_level);
+  out.passes = out.plausible && out.size > limits.least_size && (seen || out.by_level);
   return out;
 }
 
@@ -286,7 +286,8 @@ void withdraw(Ladder& ladder) {
   for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
     const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
     const double shown = largest_fall(ladder.steps[s - 1]);
-    if (fall >= kLeastPart * shown || left < kLittle * shown) continue;
+    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
+    if (ladder.steps[s].by_level || fall >= kLeastPart * shown || left < kLittle * shown) continue;
     for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
     ladder.last = ladder.steps[s].judged;
     ladder.steps.resize(s);
@@ -359,6 +360,7 @@ bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>
     step.equivalent = choice.group;
     if (*choice.leader == 0) continue;
     step.added = judged[*choice.leader].candidate;
+    step.by_level = judged[*choice.leader].by_level;
     put_in_order(bench, ladder, candidates, std::move(judged[*choice.leader].trial));
     return true;
   }
@@ -376,12 +378,13 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
   constexpr double kHopeless = 0.35;
   const Judged& leader = ladder.last[*choice.leader];
-  if (leader.fall < kHopeless * largest_fall(ladder.steps.back())) {
+  if (!leader.by_level && leader.fall < kHopeless * largest_fall(ladder.steps.back())) {
     ladder.withdrawn.push_back(leader.candidate);
     return;
   }
   LadderStep step;
   step.added = leader.candidate;
+  step.by_level = leader.by_level;
   step.trial = leader.trial;
   step.equivalent = choice.group;
   step.judged = std::move(ladder.last);

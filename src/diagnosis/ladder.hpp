@@ -30,6 +30,7 @@ struct Judged {
 
 struct LadderStep {
   std::optional<std::size_t> added;     ///< candidate; none for the base law
+  bool by_level = false;                ///< it was added for the levels of break-away alone
   Trial trial;                          ///< at full resolution
   Trial coarse;                         ///< the same at low resolution
   std::vector<Probe> probes;            ///< what free functions find beside it
