@@ -9,10 +9,12 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/declared.hpp"
 #include "diagnosis/own_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
 #include "tribofit/fit/parallel.hpp"
+#include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/segmentation/mean_error.hpp"
 
@@ -187,7 +189,7 @@ void fit_all(const IdentifyOptions& options, Identification& out) {
 }
 
 /// What was found in the motion and in the load channel, and undone, as effects.
-std::vector<EffectFinding> motion_findings(const Identification& trace) {
+std::vector<EffectFinding> motion_findings(const Identification& trace, const Instruments& instruments) {
   const Motion& motion = trace.motion;
   std::vector<EffectFinding> out;
   const auto add = [&](const char* key, const std::vector<std::pair<double, double>>& values) {
@@ -223,8 +225,11 @@ std::vector<EffectFinding> motion_findings(const Identification& trace) {
     add("velocity-gain", {ratio});
     const bool gain = motion.plateau_correction == PlateauCorrection::gain;
     EffectFinding& other = out[out.size() - (gain ? 2 : 1)];
-    other.status = EffectStatus::equivalent;
-    other.reason = std::string("these data cannot tell it from ") + (gain ? "velocity-gain" : "radius-offset");
+    const auto says = diagnosis::plateau_says(instruments, motion.conditions, motion.corrected_ratio);
+    const bool known = gain ? says.not_the_radius && !says.not_the_gain : says.not_the_gain && !says.not_the_radius;
+    other.status = known ? EffectStatus::unsupported : EffectStatus::equivalent;
+    other.reason = known ? "the instruments file leaves no room for it"
+                         : std::string("these data cannot tell it from ") + (gain ? "velocity-gain" : "radius-offset");
   }
   if (motion.high_pass > 0) add("velocity-highpass", {{motion.high_pass, motion.high_pass_std_error}});
   if (trace.load_coupling.value != 0) {
@@ -271,10 +276,12 @@ EffectFinding not_found(const Effect& effect, const std::vector<Identification>&
 
 constexpr double kLeastGap = 0.004, kGapSigmas = 5;  ///< of the plateau, that call for a correction
 
-/// The plateau is not where the stated speed and radius put it.
-bool plateau_is_off(const Motion& motion) {
+/// The plateau is not where the stated speed and radius put it, nor within what the declared gain leaves open.
+bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
   const double off = std::abs(motion.plateau_ratio - 1);
-  return off > kLeastGap && off > kGapSigmas * motion.plateau_ratio_std_error && motion.plateau_ratio > 0.85 &&
+  const bool open = instruments.vibrometer.gain &&
+                    !diagnosis::plateau_says(instruments, motion.conditions, motion.plateau_ratio).not_the_gain;
+  return off > kLeastGap && !open && off > kGapSigmas * motion.plateau_ratio_std_error && motion.plateau_ratio > 0.85 &&
          motion.plateau_ratio < 1.15;
 }
 
@@ -298,15 +305,18 @@ Identification prepare_to_diagnose(const TraceInput& input, const IdentifyOption
     raw.undo_high_pass = false;
     Identification plain = prepare(input, options, raw);
     // One in 1e4; but where the high-pass would leave the plateau off, the spin explains by one what else takes two.
-    const double at_least = plateau_is_off(trace.motion) ? 0 : 15;
+    const double at_least = plateau_is_off(trace.motion, options.instruments) ? 0 : 15;
     if (plain.analysed && spins_rather_than_sags(plain.motion, plain.segmentation, at_least)) {
       motion = raw;
       trace = std::move(plain);
     }
   }
-  if (trace.analysed && motion.plateau == PlateauCorrection::none && plateau_is_off(trace.motion)) {
+  if (trace.analysed && motion.plateau == PlateauCorrection::none &&
+      plateau_is_off(trace.motion, options.instruments)) {
     MotionOptions corrected = motion;
-    corrected.plateau = PlateauCorrection::radius;
+    const auto says = diagnosis::plateau_says(options.instruments, trace.motion.conditions, trace.motion.plateau_ratio);
+    const bool gain = says.not_the_radius && !says.not_the_gain;
+    corrected.plateau = gain ? PlateauCorrection::gain : PlateauCorrection::radius;
     trace = prepare(input, options, corrected);
   }
   if (trace.analysed) take_out_load_coupling(trace);
@@ -334,11 +344,25 @@ bool undo_needless_corrections(const std::vector<TraceInput>& inputs, const Iden
   return undone;
 }
 
+/// Puts the test that tells the two effects of a plateau apart in front of the other experiments.
+void tell_plateau(Diagnosis& diagnosis) {
+  const auto shared = std::find_if(diagnosis.ladder.begin(), diagnosis.ladder.end(), [](const Rung& rung) {
+    return !rung.equivalent.empty() && (rung.added == "radius-offset" || rung.added == "velocity-gain");
+  });
+  if (shared == diagnosis.ladder.end()) return;
+  const std::string& other = shared->equivalent.front();
+  const std::string test = fmt::format("{} or {}: {}.", shared->added, other, telling_test(shared->added, other));
+  const bool more = diagnosis.verdict == Verdict::unexplained ||
+                    std::any_of(diagnosis.ladder.begin(), diagnosis.ladder.end(),
+                                [&](const Rung& rung) { return &rung != &*shared && !rung.equivalent.empty(); });
+  diagnosis.next_experiment = more ? test + ' ' + diagnosis.next_experiment : test;
+}
+
 /// Puts what kinematics/ found into a diagnosis: rungs below all others, and a finding each.
-void add_motion(const std::vector<Identification>& traces, const std::optional<Fit>& uncorrected,
-                DiagnosedTraces& out) {
+void add_motion(const std::vector<Identification>& traces, const Instruments& instruments,
+                const std::optional<Fit>& uncorrected, DiagnosedTraces& out) {
   Diagnosis& diagnosis = out.diagnosis;
-  const std::vector<EffectFinding> found = motion_findings(traces[0]);
+  const std::vector<EffectFinding> found = motion_findings(traces[0], instruments);
   std::vector<EffectFinding> findings;
   for (const Effect& effect : effect_catalogue()) {
     const std::string key = describe(effect).key;
@@ -382,6 +406,7 @@ void add_motion(const std::vector<Identification>& traces, const std::optional<F
   }
   rungs.insert(rungs.end(), diagnosis.ladder.begin() + 1, diagnosis.ladder.end());
   diagnosis.ladder = std::move(rungs);
+  tell_plateau(diagnosis);
 }
 
 std::vector<Record> records_of(const std::vector<Identification>& traces) {
@@ -478,7 +503,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   if (moved && inputs.size() == 1 && !diagnosed.fits.empty()) {
     uncorrected = fit_uncorrected(inputs[0], options, out.diagnosis.law);
   }
-  add_motion(out.traces, uncorrected, out);
+  add_motion(out.traces, options.instruments, uncorrected, out);
   if (!diagnosed.fits.empty()) {
     out.fits.push_back(diagnosed.fits.front());
     if (diagnosed.fits.size() > 1) out.fits.push_back(diagnosed.fits.back());

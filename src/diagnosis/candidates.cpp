@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "declared.hpp"
 #include "fit/starts.hpp"
 #include "lines.hpp"
 
@@ -179,16 +180,19 @@ std::vector<double> change_points(const Observations& observations, std::span<co
 }  // namespace
 
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
-                                  const std::vector<Effect>& own) {
+                                  const std::vector<Effect>& own, const Instruments& instruments) {
   const Excitation seen = excitation_of(records, observations);
   std::vector<Candidate> out;
   for (const Effect& effect : effect_catalogue()) {
     if (is_of_motion(effect)) continue;
     EffectInfo info = describe(effect);
     std::string why = obstacle(info, observations, seen);
-    out.push_back({effect, std::move(info), std::move(why)});
+    const Motion& motion = *records[0].motion;
+    const std::optional<double> left =
+        left_by_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
+    out.push_back({effect, std::move(info), std::move(why), left});
   }
-  for (const Effect& effect : own) out.push_back({effect, describe(effect), {}});
+  for (const Effect& effect : own) out.push_back({effect, describe(effect), {}, {}});
   return out;
 }
 

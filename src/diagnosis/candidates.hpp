@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,12 +14,15 @@ struct Candidate {
   Effect effect;
   EffectInfo info;
   std::string untestable;  ///< why these data cannot show it; empty where they can
+  /// How far from nothing the instruments file lets its first parameter be [SI], see left_by_declared().
+  std::optional<double> left = {};
 };
 
-/// Every effect of the catalogue and the user's own, each checked for its channels and for what excites it.
+/// Every effect of the catalogue and the user's own, each checked for its channels and for what excites it, and
+/// bounded by what the instruments file declares.
 /// Effects of the motion are left out: kinematics/ answers for them.
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
-                                  const std::vector<Effect>& own);
+                                  const std::vector<Effect>& own, const Instruments& instruments = {});
 
 /// Where a search for the parameters of an effect must begin [SI], and in how many places independent of one another it
 /// looked before (for the correction of p-values).

@@ -139,7 +139,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
       observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40), leaves.noise);
   Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
   bench.threads = options.threads;
-  const std::vector<Candidate> all = candidates(records, fine, own);
+  const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   const std::vector<BaseLaw> laws = base_laws(records, given);
   std::vector<Ladder> ladders = climb(bench, laws, all, Limits(), options.most_effects,

@@ -42,7 +42,10 @@ LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
   return out;
 }
 
-std::string why_not(const Judged& judged) {
+std::string why_not(const Judged& judged, const Candidate& candidate) {
+  const double size = std::abs(judged.trial.p[judged.trial.model.offset_of(candidate.info.key)]);
+  if (!judged.plausible && candidate.left && size > *candidate.left)
+    return "it would help only by more than the instruments file leaves room for";
   if (!judged.plausible) return "it would help only with values that are not plausible";
   if (judged.fall <= 0) return "it does not lower the error on held-out cycles";
   if (judged.p_value >= kChance) return fmt::format("what it explains may be chance (p = {:.2g})", judged.p_value);
@@ -105,7 +108,7 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       finding.error_reduction = std::clamp((before * before - squared) / above, -1.0, 1.0);
     }
     finding.status = EffectStatus::unsupported;
-    finding.reason = last.judged != nullptr ? why_not(*last.judged) : "it promises no fall of the error";
+    finding.reason = last.judged != nullptr ? why_not(*last.judged, all[k]) : "it promises no fall of the error";
     if (last.ever_passed) {
       finding.status = EffectStatus::superseded;
       finding.reason = "another effect explains the same error better";
@@ -171,12 +174,19 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
   for (const LadderStep& step : ladder.steps) {
     if (!step.added || step.equivalent.empty()) continue;
     const EffectInfo& leader = all[*step.added].info;
+    std::vector<std::pair<std::string, std::string>> tests;  // with those of the group that each tells from the leader
     for (const std::size_t other : step.equivalent) {
       const std::string& key = all[other].info.key;
       std::string test = telling_test(leader.key, key);
       if (test.empty()) test = all[other].info.experiment;
-      say(fmt::format("{} or {}: {}.", leader.key, key, test));
+      const auto same = std::find_if(tests.begin(), tests.end(), [&](const auto& t) { return t.first == test; });
+      if (same == tests.end()) {
+        tests.emplace_back(std::move(test), key);
+      } else {
+        same->second += " or " + key;
+      }
     }
+    for (const auto& [test, others] : tests) say(fmt::format("{} or {}: {}.", leader.key, others, test));
   }
   if (!structure.empty()) {
     const std::string& variable = structure.front().variable;

@@ -33,8 +33,11 @@ bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
 
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
 /// the effect says, where the data draw it there. noise: variance of a residual, correlation counted.
-bool is_plausible(const Bench& bench, const Trial& trial, const EffectInfo& info, double noise) {
+bool is_plausible(const Bench& bench, const Trial& trial, const Candidate& candidate, double noise) {
+  const EffectInfo& info = candidate.info;
   const std::size_t offset = trial.model.offset_of(info.key);
+  // What the instruments file declares was corrected: more than its uncertainty cannot be left.
+  if (candidate.left && std::abs(trial.p[offset]) > *candidate.left) return false;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
@@ -92,8 +95,9 @@ bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial
 }
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect.
-Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const EffectInfo& info,
+Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const Candidate& candidate,
                double tests, const Limits& limits) {
+  const EffectInfo& info = candidate.info;
   Judged out;
   out.trial = std::move(richer);
   const Trial& trial = out.trial;
@@ -111,7 +115,7 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = bench.floor_squares(trial.whitening);
   out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
-  out.plausible = is_plausible(bench, trial, info, noise * out.design_effect);
+  out.plausible = is_plausible(bench, trial, candidate, noise * out.design_effect);
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
   // cycles that took no part, needs no such test.
   const double above = poorer.held_out_squares - bench.noise_squares();
@@ -140,7 +144,7 @@ struct Choice {
   std::vector<std::size_t> group;     ///< candidates
 };
 
-Choice choose(const Bench& bench, const std::vector<Judged>& judged) {
+Choice choose(const Bench& bench, const std::vector<Judged>& judged, const std::vector<Candidate>& candidates) {
   Choice choice;
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < judged.size(); ++k) {
@@ -159,6 +163,13 @@ Choice choose(const Bench& bench, const std::vector<Judged>& judged) {
   for (std::size_t k = 0; k < judged.size(); ++k) {
     if (k == *choice.leader || !judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
     choice.group.push_back(judged[k].candidate);
+  }
+  // What the declared uncertainty of an instrument leaves room for is no reason to name anything else.
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes || !candidates[judged[k].candidate].left) continue;
+    if (told_apart(bench, judged[*best], judged[k])) continue;
+    choice.leader = k;
+    choice.group.clear();
   }
   return choice;
 }
@@ -189,7 +200,7 @@ std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const 
   std::vector<Opening> openings(tried.size());
   const auto judge = [&](std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
                          const std::vector<double>& start) {
-    out[t] = compare(bench, level, beside, try_model(bench, level, model, start), candidates[tried[t]].info,
+    out[t] = compare(bench, level, beside, try_model(bench, level, model, start), candidates[tried[t]],
                      openings[t].places * tests, limits);
     out[t].candidate = tried[t];
   };
@@ -301,7 +312,7 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
     Trial without = try_without(bench, bench.fine, full, index_of(full.model, candidate.info.key));
-    const Judged needed = compare(bench, bench.fine, without, full, candidate.info, 1, limits);
+    const Judged needed = compare(bench, bench.fine, without, full, candidate, 1, limits);
     if (!without.usable || needed.passes) {
       ++s;
       continue;
@@ -373,7 +384,7 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   ladder.finished = true;
   ladder.last = judge_all(bench, ladder.steps.back(), candidates, limits);
   if (static_cast<int>(ladder.steps.size()) > most_effects) return;
-  const Choice choice = choose(bench, ladder.last);
+  const Choice choice = choose(bench, ladder.last, candidates);
   if (!choice.leader) return;
   // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
   constexpr double kHopeless = 0.35;

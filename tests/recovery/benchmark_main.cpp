@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -29,18 +30,18 @@ std::string describe(const Name& name) {
   return text;
 }
 
-std::string names(const Outcome& o) {
+std::string names(const std::vector<Name>& all) {
   std::string text;
-  for (const Name& name : o.names) text += (text.empty() ? "" : ", ") + describe(name);
+  for (const Name& name : all) text += (text.empty() ? "" : ", ") + describe(name);
   return text.empty() ? "nothing" : text;
 }
 
 std::string line(const Outcome& o) {
   if (!o.failure.empty()) return fmt::format("THREW {:<34} {}", o.of.name, o.failure);
   return fmt::format("{:<5} {:<34} {:<8} {} ({}{}){}; error {:.5f} -> {:.5f}, floor {:.5f}; {:.1f} s",
-                     o.right ? "ok" : "MISS", o.of.name, to_string(o.naming), names(o), tribofit::to_string(o.verdict),
-                     o.remaining.empty() ? "" : ", remaining over " + o.remaining,
-                     o.partner.empty() ? "" : (o.split ? "; split from " : "; not split from ") + o.partner, o.first,
+                     o.right ? "ok" : "MISS", o.of.name, to_string(o.naming), names(o.names),
+                     tribofit::to_string(o.verdict), o.remaining.empty() ? "" : ", remaining over " + o.remaining,
+                     o.partners.empty() ? "" : (o.split ? "; split: " : "; NOT SPLIT: ") + names(o.after), o.first,
                      o.last, o.floor, o.seconds);
 }
 
@@ -74,7 +75,8 @@ json to_json(const Outcome& o) {
           {"remaining_share", o.remaining_share},
           {"status", o.status},
           {"next_experiment", o.experiment},
-          {"partner", o.partner},
+          {"partners", o.partners},
+          {"after", names(o.after)},
           {"split", o.split},
           {"held_out_rmse", {o.first, o.last}},
           {"floor_rmse", o.floor},
@@ -114,7 +116,8 @@ void explain(const Case& c) {
   fmt::print("next: {}\n", diagnosed.next_experiment);
 }
 
-int run(const Options& options) {
+int run(Options options) {
+  if (!options.experiments) options.plan.look_alikes = 0;
   std::vector<Case> cases = plan_cases(options.plan);
   if (!options.one.empty()) {
     for (const Case& c : cases) {
@@ -126,7 +129,13 @@ int run(const Options& options) {
                options.one);
     return 2;
   }
-  std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
+  std::erase_if(cases, [&](const Case& c) {
+    std::stringstream all(options.only);
+    for (std::string one; std::getline(all, one, ';');) {
+      if (c.name.find(one) != std::string::npos) return false;
+    }
+    return !options.only.empty();
+  });
   const auto outcomes = run_cases(cases, options.threads, options.experiments, [&](const Outcome& o, std::size_t done) {
     if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
   });
@@ -146,8 +155,12 @@ int main(int argc, char** argv) {
   app.add_option("--aliens", options.plan.aliens, "cases of each effect in no catalogue")->capture_default_str();
   app.add_option("--unknowable", options.plan.unknowable, "cases of ageing at one constant speed")
       ->capture_default_str();
+  app.add_option("--look-alikes", options.plan.look_alikes, "cases of each pair that looks alike, for each of the two")
+      ->capture_default_str();
   app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
-  app.add_option("--only", options.only, "only cases whose name holds this, e.g. runout, 'drift=', nothing, +");
+  app.add_option(
+      "--only", options.only,
+      "only cases whose name holds this (or one of these, with ; between), e.g. runout, 'drift=', nothing, +, ~");
   app.add_option("--case", options.one, "one case by name, in full");
   app.add_option("--json", options.json_path, "write every case to this file");
   app.add_option("--threads", options.threads, "0: as many as there are; results do not depend on it");

@@ -288,7 +288,8 @@ Drive drive_of(const Case& c, const Run& run, double duration, Random& random) {
   drive.mean_load = c.load;
   const double speed = run.speed * c.speed;
   drive.speed = constant_speed(speed);
-  if (run.setting == Setting::both_directions) drive.speed = reversing_speed(speed, random.uniform(0.1, 0.2));
+  const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
+  if (back) drive.speed = reversing_speed(speed, random.uniform(0.1, 0.2));
   if (run.setting == Setting::pauses) {
     std::vector<Pause> pauses;
     for (double t = random.uniform(1, 2); t < 55;) {
@@ -298,13 +299,13 @@ Drive drive_of(const Case& c, const Run& run, double duration, Random& random) {
     }
     drive.speed = stepped_speed({0}, {speed}, pauses);
   }
-  if (run.setting == Setting::load_swings) {
-    const double share = random.uniform(0.4, 0.6), period = random.uniform(17, 26), phase = random.phase();
-    drive.load = [=, middle = c.load](double t) {
+  if (run.setting == Setting::load_swings || run.setting == Setting::load_both_directions) {
+    const double share = back ? 0.8 : random.uniform(0.4, 0.6), period = random.uniform(17, 26), phase = random.phase();
+    drive.load = [=, middle = drive.mean_load](double t) {
       return middle * (1 + share * std::sin(2 * std::numbers::pi * t / period + phase));
     };
     // N0 and T0 are the means of the record: parameters refer to them.
-    drive.mean_load = c.load * (1 + share * mean_of_sine(duration, period, phase));
+    drive.mean_load *= (1 + share * mean_of_sine(duration, period, phase));
   }
   if (run.setting == Setting::temperature_swings) {
     const double swing = random.uniform(15, 20), period = random.uniform(17, 26), phase = random.phase();
@@ -326,6 +327,7 @@ std::pair<double, double> duration_and_rate(Setting setting) {
       return {60, 5000};
     case Setting::slow:
     case Setting::load_swings:
+    case Setting::load_both_directions:
     case Setting::temperature_swings:
       break;
   }
@@ -338,8 +340,13 @@ Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t nu
   SimulationOptions options;
   std::tie(options.duration, options.rate) = duration_and_rate(run.setting);
   if (run.duration > 0) options.duration = run.duration;
+  if (run.rate > 0) options.rate = run.rate;
   const Drive drive = drive_of(c, run, options.duration, random);
-  if (run.setting != Setting::both_directions) options.settle = settling_time(c.rig, drive, truth.p);
+  Rig rig = c.rig;
+  rig.stiffness *= run.stiffness;
+  rig.damping *= std::sqrt(run.stiffness);
+  const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
+  if (!back) options.settle = settling_time(rig, drive, truth.p);
   options.scatter = {c.scatter, c.wander};
   options.seed = c.seed + number;
   Sensors sensors;
@@ -347,19 +354,25 @@ Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t nu
   sensors.velocity_noise = 0.02e-3;
   sensors.noise_colour = c.colour;
   sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
-  return hide(truth.model, truth.p, c.rig, drive, options, sensors);
+  return hide(truth.model, truth.p, rig, drive, options, sensors);
 }
 
 }  // namespace
 
 std::string_view to_string(Setting setting) {
-  constexpr std::string_view kNames[] = {"fast",        "slow",  "both directions", "load swings", "temperature swings",
-                                         "four speeds", "pauses"};
+  constexpr std::string_view kNames[] = {"fast",
+                                         "slow",
+                                         "both directions",
+                                         "load swings",
+                                         "temperature swings",
+                                         "four speeds",
+                                         "pauses",
+                                         "load swings, both directions"};
   return kNames[static_cast<std::size_t>(setting)];
 }
 
 std::string_view to_string(Kind kind) {
-  constexpr std::string_view kNames[] = {"single", "pair", "nothing", "alien", "unknowable"};
+  constexpr std::string_view kNames[] = {"single", "pair", "nothing", "alien", "unknowable", "look-alike"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -406,35 +419,20 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
   }
   add("ageing-at-one-speed", options.unknowable, Kind::unknowable, Setting::fast,
       [&](Case& c, Random& random) { c.hidden = {ingredient(recipe("ageing"), 0.012, random)}; });
+  for (const auto& pair : look_alike_pairs()) {
+    for (const auto& [key, partner] : {pair, {pair.second, pair.first}}) {
+      const Recipe& r = recipe(key);
+      add(fmt::format("{}~{}", key, partner), options.look_alikes, Kind::look_alike, r.setting,
+          [&, &p = partner](Case& c, Random& random) {
+            c.hidden = {ingredient(r, r.sizes[random.below(r.sizes.size())], random)};
+            c.partner = p;
+          });
+    }
+  }
   return cases;
 }
 
-std::vector<Run> telling_runs(std::string_view a, std::string_view b) {
-  struct Test {
-    std::string_view a, b;
-    std::vector<Run> runs;
-  };
-  const std::vector<Run> other_speeds = {{.speed = 0.25}, {.speed = 0.5}, {.speed = 2}};
-  const std::vector<Run> faster_and_longer = {{.setting = Setting::slow, .speed = 2, .duration = 80}};
-  const std::vector<Test> tests = {
-      {"frictional-lag", "rate-state", other_speeds},
-      {"frictional-lag", "channel-delay", {{.speed = 2}}},
-      {"viscous", "stribeck-exponent", {{.speed = 4}}},
-      {"runout", "drift", {{.setting = Setting::slow, .duration = 60}}},
-      // At another speed the distance is another for the same time, and over a longer record a line goes on.
-      {"heating", "run-in", faster_and_longer},
-      {"heating", "drift", faster_and_longer},
-      {"run-in", "drift", faster_and_longer},
-      {"bristle", "contact-spin", {{.speed = 2, .radius = 0.009}, {.speed = 1, .radius = 0.018}}},
-      {"ageing", "rate-state", {{.setting = Setting::pauses}}},
-  };
-  for (const Test& test : tests) {
-    if ((test.a == a && test.b == b) || (test.a == b && test.b == a)) return test.runs;
-  }
-  return {};
-}
-
-Simulated simulate_case(const Case& c, const std::vector<Run>& more) {
+Simulated simulate_case(const Case& c, const Experiment& more) {
   Model truth = true_model(c);
   std::vector<Run> runs = {{.setting = c.setting}};
   if (c.setting == Setting::four_speeds) {
@@ -444,9 +442,9 @@ Simulated simulate_case(const Case& c, const std::vector<Run>& more) {
       runs.push_back({.setting = c.setting, .speed = speed, .duration = 20 / speed});
     }
   }
-  runs.insert(runs.end(), more.begin(), more.end());
+  runs.insert(runs.end(), more.runs.begin(), more.runs.end());
   double squares = 0;
-  Simulated out{truth.model, truth.p, {}, 0};
+  Simulated out{truth.model, truth.p, {}, 0, measured_by_hand(c, more.measured)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     Hidden hidden = hide_in(c, runs[i], truth, i);
     squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());

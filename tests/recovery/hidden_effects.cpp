@@ -84,6 +84,8 @@ bool is_right(const Outcome& out) {
     case Kind::single:
     case Kind::pair:
       return out.naming == Naming::alone || out.naming == Naming::group;
+    case Kind::look_alike:
+      return out.split;
     case Kind::nothing:
       return out.names.empty() && out.verdict == Verdict::sufficient;
     case Kind::alien:
@@ -145,29 +147,45 @@ DiagnosedTraces diagnose_case(const Simulated& simulated) {
   for (const auto& trace : simulated.traces) inputs.push_back({trace->path, {}, trace});
   IdentifyOptions options;
   options.threads = 1;
+  options.instruments = simulated.instruments;
   return diagnose(inputs, options);
 }
 
 namespace {
 
-/// The runs that tell the hidden effect from the first of its group for which there are any, diagnosed with the first
-/// record.
+/// Whether the hidden effect is named apart from its partners after the experiment, or, where it was measured by hand
+/// and declared, none of them is named.
+bool splits(const Case& c, const Experiment& experiment, Outcome& out) {
+  const std::string& key = c.hidden.front().key;
+  const auto in = [](const std::string& k) { return [&k](const Name& n) { return holds(n, k); }; };
+  out.after = names_of(diagnose_case(simulate_case(c, experiment)).diagnosis);
+  const bool by_hand =
+      std::find(experiment.measured.begin(), experiment.measured.end(), key) != experiment.measured.end();
+  if (!by_hand && std::none_of(out.after.begin(), out.after.end(), in(key))) return false;
+  return std::none_of(out.partners.begin(), out.partners.end(), [&](const std::string& partner) {
+    return std::any_of(out.after.begin(), out.after.end(), in(partner));
+  });
+}
+
+/// Does what the next experiment of the diagnosis says for the group that holds the hidden effect, and diagnoses again.
 void try_experiment(const Case& c, Outcome& out) {
   const std::string& key = c.hidden.front().key;
-  for (const Name& name : out.names) {
-    std::vector<std::string> members = name.equivalent;
-    members.insert(members.begin(), name.added);
-    for (const std::string& member : members) {
-      const std::vector<Run> runs = telling_runs(key, member);
-      if (runs.empty()) continue;
-      out.partner = member;
-      const std::vector<Name> after = names_of(diagnose_case(simulate_case(c, runs)).diagnosis);
-      const auto in = [](const std::string& k) { return [&k](const Name& n) { return holds(n, k); }; };
-      out.split =
-          std::any_of(after.begin(), after.end(), in(key)) && std::none_of(after.begin(), after.end(), in(member));
-      return;
-    }
+  const auto group = std::find_if(out.names.begin(), out.names.end(),
+                                  [&](const Name& name) { return holds(name, key) && !name.equivalent.empty(); });
+  if (group == out.names.end()) return;
+  Experiment experiment;
+  for (const std::string& other : group->equivalent) {
+    experiment += telling_experiment(group->added, other);
+    if (other != key) out.partners.push_back(other);
   }
+  if (group->added != key) out.partners.push_back(group->added);
+  if (!experiment.empty()) out.split = splits(c, experiment, out);
+}
+
+/// The experiment for a pair, whether or not the first record leaves it a group.
+void try_pair(const Case& c, Outcome& out) {
+  out.partners = {c.partner};
+  out.split = splits(c, telling_experiment(c.hidden.front().key, c.partner), out);
 }
 
 }  // namespace
@@ -202,6 +220,10 @@ Outcome run_case(const Case& c, bool experiments) {
     out.right = is_right(out);
     compare_parameters(diagnosis, out);
     if (experiments && c.kind == Kind::single && out.naming == Naming::group) try_experiment(c, out);
+    if (experiments && c.kind == Kind::look_alike) {
+      try_pair(c, out);
+      out.right = is_right(out);
+    }
   } catch (const std::exception& e) {
     out.failure = e.what();
   }

@@ -24,23 +24,25 @@ namespace recovery {
 
 /// How the rig is driven and what is recorded.
 enum class Setting {
-  fast,                ///< 12 s at 10 kHz, constant speed: for what happens within a slip
-  slow,                ///< 40 s at 5 kHz, constant speed: for what changes over the record
-  both_directions,     ///< 24 s at 10 kHz, the disc swings forth and back; its speed is recorded
-  load_swings,         ///< slow, with a load that swings and is recorded
-  temperature_swings,  ///< slow, with a temperature that swings and is recorded
-  four_speeds,         ///< four records of 20 s at 5 kHz: 1, 2, 4 and 8 rpm, diagnosed together
-  pauses               ///< 60 s at 5 kHz with standstills of different length
+  fast,                 ///< 12 s at 10 kHz, constant speed: for what happens within a slip
+  slow,                 ///< 40 s at 5 kHz, constant speed: for what changes over the record
+  both_directions,      ///< 24 s at 10 kHz, the disc swings forth and back; its speed is recorded
+  load_swings,          ///< slow, with a load that swings and is recorded
+  temperature_swings,   ///< slow, with a temperature that swings and is recorded
+  four_speeds,          ///< four records of 20 s at 5 kHz: 1, 2, 4 and 8 rpm, diagnosed together
+  pauses,               ///< 60 s at 5 kHz with standstills of different length
+  load_both_directions  ///< as load_swings, with a disc that swings forth and back
 };
 std::string_view to_string(Setting setting);
 
 /// What a case is meant to show.
 enum class Kind {
-  single,     ///< one effect: to be named
-  pair,       ///< two effects: both to be named
-  nothing,    ///< none: nothing to be named
-  alien,      ///< what no catalogue holds: to be called unexplained, over the right variable
-  unknowable  ///< an effect that these data cannot show: not to be named
+  single,      ///< one effect: to be named
+  pair,        ///< two effects: both to be named
+  nothing,     ///< none: nothing to be named
+  alien,       ///< what no catalogue holds: to be called unexplained, over the right variable
+  unknowable,  ///< an effect that these data cannot show: not to be named
+  look_alike   ///< one effect, to be named apart from one that looks like it after the experiment that tells them apart
 };
 std::string_view to_string(Kind kind);
 
@@ -69,6 +71,7 @@ struct Case {
   double colour = 0;  ///< AR(1) coefficient of the noise
   double scatter = 0, wander = 0;
   std::uint64_t seed = 0;
+  std::string partner;  ///< look-alikes: the one that it is to be told from
 };
 
 /// How many cases of each kind.
@@ -78,7 +81,8 @@ struct PlanOptions {
   std::size_t nothing = 800;  ///< with nothing hidden
   std::size_t aliens = 40;    ///< of each of those in no catalogue
   std::size_t unknowable = 20;
-  bool largest_only = false;  ///< of the sizes of an effect
+  std::size_t look_alikes = 1;  ///< of each pair and each of its effects
+  bool largest_only = false;    ///< of the sizes of an effect
   std::uint64_t seed = 1;
 };
 
@@ -87,14 +91,32 @@ std::vector<Case> plan_cases(const PlanOptions& options);
 /// A record of a case.
 struct Run {
   Setting setting = Setting::fast;
-  double speed = 1;     ///< of that of the case
-  double radius = 0;    ///< [m]; 0: that of the case
-  double duration = 0;  ///< [s]; 0: that of the setting
+  double speed = 1;      ///< of that of the case
+  double radius = 0;     ///< [m]; 0: that of the case
+  double duration = 0;   ///< [s]; 0: that of the setting
+  double rate = 0;       ///< [Hz]; 0: that of the setting
+  double stiffness = 1;  ///< of that of the rig, whose damping ratio stays
+
+  bool operator==(const Run&) const = default;
 };
 
-/// The runs that tell two effects apart, where records can: those of the catalogue's tests that need no hand on the
-/// rig. Empty where there are none. The order of the keys does not matter.
-std::vector<Run> telling_runs(std::string_view key_a, std::string_view key_b);
+/// What a person does at the rig beside the record that was made.
+struct Experiment {
+  std::vector<Run> runs;              ///< diagnosed together with the first record
+  std::vector<std::string> measured;  ///< effects of the instruments measured by hand, for the instruments file
+  bool empty() const { return runs.empty() && measured.empty(); }
+};
+Experiment& operator+=(Experiment& all, const Experiment& more);
+
+/// The experiment that telling_test() of the catalogue names for two effects; empty where it names none. The order of
+/// the keys does not matter.
+Experiment telling_experiment(std::string_view key_a, std::string_view key_b);
+
+/// Every pair that has one.
+std::vector<std::pair<std::string, std::string>> look_alike_pairs();
+
+/// What the hand finds: the truth of the case within the uncertainty that is declared with it.
+tribofit::Instruments measured_by_hand(const Case& c, const std::vector<std::string>& keys);
 
 /// A case as recorded.
 struct Simulated {
@@ -102,9 +124,10 @@ struct Simulated {
   std::vector<double> truth;  ///< parameters of `model` [SI]
   std::vector<std::shared_ptr<const tribofit::Trace>> traces;
   double floor_rmse = 0;  ///< what the true law leaves over slip, all traces together [1]
+  tribofit::Instruments instruments = {};
 };
-/// more: runs of the same rig beside those of the case.
-Simulated simulate_case(const Case& c, const std::vector<Run>& more = {});
+/// more: done with the same rig beside the records of the case.
+Simulated simulate_case(const Case& c, const Experiment& more = {});
 
 /// A rung of the ladder as it counts here: what was added, and what does as well.
 struct Name {
@@ -143,8 +166,9 @@ struct Outcome {
   bool right = false;                     ///< what the kind of the case asks for
   double first = 0, last = 0, floor = 0;  ///< held-out RMSE of the base law and of the last rung; see Simulated [1]
   std::vector<Recovered> parameters;      ///< main parameters of hidden effects that were added
-  std::string partner;                    ///< of its group, where there are telling_runs(); empty: none
-  bool split = false;                     ///< with those runs beside the first it is named without that partner
+  std::vector<std::string> partners;      ///< that the experiment is to tell it from; empty: none was made
+  std::vector<Name> after;                ///< names after the experiment
+  bool split = false;                     ///< it is named apart from all of them then
   double seconds = 0;                     ///< of one processor, for the diagnosis alone
   std::string failure;                    ///< what was thrown
 };

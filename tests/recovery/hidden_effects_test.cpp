@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/effects/all.hpp"
 
 namespace {
@@ -92,6 +93,33 @@ TEST(HiddenEffects, OfNoCatalogueAreCalledUnexplained) {
 TEST(HiddenEffects, AgeingIsNotNamedFromOneConstantSpeed) {
   const std::vector<Outcome> outcomes = run_cases(slice(Kind::unknowable, kSlice), 0);
   EXPECT_EQ(count_right(outcomes), outcomes.size());
+}
+
+/// What the next experiment says is done with the rig in which the effect is hidden, and diagnosed.
+TEST(HiddenEffects, TheNextExperimentTellsWhatLooksAlike) {
+  std::vector<Case> cases = slice(Kind::look_alike, kSlice);
+  const std::set<std::string> few = {"asymmetry~sensor-offset:0", "force-bandwidth~channel-delay:0",
+                                     "radius-offset~velocity-gain:0", "velocity-gain~radius-offset:0"};
+  std::erase_if(cases, [&](const Case& c) { return few.count(c.name) == 0; });
+  ASSERT_EQ(cases.size(), few.size());
+  const std::vector<Outcome> outcomes = run_cases(cases, 0, true);
+  EXPECT_EQ(count_right(outcomes), outcomes.size());
+  for (const Outcome& o : outcomes) {
+    if (o.naming != Naming::group) continue;
+    for (const std::string& partner : o.partners) {
+      EXPECT_NE(o.experiment.find(partner), std::string::npos) << o.of.name << ": " << o.experiment;
+    }
+    EXPECT_NE(o.experiment.find(tribofit::telling_test(o.of.hidden[0].key, o.of.partner)), std::string::npos);
+  }
+}
+
+TEST(HiddenEffects, EveryTestOfTheCatalogueIsSimulated) {
+  for (const tribofit::Effect& effect : tribofit::effect_catalogue()) {
+    const std::string key = tribofit::describe(effect).key;
+    for (const tribofit::LookAlike& twin : tribofit::look_alikes(key)) {
+      EXPECT_FALSE(telling_experiment(key, twin.key).empty()) << key << " and " << twin.key;
+    }
+  }
 }
 
 /// No hits in 800: 1 - 0.05^(1/800).

@@ -58,7 +58,7 @@ bool is_right(const Outcome* o) {
   return o->right;
 }
 bool was_tried(const Outcome* o) {
-  return !o->partner.empty();
+  return !o->partners.empty();
 }
 bool failed(const Outcome* o) {
   return !o->failure.empty();
@@ -198,17 +198,19 @@ std::string twins_table(const Outcomes& singles) {
   return text;
 }
 
-/// Groups that the next experiment was to split.
+/// Of groups that formed, and of pairs of the catalogue that look alike.
 std::string experiments_table(const Outcomes& tried) {
-  std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> pairs;
+  std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> groups;
   for (const Outcome* o : tried) {
-    auto& [n, split] = pairs[{o->of.hidden[0].key, o->partner}];
+    std::string partners;
+    for (const std::string& partner : o->partners) partners += (partners.empty() ? "`" : ", `") + partner + "`";
+    auto& [n, split] = groups[{o->of.hidden[0].key, partners}];
     ++n;
     split += o->split ? 1u : 0u;
   }
-  std::string text = "| hidden | in a group with | n | split |\n|---|---|--:|--:|\n";
-  for (const auto& [pair, counts] : pairs) {
-    fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} |\n", pair.first, pair.second, counts.first,
+  std::string text = "| hidden | to be told from | n | told |\n|---|---|--:|--:|\n";
+  for (const auto& [group, counts] : groups) {
+    fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} |\n", group.first, group.second, counts.first,
                    counts.second);
   }
   return text;
@@ -317,8 +319,9 @@ std::string summary(const std::vector<Outcome>& all) {
   row("mean size of the group that holds the hidden effect", singles.size(), mean_group(singles));
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
-  share("groups split by the next experiment, where records can do it", tried,
-        [](const Outcome* o) { return o->split; });
+  share("next experiment, simulated, splits its group", tried, [](const Outcome* o) { return o->split; });
+  share("pairs that look alike told apart by the experiment of the catalogue", of_kind(all, Kind::look_alike),
+        is_right);
   double seconds = 0, slowest = 0;
   std::size_t failures = 0;
   for (const Outcome& o : all) {
@@ -352,6 +355,8 @@ std::string tables(const std::vector<Outcome>& all) {
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
   section("The next experiment, simulated", tried, experiments_table);
+  section("Pairs that look alike, after the experiment of the catalogue", of_kind(all, Kind::look_alike),
+          experiments_table);
   section("By condition, single effects", singles, conditions_table);
   return text;
 }

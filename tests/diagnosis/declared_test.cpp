@@ -1,0 +1,54 @@
+/// What the instruments file declares bounds what may be named.
+#include "diagnosis/declared.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace tribofit;
+using namespace tribofit::diagnosis;
+
+TEST(Declared, LeavesThreeOfItsUncertainties) {
+  Instruments lab;
+  lab.force_sensor.zero = {0.013, 0.001};
+  lab.force_sensor.mass_below = {0.1, 0.005};
+  lab.vibrometer.delay = {-1e-3, 2e-5};
+  const auto left = [&](const char* key) {
+    return left_by_declared(lab, key, FrictionKind::coefficient, {}).value_or(-1);
+  };
+  EXPECT_DOUBLE_EQ(left("sensor-offset"), 0.003);
+  EXPECT_DOUBLE_EQ(left("sensor-inertia"), 0.015);
+  EXPECT_DOUBLE_EQ(left("channel-delay"), 6e-5);
+  EXPECT_EQ(left("crosstalk"), -1) << "not declared";
+  EXPECT_EQ(left("asymmetry"), -1) << "no instrument";
+}
+
+/// A zero in N shows in a coefficient as zero/N.
+TEST(Declared, AZeroInNewtonsIsTakenOverTheLoad) {
+  Instruments lab;
+  lab.force_sensor.zero = {0.5, 0.05};
+  lab.force_sensor.zero_is_force = true;
+  const Condition load = {50, "test"};
+  EXPECT_DOUBLE_EQ(*left_by_declared(lab, "sensor-offset", FrictionKind::coefficient, load), 3 * 0.05 / 50);
+  EXPECT_DOUBLE_EQ(*left_by_declared(lab, "sensor-offset", FrictionKind::force, load), 3 * 0.05);
+}
+
+TEST(Declared, AKnownGainLeavesTheRadiusAndAKnownRadiusTheGain) {
+  Conditions used;
+  used.radius = {0.015, "command line"};
+  used.speed = {0.42, "command line"};
+  Instruments lab;
+  EXPECT_FALSE(plateau_says(lab, used, 0.94).not_the_gain);
+  EXPECT_FALSE(plateau_says(lab, used, 0.94).not_the_radius);
+  lab.vibrometer.gain = {1.0, 0.002};
+  EXPECT_TRUE(plateau_says(lab, used, 0.94).not_the_gain);
+  EXPECT_FALSE(plateau_says(lab, used, 0.996).not_the_gain) << "within three of its uncertainties";
+  lab.rig.radius = {0.015, 0.0001};
+  EXPECT_FALSE(plateau_says(lab, used, 0.94).not_the_radius) << "the speed may be another";
+  lab.rig.speed = {0.42, 0.001};
+  EXPECT_TRUE(plateau_says(lab, used, 0.94).not_the_radius);
+  used.radius.value = 0.016;
+  EXPECT_FALSE(plateau_says(lab, used, 0.94).not_the_radius) << "what is declared is not what is used";
+}
+
+}  // namespace
