@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "declared.hpp"
 #include "fit/starts.hpp"
 #include "lines.hpp"
 
@@ -188,9 +187,8 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
     EffectInfo info = describe(effect);
     std::string why = obstacle(info, observations, seen);
     const Motion& motion = *records[0].motion;
-    const std::optional<double> left =
-        left_by_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
-    out.push_back({effect, std::move(info), std::move(why), left});
+    const auto possible = possible_beside_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
+    out.push_back({effect, std::move(info), std::move(why), possible});
   }
   for (const Effect& effect : own) out.push_back({effect, describe(effect), {}, {}});
   return out;

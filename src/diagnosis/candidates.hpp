@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "declared.hpp"
 #include "tribofit/fit/fit.hpp"
 
 namespace tribofit::diagnosis {
@@ -13,9 +14,8 @@ namespace tribofit::diagnosis {
 struct Candidate {
   Effect effect;
   EffectInfo info;
-  std::string untestable;  ///< why these data cannot show it; empty where they can
-  /// How far from nothing the instruments file lets its first parameter be [SI], see left_by_declared().
-  std::optional<double> left = {};
+  std::string untestable;                 ///< why these data cannot show it; empty where they can
+  std::optional<Possible> possible = {};  ///< beside what the instruments file declares
 };
 
 /// Every effect of the catalogue and the user's own, each checked for its channels and for what excites it, and

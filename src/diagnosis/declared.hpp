@@ -8,13 +8,19 @@
 
 namespace tribofit::diagnosis {
 
-/// How far from nothing the first parameter of an effect of the instruments may still be, after what the instruments
-/// file declares was corrected: three of the standard uncertainties declared [SI; of friction: 1 or N, as `kind` says].
-/// Nothing where the file does not say. force_sensor.zero bounds sensor-offset, force_sensor.crosstalk crosstalk,
-/// force_sensor.mass_below sensor-inertia, vibrometer.delay channel-delay. (A declared bandwidth is corrected to first
-/// order only, and bounds nothing.)
-std::optional<double> left_by_declared(const Instruments& instruments, std::string_view key, FrictionKind kind,
-                                       const Condition& load);
+/// Values of the first parameter of an effect that are still possible [SI; of friction: 1 or N].
+struct Possible {
+  double lower = 0, upper = 0;
+  bool holds(double value) const { return value >= lower && value <= upper; }
+};
+
+/// What is possible beside what the instruments file declares, within three of the standard uncertainties declared;
+/// nothing where the file does not say. What was declared has been corrected: of force_sensor.zero (sensor-offset),
+/// force_sensor.crosstalk (crosstalk), force_sensor.mass_below (sensor-inertia) and vibrometer.delay (channel-delay) no
+/// more than the uncertainty is left. A filter (force-bandwidth) is not slower than force_sensor.bandwidth.
+/// kind, load: of the record; a zero in N is taken over the load.
+std::optional<Possible> possible_beside_declared(const Instruments& instruments, std::string_view key,
+                                                 FrictionKind kind, const Condition& load);
 
 /// What the instruments file says of a plateau that is `ratio` of the stated omega r.
 struct PlateauSays {

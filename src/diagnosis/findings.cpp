@@ -43,9 +43,10 @@ LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
 }
 
 std::string why_not(const Judged& judged, const Candidate& candidate) {
-  const double size = std::abs(judged.trial.p[judged.trial.model.offset_of(candidate.info.key)]);
-  if (!judged.plausible && candidate.left && size > *candidate.left)
+  const double value = judged.trial.p[judged.trial.model.offset_of(candidate.info.key)];
+  if (candidate.possible && !candidate.possible->holds(value)) {
     return "it would help only by more than the instruments file leaves room for";
+  }
   if (!judged.plausible) return "it would help only with values that are not plausible";
   if (judged.fall <= 0) return "it does not lower the error on held-out cycles";
   if (judged.p_value >= kChance) return fmt::format("what it explains may be chance (p = {:.2g})", judged.p_value);

@@ -36,8 +36,7 @@ bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
 bool is_plausible(const Bench& bench, const Trial& trial, const Candidate& candidate, double noise) {
   const EffectInfo& info = candidate.info;
   const std::size_t offset = trial.model.offset_of(info.key);
-  // What the instruments file declares was corrected: more than its uncertainty cannot be left.
-  if (candidate.left && std::abs(trial.p[offset]) > *candidate.left) return false;
+  if (candidate.possible && !candidate.possible->holds(trial.p[offset])) return false;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
@@ -166,7 +165,7 @@ Choice choose(const Bench& bench, const std::vector<Judged>& judged, const std::
   }
   // What the declared uncertainty of an instrument leaves room for is no reason to name anything else.
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes || !candidates[judged[k].candidate].left) continue;
+    if (!judged[k].passes || !candidates[judged[k].candidate].possible) continue;
     if (told_apart(bench, judged[*best], judged[k])) continue;
     choice.leader = k;
     choice.group.clear();

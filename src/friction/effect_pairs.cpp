@@ -15,9 +15,10 @@ struct Pair {
 constexpr std::string_view kTapForDelay =
     "tap the resting block and compare the edges: the shift between them is the delay, for vibrometer.delay of the "
     "instruments file (negative where friction comes late); without sliding there is neither lag nor memory";
-constexpr std::string_view kStifferSpring =
-    "record with a spring four times as stiff too: slips take half as long, and a lag, a memory, a filter and a mass "
-    "then part; or tap the resting block: without sliding only a filter makes the edge slower";
+constexpr std::string_view kTapForFilter =
+    "tap the resting block: without sliding only a filter makes the edge slower; where the edge is sharp, give what it "
+    "allows as force_sensor.bandwidth of the instruments file; where it is not, record with a spring four times as "
+    "stiff too: slips take half as long, and a lag, a memory and a filter then part";
 constexpr std::string_view kJumps =
     "record with a spring four times as stiff too; or plot at re-stick the jump of mu against the jump of the block's "
     "acceleration: a straight line is a mass; or add 100 g below the sensor";
@@ -40,7 +41,7 @@ constexpr std::array kPairs = {
          "lift the block off the disc and read the force sensor: what it shows without contact is its zero, for "
          "force_sensor.zero of the instruments file"},
     Pair{"frictional-lag", "channel-delay", kTapForDelay},
-    Pair{"frictional-lag", "force-bandwidth", kStifferSpring},
+    Pair{"frictional-lag", "force-bandwidth", kTapForFilter},
     Pair{"channel-delay", "force-bandwidth",
          "tap the block: an edge that is shifted is a delay, for vibrometer.delay of the instruments file (negative "
          "where friction comes late), one that is slower is a filter"},
@@ -52,7 +53,7 @@ constexpr std::array kPairs = {
          "run at 1, 2, 4 and 8 rpm: the loop of mu over v_r stays constant in ms for a lag, in um for a memory of "
          "distance"},
     Pair{"rate-state", "channel-delay", kTapForDelay},
-    Pair{"rate-state", "force-bandwidth", kStifferSpring},
+    Pair{"rate-state", "force-bandwidth", kTapForFilter},
     Pair{
         "rate-state", "bristle",
         "record at half the disc speed too and look at the stick: with a bristle v_r is not zero there; or reverse the "

@@ -14,7 +14,9 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
   lab.force_sensor.mass_below = {0.1, 0.005};
   lab.vibrometer.delay = {-1e-3, 2e-5};
   const auto left = [&](const char* key) {
-    return left_by_declared(lab, key, FrictionKind::coefficient, {}).value_or(-1);
+    const auto possible = possible_beside_declared(lab, key, FrictionKind::coefficient, {});
+    if (possible) EXPECT_EQ(possible->lower, -possible->upper) << key;
+    return possible ? possible->upper : -1;
   };
   EXPECT_DOUBLE_EQ(left("sensor-offset"), 0.003);
   EXPECT_DOUBLE_EQ(left("sensor-inertia"), 0.015);
@@ -29,8 +31,19 @@ TEST(Declared, AZeroInNewtonsIsTakenOverTheLoad) {
   lab.force_sensor.zero = {0.5, 0.05};
   lab.force_sensor.zero_is_force = true;
   const Condition load = {50, "test"};
-  EXPECT_DOUBLE_EQ(*left_by_declared(lab, "sensor-offset", FrictionKind::coefficient, load), 3 * 0.05 / 50);
-  EXPECT_DOUBLE_EQ(*left_by_declared(lab, "sensor-offset", FrictionKind::force, load), 3 * 0.05);
+  EXPECT_DOUBLE_EQ(possible_beside_declared(lab, "sensor-offset", FrictionKind::coefficient, load)->upper,
+                   3 * 0.05 / 50);
+  EXPECT_DOUBLE_EQ(possible_beside_declared(lab, "sensor-offset", FrictionKind::force, load)->upper, 3 * 0.05);
+}
+
+TEST(Declared, AFilterIsNotSlowerThanDeclared) {
+  Instruments lab;
+  lab.force_sensor.bandwidth = {1000, 50};
+  const auto possible = possible_beside_declared(lab, "force-bandwidth", FrictionKind::coefficient, {});
+  ASSERT_TRUE(possible);
+  EXPECT_FALSE(possible->holds(300));
+  EXPECT_TRUE(possible->holds(850));
+  EXPECT_TRUE(possible->holds(2000));
 }
 
 TEST(Declared, AKnownGainLeavesTheRadiusAndAKnownRadiusTheGain) {
