@@ -357,15 +357,15 @@ bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>
     const Trial without = try_without(bench, bench.fine, full, index_of(full.model, now.info.key));
     if (!without.usable) continue;
     std::vector<Judged> judged(rivals.size() + 1);
-    judged[0] = compare(bench, bench.fine, without, full, now.info, 1, limits);
+    judged[0] = compare(bench, bench.fine, without, full, now, 1, limits);
     judged[0].candidate = *step.added;
     run_tasks(rivals.size(), bench.threads, [&](std::size_t r) {
       const Candidate& rival = candidates[rivals[r]->candidate];
-      judged[r + 1] = compare(bench, bench.fine, without, try_instead(bench, without, rival, rivals[r]->trial),
-                              rival.info, 1, limits);
+      judged[r + 1] =
+          compare(bench, bench.fine, without, try_instead(bench, without, rival, rivals[r]->trial), rival, 1, limits);
       judged[r + 1].candidate = rivals[r]->candidate;
     });
-    const Choice choice = choose(bench, judged);
+    const Choice choice = choose(bench, judged, candidates);
     if (!choice.leader) continue;
     step.equivalent = choice.group;
     if (*choice.leader == 0) continue;
