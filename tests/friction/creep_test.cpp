@@ -46,6 +46,21 @@ TEST(Creep, OfAContactThatTurnsIsWhereItsFrictionBalancesTheSpring) {
   }
 }
 
+/// Friction in newtons is a coefficient times the load: the block creeps at the same speed.
+TEST(Creep, OfAForceIsThatOfItsCoefficient) {
+  const FrictionModel model = with("contact-spin");
+  const double load = 5e4;
+  const std::vector<double> p = {0.509, 0.318, 52.14, 1e-3}, in_newtons = {0.509 * load, 0.318 * load, 52.14, 1e-3};
+  for (const double v : {0.1, 0.6, 1.1}) {
+    const double mu = friction_at(model, p, v * 1e-3 * kOmega);
+    const double creep = creep_in_stick(model, p.data(), slip_in(1), StickMoment{mu, 2, kOmega});
+    const double of_force =
+        creep_in_stick(model, in_newtons.data(), slip_in(1), StickMoment{mu * load, 2 * load, kOmega});
+    EXPECT_NEAR(of_force / creep, 1, 1e-6) << v;
+    EXPECT_NEAR(of_force / (v * 1e-3 * kOmega), 1, 1e-5) << v;
+  }
+}
+
 TEST(Creep, StaysFiniteBeyondThePeakAndTurnsWithFriction) {
   const FrictionModel model = with("contact-spin");
   const std::vector<double> p = {0.509, 0.318, 52.14, 1e-3};

@@ -33,18 +33,19 @@ T speed_for(const FrictionModel& model, const T* p, const Slip& slip, double dis
     at.velocity = v;
     return steady_friction(model, q.data(), law, at) - friction;
   };
-  constexpr double kWidth = 1e-3, kClose = 1e-7;
+  constexpr double kWidth = 1e-3;
+  const double close = 1e-7 * std::max(1.0, std::abs(friction));  // friction may be a force
   const auto slope_at = [&](double v) {
     return (excess(v * (1 + kWidth)) - excess(v * (1 - kWidth))) / (2 * kWidth * v);
   };
   double v = first, slope = 0, off = 1;
-  for (int i = 0; i < 6 && std::abs(off) > kClose; ++i) {
+  for (int i = 0; i < 6 && std::abs(off) > close; ++i) {
     off = excess(v);
     slope = slope_at(v);
     if (!(slope > 0)) break;
     v = std::clamp(v - off / slope, 0.5 * v, 2 * v);
   }
-  if (!(slope > 0) || std::abs(off) > kClose) {
+  if (!(slope > 0) || std::abs(off) > close) {
     // Near the peak: up from rest to the first speed at which friction is reached, or falls again.
     constexpr double kStep = 1.1, kFarthest = 40;
     double low = 0.1 * first, high = low;
