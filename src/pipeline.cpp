@@ -135,6 +135,19 @@ void require_channels(const IdentifyOptions& options, const Motion& motion, std:
   missing(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }
 
+/// Formulas that have a value on the data.
+void require_formulas(const std::vector<Effect>& effects, Identification& trace) {
+  if (!trace.analysed) return;
+  for (const Effect& effect : effects) {
+    const auto* formula = std::get_if<Formula>(&effect);
+    if (formula == nullptr) continue;
+    const std::string trouble = diagnosis::trouble_with(*formula, {&trace.motion, &trace.segmentation});
+    if (trouble.empty()) continue;
+    trace.warnings.push_back(trouble);
+    trace.analysed = false;
+  }
+}
+
 /// The stages up to the cycles. Effects of the motion among `effects` are corrected.
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options) {
   Identification out;
@@ -416,14 +429,15 @@ std::vector<Record> records_of(const std::vector<Identification>& traces) {
 }
 
 /// What the base law leaves where nothing of the motion is undone; nothing where the record cannot be read like that.
-std::optional<Fit> fit_uncorrected(const TraceInput& input, const IdentifyOptions& options, BaseLaw law) {
+std::optional<Fit> fit_uncorrected(const TraceInput& input, const IdentifyOptions& options, BaseLaw law,
+                                   const std::vector<Effect>& from_the_start) {
   MotionOptions raw = options.motion;
   raw.undo_high_pass = raw.undo_speed_ripple = false;
   Identification trace = prepare(input, options, raw);
   if (!trace.analysed) return std::nullopt;
   IdentifyOptions bare = options;
   bare.laws = {law};
-  bare.effects.clear();
+  bare.effects = from_the_start;
   bare.published_protocol = false;
   fit_all(bare, trace);
   if (trace.fits.empty() || trace.fits[0].parameters.empty()) return std::nullopt;
@@ -451,6 +465,7 @@ Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, co
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
   Identification out = prepare({path, options.read, {}}, options, options.motion);
+  require_formulas(options.effects, out);
   if (out.analysed) fit_all(options, out);
   return out;
 }
@@ -458,29 +473,23 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& given,
                          const DiagnoseOptions& more) {
   DiagnosedTraces out;
-  diagnosis::refuse_same(given.effects);
+  refuse_same(given.effects);
   IdentifyOptions options = given;
   std::vector<Effect> own = of_friction(given.effects);
   options.effects.erase(std::remove_if(options.effects.begin(), options.effects.end(),
                                        [](const Effect& effect) { return !is_of_motion(effect); }),
                         options.effects.end());
-  // Effects of the catalogue are candidates anyway.
-  own.erase(std::remove_if(own.begin(), own.end(),
-                           [](const Effect& effect) { return !std::holds_alternative<Formula>(effect); }),
-            own.end());
+  const auto first_given = std::stable_partition(
+      own.begin(), own.end(), [](const Effect& effect) { return std::holds_alternative<Formula>(effect); });
+  const std::vector<Effect> from_the_start(first_given, own.end());
+  own.erase(first_given, own.end());
   std::vector<MotionOptions> motions(inputs.size(), options.motion);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     const TraceInput& input = inputs[k];
     out.traces.push_back(prepare_to_diagnose(input, options, motions[k]));
     Identification& trace = out.traces.back();
     require_channels(given, trace.motion, trace.warnings, trace.analysed);
-    for (const Effect& effect : own) {
-      const std::string trouble =
-          trace.analysed ? diagnosis::not_finite(effect, {&trace.motion, &trace.segmentation}) : std::string();
-      if (trouble.empty()) continue;
-      trace.warnings.push_back(trouble);
-      trace.analysed = false;
-    }
+    require_formulas(own, trace);
     out.analysed &= trace.analysed;
   }
   if (!out.analysed) {
@@ -489,6 +498,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   }
   DiagnosisOptions inner = more.diagnosis;
   inner.threads = options.threads;
+  inner.from_the_start = from_the_start;
   const auto diagnose_all = [&] {
     const std::vector<Record> records = records_of(out.traces);
     return diagnose(records, options.laws, own, options.instruments, options.fit, inner);
@@ -501,7 +511,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   const bool moved =
       motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 || motion.plateau_correction != PlateauCorrection::none;
   if (moved && inputs.size() == 1 && !diagnosed.fits.empty()) {
-    uncorrected = fit_uncorrected(inputs[0], options, out.diagnosis.law);
+    uncorrected = fit_uncorrected(inputs[0], options, out.diagnosis.law, from_the_start);
   }
   add_motion(out.traces, options.instruments, uncorrected, out);
   if (!diagnosed.fits.empty()) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "console.hpp"
+#include "options.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/fingerprint.hpp"
@@ -15,7 +16,7 @@ void add_effects(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("effects", "List the effects that can be added to a law, or explain one");
   verb->footer("Example:\n  identify effects rate-state");
   const auto key = std::make_shared<std::string>();
-  verb->add_option("KEY", *key, "Effect to explain");
+  verb->add_option("KEY", *key, "Effect to explain, KEY or KEY:FORM");
   verb->callback([key, &status] {
     TerminalOptions options;
     options.colour = wants_colour();
@@ -23,7 +24,7 @@ void add_effects(CLI::App& app, int& status) {
     options.width = terminal_width();
     status = 0;
     if (!key->empty()) {
-      const Effect effect = make_effect(*key);
+      const Effect effect = effect_named(*key);
       print(render_effect(describe(effect), fingerprint(effect), options));
       return;
     }

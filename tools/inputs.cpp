@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/own_files.hpp"
 
 using namespace tribofit;
 
@@ -30,17 +31,26 @@ bool is_trace_name(const fs::path& path) {
          path.filename().string().front() != '.';
 }
 
-std::vector<std::string> traces_in(const std::string& folder) {
+/// Traces of a folder; `left_out`: tables that --csv wrote there.
+std::vector<std::string> traces_in(const std::string& folder, std::string& left_out) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
+    const std::string path = it->path().string();
+    if (!is_trace_name(it->path()) || it->is_directory(error)) continue;
+    if (!is_own_file(path)) {
+      found.push_back(path);
+    } else {
+      left_out += (left_out.empty() ? "" : ", ") + it->path().filename().string();
+    }
   }
   if (error) {
     throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
   }
   if (found.empty()) {
-    throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {folder, 0, ""});
+    throw InputError(
+        "the folder has no traces" + (left_out.empty() ? "" : ", only tables that --csv wrote (" + left_out + ")"),
+        "name a folder with .csv files, or a trace itself", {folder, 0, ""});
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -132,7 +142,13 @@ std::vector<Input> inputs_from(const std::vector<std::string>& names, const Read
       const Manifest manifest = read_manifest(name);
       for (const ManifestRow& row : manifest.rows) inputs.push_back(manifest_input(manifest, row, read));
     } else {
-      for (const std::string& path : traces_in(name)) inputs.push_back(plain_input(path, read));
+      std::string left_out;
+      for (const std::string& path : traces_in(name, left_out)) {
+        inputs.push_back(plain_input(path, read));
+        if (left_out.empty()) continue;
+        inputs.back().notes.push_back("left out of " + name + ", because --csv wrote them: " + left_out);
+        left_out.clear();  // said once
+      }
     }
   }
   return inputs;

@@ -6,6 +6,8 @@
 #include <system_error>
 
 #include "inputs.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/own_files.hpp"
 
 using namespace tribofit;
 
@@ -35,7 +37,7 @@ void add_model_options(CLI::App& app, Settings& s) {
   fit("--law", s.laws, "exponential, fractional or coulomb (repeatable; default the first two)")
       ->check(CLI::IsMember({"exponential", "fractional", "coulomb"}))
       ->allow_extra_args(false);
-  fit("--effect", s.effects, "Effect to add to every law (repeatable; see `identify effects`)")
+  fit("--effect", s.effects, "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)")
       ->allow_extra_args(false);
   fit("--formula", s.formulas,
       "Effect of your own: 'name = a*exp(-v/w); a=0.02, w=6mm/s', or @FILE with one a line (repeatable)")
@@ -54,6 +56,22 @@ void add_output_options(CLI::App& app, Settings& s) {
       ->check(CLI::Range(0, 1024))
       ->group("Output");
   app.add_flag("--quiet", s.quiet, "Do not print the table")->group("Output");
+}
+
+Effect effect_named(const std::string& name) {
+  try {
+    return make_effect(name);
+  } catch (const InputError& error) {
+    throw CLI::ValidationError(error.what());
+  }
+}
+
+void refuse_clashes(const std::vector<Effect>& effects) {
+  try {
+    FrictionModel(BaseLaw::exponential, effects);
+  } catch (const InputError& error) {
+    throw CLI::ValidationError(error.what());
+  }
 }
 
 std::vector<std::string> own_options(const CLI::App& app) {
@@ -97,10 +115,10 @@ void refuse_overwriting(const Settings& s, const std::vector<std::string>& input
     if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite " + input);
     if (s.csv.empty()) continue;
     const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();
-    for (const char* name : {"samples.csv", "cycles.csv", "curves.csv", "errors.csv"}) {
-      if (same_file((s.csv / std::filesystem::path(name)).string(), input) ||
-          same_file((own_folder / name).string(), input)) {
-        throw CLI::ValidationError("--csv would overwrite " + input + " with its own " + name);
+    for (const OwnFile& file : own_files) {
+      if (same_file((s.csv / std::filesystem::path(file.name)).string(), input) ||
+          same_file((own_folder / file.name).string(), input)) {
+        throw CLI::ValidationError("--csv would overwrite " + input + " with its own " + std::string(file.name));
       }
     }
   }

@@ -13,6 +13,11 @@ void add_input_options(CLI::App& app, Settings& settings);
 void add_model_options(CLI::App& app, Settings& settings);
 void add_output_options(CLI::App& app, Settings& settings);
 
+/// The effect of that name. Wrong usage (CLI::ValidationError) when there is none, with the nearest known name.
+tribofit::Effect effect_named(const std::string& name);
+/// Wrong usage: two effects are the same, or cannot act together.
+void refuse_clashes(const std::vector<tribofit::Effect>& effects);
+
 /// The options as typed that shape the analysis, for the next command.
 std::vector<std::string> own_options(const CLI::App& app);
 

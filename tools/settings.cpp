@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "console.hpp"
+#include "options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -145,7 +146,7 @@ IdentifyOptions options_from(const Settings& s) {
     const bool again = found && std::find(options.laws.begin(), options.laws.end(), *found) != options.laws.end();
     if (found && !again) options.laws.push_back(*found);
   }
-  for (const std::string& key : s.effects) options.effects.push_back(make_effect(key));
+  for (const std::string& key : s.effects) options.effects.push_back(effect_named(key));
   for (const std::string& formula : s.formulas) {
     if (formula.front() == '@') {
       add_formulas_of(formula.substr(1), options.effects);
@@ -153,6 +154,8 @@ IdentifyOptions options_from(const Settings& s) {
       options.effects.emplace_back(Formula(formula));
     }
   }
+
+  refuse_clashes(options.effects);
 
   options.published_protocol = s.protocol == "both";
   options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "console.hpp"
+#include "options.hpp"
 #include "simulated_drive.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -83,11 +84,16 @@ struct ChosenEffect {
   std::vector<double> values;
 };
 
-/// Reads "KEY" or "KEY:name=value,name=value"; a bare number is in the unit of the catalogue, what is not named keeps
-/// its start.
+/// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
+/// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
 ChosenEffect read_effect(const std::string& text) {
-  const auto colon = text.find(':');
-  ChosenEffect chosen{make_effect(std::string_view(text).substr(0, colon)), {}};
+  auto colon = text.find(':');
+  const std::size_t first_end = std::min(text.find(',', colon), text.size());
+  if (colon != std::string::npos && text.find('=', colon) > first_end &&
+      !describe(effect_named(text.substr(0, colon))).forms.empty()) {
+    colon = first_end;
+  }
+  ChosenEffect chosen{effect_named(text.substr(0, colon)), {}};
   const EffectInfo info = describe(chosen.effect);
   std::vector<std::string> names;
   for (const Parameter& parameter : info.parameters) {
@@ -101,13 +107,13 @@ ChosenEffect read_effect(const std::string& text) {
     begin = end + 1;
     const auto equals = part.find('=');
     if (equals == std::string::npos) {
-      throw InputError("'" + part + "' in --effect " + text + " is not name=value",
-                       "write it as " + info.key + ":" + names.front() + "=VALUE");
+      throw CLI::ValidationError("'" + part + "' in --effect " + text + " is not name=value; write it as " +
+                                 info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
     }
     const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
     if (found == names.end()) {
-      throw InputError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) + "'",
-                       "did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
+      throw CLI::ValidationError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
+                                 "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
     }
     const auto k = static_cast<std::size_t>(found - names.begin());
     const Parameter& parameter = info.parameters[k];
@@ -121,7 +127,7 @@ ChosenEffect read_effect(const std::string& text) {
 BaseLaw read_law(const std::string& name) {
   if (const std::optional<BaseLaw> law = find_law(name)) return *law;
   const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
-  throw InputError("there is no law '" + name + "'", "did you mean '" + nearest_name(name, known) + "'?");
+  throw CLI::ValidationError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
 }
 
 void plan_friction(const Request& request, const PublishedTest& test, BaseLaw law, Plan& plan) {
@@ -149,6 +155,7 @@ void plan_friction(const Request& request, const PublishedTest& test, BaseLaw la
     effects.emplace_back(formula);
     for (const Parameter& parameter : info.parameters) values[info.key].push_back(parameter.start * parameter.si);
   }
+  refuse_clashes(effects);
   plan.model = FrictionModel(law, std::move(effects));
   for (const std::string& key : plan.model.effect_keys()) {
     plan.parameters.insert(plan.parameters.end(), values[key].begin(), values[key].end());
@@ -334,6 +341,7 @@ Json truth(const Request& request, const Plan& plan, const SimulatedMotion& moti
             {"settled_before_s", plan.options.settle}}},
           {"law", to_string(plan.model.law())},
           {"effects", plan.model.effect_keys()},
+          {"effect_names", plan.model.effect_names()},
           {"formulas", request.formulas},
           {"parameters", parameters_json(plan)},
           {"rig",
@@ -431,7 +439,8 @@ void add_options(CLI::App& verb, Request& r) {
   group(law, "--mu-k", r.mu_k, "kinetic friction");
   group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");
   group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
-  group(law, "--effect", r.effects, "KEY:name=value,... (repeatable; `identify effects` lists them)")
+  group(law, "--effect", r.effects,
+        "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
       ->take_all()
       ->expected(1);
   group(law, "--formula", r.formulas,

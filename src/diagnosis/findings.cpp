@@ -79,6 +79,14 @@ std::vector<FitParameter> parameters_of(const Fit& fit, const std::string& key) 
   return out;
 }
 
+/// The user has not thought of it already.
+bool is_new(const FrictionModel& model, const Formula& formula) {
+  return std::none_of(model.effects().begin(), model.effects().end(), [&](const Effect& effect) {
+    const auto* known = std::get_if<Formula>(&effect);
+    return known != nullptr && (known->info().key == formula.info().key || known->same_as(formula));
+  });
+}
+
 }  // namespace
 
 std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder, const std::vector<Candidate>& all,
@@ -90,6 +98,14 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
     EffectFinding finding;
     finding.key = all[k].info.key;
     finding.held_out_rmse = finding.error_reduction = finding.p_value = kNaN;
+    if (ladder.steps.front().trial.model.offset_of(finding.key) < ladder.steps.front().trial.p.size()) {
+      finding.status = EffectStatus::missing;
+      finding.held_out_rmse = base;
+      finding.parameters = parameters_of(fits.back(), finding.key);
+      finding.reason = "it is part of the model from the start";
+      out.push_back(std::move(finding));
+      continue;
+    }
     if (!all[k].untestable.empty()) {
       finding.status = EffectStatus::untestable;
       finding.reason = all[k].untestable;
@@ -250,6 +266,7 @@ std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe
   const Trial coarse_top = try_model(bench, bench.coarse, top.model, top.p);
   for (const std::string& form : forms) {
     const Formula formula(form);
+    if (!is_new(top.model, formula)) continue;
     const FrictionModel model = with_effect(top.model, formula);
     const std::vector<Parameter>& own = formula.info().parameters;
     const std::size_t offset = model.offset_of(formula.info().key);

@@ -192,8 +192,7 @@ std::vector<Judged> judge_all(const Bench& bench, const LadderStep& step, const 
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     if (!candidates[k].untestable.empty()) continue;
     if (std::find(present.begin(), present.end(), candidates[k].info.key) != present.end()) continue;
-    const bool in_stick = FrictionModel(top.model.law(), {candidates[k].effect}).acts_in_stick();
-    if (!in_stick || !top.model.acts_in_stick()) tried.push_back(k);
+    if (top.model.acts_with(candidates[k].effect)) tried.push_back(k);
   }
   std::vector<Judged> out(tried.size());
   std::vector<Opening> openings(tried.size());
@@ -423,11 +422,12 @@ void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   }
 }
 
-Ladder start_ladder(const Bench& bench, BaseLaw law) {
+Ladder start_ladder(const Bench& bench, BaseLaw law, const std::vector<Candidate>& from_the_start) {
   Ladder ladder;
   ladder.law = law;
   LadderStep base;
   base.trial = try_base(bench, bench.fine, FrictionModel(law));
+  for (const Candidate& effect : from_the_start) base.trial = try_with(bench, bench.fine, base.trial, effect);
   look_beside(bench, base);
   ladder.finished = !base.trial.usable;
   ladder.steps.push_back(std::move(base));
@@ -457,10 +457,12 @@ bool is_beaten(const Bench& bench, const Ladder& ladder, const std::vector<Ladde
 }  // namespace
 
 std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
-                          const std::vector<Candidate>& candidates, const Limits& limits, int most_effects,
+                          const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
+                          const Limits& limits, int most_effects,
                           const std::function<void(std::string_view, double)>& progress) {
   std::vector<Ladder> ladders(laws.size());
-  run_tasks(laws.size(), bench.threads, [&](std::size_t k) { ladders[k] = start_ladder(bench, laws[k]); });
+  run_tasks(laws.size(), bench.threads,
+            [&](std::size_t k) { ladders[k] = start_ladder(bench, laws[k], from_the_start); });
   // Beside Coulomb friction the better ladder need not be the one to tell (see told_ladder): all are climbed.
   const bool all_matter = std::find(laws.begin(), laws.end(), BaseLaw::coulomb) != laws.end();
   for (double rounds = 0;; ++rounds) {

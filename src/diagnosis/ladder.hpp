@@ -60,9 +60,10 @@ struct Limits {
 ///
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
-/// progress: may be empty.
+/// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
 std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
-                          const std::vector<Candidate>& candidates, const Limits& limits, int most_effects,
+                          const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
+                          const Limits& limits, int most_effects,
                           const std::function<void(std::string_view, double)>& progress = {});
 
 /// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.

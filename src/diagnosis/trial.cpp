@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "fit/starts.hpp"
@@ -268,6 +269,14 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   constexpr std::size_t kMost = 2;
   for (std::size_t k = 0; k < std::min(kMost, promises.size()); ++k) opening.starts.push_back(promises[k].start);
   return opening;
+}
+
+Trial try_with(const Bench& bench, const Level& level, const Trial& base, const Candidate& effect) {
+  constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
+  const Opening opening = opening_of(bench, level, base, effect, residual_of(bench, base), kAnyFall, kAnyFall);
+  const FrictionModel model = with_effect(base.model, effect.effect);
+  if (opening.starts.empty()) return try_base(bench, level, model);
+  return try_model(bench, level, model, nearest(level, model, base.whitening, opening.starts));
 }
 
 Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect) {

@@ -97,6 +97,9 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
 
+/// The trial's model with one effect more, fitted from the best of its starts.
+Trial try_with(const Bench& bench, const Level& level, const Trial& base, const Candidate& effect);
+
 /// The trial's model without one of its effects.
 Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect);
 

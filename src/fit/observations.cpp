@@ -224,6 +224,18 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
   }
 }
 
+/// Which slip came to rest in the stick before each.
+void add_earlier_slips(std::vector<Observations::Range>& slips) {
+  for (std::size_t k = 1; k < slips.size(); ++k) {
+    const Observations::Range& before = slips[k - 1];
+    const bool next = slips[k].from_stick && slips[k].segment == before.segment + 1;
+    if (!next || !std::isfinite(before.restick_time)) continue;
+    slips[k].earlier_begin = before.begin;
+    slips[k].earlier_end = before.end;
+    slips[k].earlier_restick_time = before.restick_time;
+  }
+}
+
 double mean_of(const std::vector<double>& x, double otherwise) {
   if (x.empty()) return otherwise;
   double sum = 0;
@@ -253,6 +265,10 @@ Slip Observations::slip(const Range& range) const {
     slip.lead_velocity = std::span<const double>(lead_velocity).subspan(range.lead_begin, count);
     slip.lead_friction = range.lead_friction;
   }
+  const std::size_t earlier = range.earlier_end - range.earlier_begin;
+  slip.earlier_time = std::span<const double>(time).subspan(range.earlier_begin, earlier);
+  slip.earlier_velocity = std::span<const double>(velocity).subspan(range.earlier_begin, earlier);
+  slip.earlier_restick_time = range.earlier_restick_time;
   slip.from_stick = range.from_stick;
   slip.break_away_time = range.break_away_time;
   slip.stick_time = range.stick_time;
@@ -317,6 +333,8 @@ Observations join(std::vector<Observations> records) {
     for (Observations::Range slip : next.slips) {
       slip.begin += out.time.size();
       slip.end += out.time.size();
+      slip.earlier_begin += out.time.size();
+      slip.earlier_end += out.time.size();
       slip.cycle += out.cycles;
       slip.lead_begin += out.lead_time.size();
       slip.lead_end += out.lead_time.size();
@@ -368,6 +386,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.time.resize(out.size() + (slip.samples.size() + out.samples_per_value - 1) / out.samples_per_value);
     slip.end = out.size();
   }
+  add_earlier_slips(out.slips);
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
   out.friction = reduce.means(motion.friction);

@@ -1,20 +1,19 @@
 #include <array>
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/nearest_name.hpp"
 
 namespace tribofit {
 
 namespace {
 
-/// Every alternative of Effect but the last (Formula), default-constructed.
+constexpr std::size_t kBesideTheCatalogue = 2;  // alternatives of Effect: the form of rate-state, and Formula
+
+/// The alternatives of Effect that are in the catalogue, default-constructed.
 template <std::size_t... I>
 std::vector<Effect> make_catalogue(std::index_sequence<I...>) {
   return {Effect(std::in_place_index<I>)...};
@@ -24,7 +23,7 @@ std::vector<Effect> make_catalogue(std::index_sequence<I...>) {
 
 std::span<const Effect> effect_catalogue() {
   static const std::vector<Effect> catalogue =
-      make_catalogue(std::make_index_sequence<std::variant_size_v<Effect> - 1>());
+      make_catalogue(std::make_index_sequence<std::variant_size_v<Effect> - kBesideTheCatalogue>());
   return catalogue;
 }
 
@@ -51,17 +50,6 @@ std::string_view to_string(EffectGroup group) {
 
 bool is_of_motion(const Effect& effect) {
   return std::visit([]<class E>(const E&) { return hooks::OfMotion<E>; }, effect);
-}
-
-Effect make_effect(std::string_view key) {
-  std::vector<std::string> known;
-  for (const Effect& effect : effect_catalogue()) {
-    known.push_back(describe(effect).key);
-    if (known.back() == key) return effect;
-  }
-  const std::string near = likely_name(key, known);
-  throw InputError("there is no effect '" + std::string(key) + "'",
-                   (near.empty() ? "" : "did you mean '" + near + "'? ") + "`identify effects` lists them all");
 }
 
 }  // namespace tribofit

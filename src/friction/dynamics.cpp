@@ -61,6 +61,15 @@ FrictionDynamics::FrictionDynamics(FrictionModel model, std::vector<double> p)
   law_ = model_.base(p_.data());
 }
 
+void FrictionDynamics::begin_stick(std::span<const double> state) {
+  age_left_ = 0;
+  std::size_t k = 0;
+  for_each_effect(model_, p_.data(), [&]<class E>(const E&, const double*) {
+    if constexpr (hooks::Ages<E, double>) age_left_ = state[k];
+    if constexpr (hooks::Ages<E, double> || hooks::Remembers<E, double>) ++k;
+  });
+}
+
 void FrictionDynamics::begin_slip(double stick_time, double direction, double offset) {
   Slip slip;
   slip.stick_time = stick_time;
@@ -69,25 +78,53 @@ void FrictionDynamics::begin_slip(double stick_time, double direction, double of
   law_ = law_for(model_, p_.data(), slip);
   law_.mu_s += offset;
   direction_ = direction;
+  age_ = age_left_ + stick_time;
+}
+
+/// |mu| of a rigid stick at this break-away, before anything modulates it.
+double FrictionDynamics::friction_at_rest() const {
+  double level = law_.mu_s;
+  for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
+    if constexpr (hooks::Ages<E, double>) {
+      const double speed = effect.aged_speed(q, age_);
+      level = steady_friction(model_, p_.data(), law_, Instant<double>{.velocity = 0}, &speed);
+    }
+  });
+  return level;
 }
 
 double FrictionDynamics::break_away_friction(const Instant<double>& at) const {
   Instant<double> rest = at;
   rest.velocity = 0;
   rest.direction = direction_;
-  return direction_ * modulated(model_, p_.data(), rest, direction_ * law_.mu_s);
+  return direction_ * modulated(model_, p_.data(), rest, direction_ * friction_at_rest());
 }
 
 void FrictionDynamics::states_at_break_away(std::span<double> state) const {
-  for (double& phi : state) phi = law_.mu_s;
+  const double level = friction_at_rest();
+  std::size_t k = 0;
+  for_each_effect(model_, p_.data(), [&]<class E>(const E&, const double*) {
+    if constexpr (hooks::Ages<E, double>) state[k++] = age_;
+    if constexpr (hooks::Remembers<E, double>) state[k++] = level;
+  });
 }
 
 double FrictionDynamics::run(const Instant<double>& now, std::span<const double> state, std::span<double> rate,
                              bool want_rates) const {
   Instant<double> at = now;
   if (at.velocity != 0) at.direction = at.velocity < 0 ? -1 : 1;
-  double mu = steady_friction(model_, p_.data(), law_, at);
+  double speed = std::abs(at.velocity);
   std::size_t k = 0;
+  for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
+    if constexpr (hooks::Ages<E, double>) {
+      if (want_rates) rate[k] = 1 - effect.renewal(q, speed) * state[k];
+      speed = effect.aged_speed(q, state[k]);
+    }
+    if constexpr (hooks::Ages<E, double> || hooks::Remembers<E, double>) ++k;
+  });
+  const bool aged = speed != std::abs(at.velocity);
+  double mu = steady_friction(model_, p_.data(), law_, at, aged ? &speed : nullptr);
+  k = 0;
   bool is_signed = false;
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
     if constexpr (hooks::Remembers<E, double>) {
@@ -101,6 +138,7 @@ double FrictionDynamics::run(const Instant<double>& now, std::span<const double>
       is_signed = hooks::ActsInStick<E>;
       ++k;
     }
+    if constexpr (hooks::Ages<E, double>) ++k;
   });
   if (!is_signed && at.direction < 0) mu = -mu;
   return want_rates ? mu : modulated(model_, p_.data(), at, mu);

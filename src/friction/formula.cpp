@@ -258,6 +258,14 @@ EffectInfo Formula::info() const {
           .group = EffectGroup::user};
 }
 
+bool Formula::same_as(const Formula& other) const {
+  const auto bare = [](std::string text) {
+    std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
+    return text;
+  };
+  return bare(parsed_->expression) == bare(other.parsed_->expression);
+}
+
 std::size_t Formula::parameter_count() const {
   return parsed_->parameters.size();
 }

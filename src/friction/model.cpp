@@ -27,18 +27,37 @@ std::optional<BaseLaw> find_law(std::string_view name) {
   return std::nullopt;
 }
 
+namespace {
+
+bool in_stick(const Effect& effect) {
+  return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
+}
+
+/// The contacts have an age, which counts the time of a rigid stick.
+bool ages(const Effect& effect) {
+  return std::visit([]<class E>(const E&) { return hooks::Ages<E, double>; }, effect);
+}
+
+void refuse_two_of_stick(const std::vector<Effect>& effects) {
+  const auto creeping = std::count_if(effects.begin(), effects.end(), in_stick);
+  if (creeping > 1) throw InputError("two effects that act in stick cannot be combined", "leave one of them out");
+  const auto ageing = std::find_if(effects.begin(), effects.end(), ages);
+  if (creeping == 0 || ageing == effects.end()) return;
+  throw InputError("the effect '" + describe(*ageing).spelled() +
+                       "' counts the time at rest and cannot be combined with one that lets the block creep in stick",
+                   "leave one of them out");
+}
+
+}  // namespace
+
 FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
   // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into
   // signed mu.
-  const auto in_stick = [](const Effect& effect) {
-    return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
-  };
   std::stable_sort(effects_.begin(), effects_.end(), [&](const Effect& a, const Effect& b) {
     return std::pair(in_stick(a), a.index()) < std::pair(in_stick(b), b.index());
   });
-  if (std::count_if(effects_.begin(), effects_.end(), in_stick) > 1) {
-    throw InputError("two effects that act in stick cannot be combined", "leave one of them out");
-  }
+  refuse_same(effects_);
+  refuse_two_of_stick(effects_);
   slots_.push_back({{"mu_s", "1", 1, 0, 5, 0.5}, ""});
   slots_.push_back({{"mu_k", "1", 1, 0, 5, 0.3}, ""});
   if (law == BaseLaw::exponential) slots_.push_back({{"alpha", "s/mm", 1e3, 1e-4, 10, 0.05}, ""});
@@ -46,13 +65,10 @@ FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(la
   for (const Effect& effect : effects_) {
     const EffectInfo info = describe(effect);
     offsets_.push_back(slots_.size());
-    if (std::any_of(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.effect == info.key; })) {
-      throw InputError("the effect '" + info.key + "' is given twice", "name each effect once");
-    }
     for (const Parameter& parameter : info.parameters) slots_.push_back({parameter, info.key});
     std::visit(
         [&]<class E>(const E&) {
-          if constexpr (hooks::Remembers<E, double>) ++state_count_;
+          if constexpr (hooks::Remembers<E, double> || hooks::Ages<E, double>) ++state_count_;
         },
         effect);
   }
@@ -67,6 +83,12 @@ std::vector<std::string> FrictionModel::effect_keys() const {
   std::vector<std::string> keys;
   for (const Effect& effect : effects_) keys.push_back(describe(effect).key);
   return keys;
+}
+
+std::vector<std::string> FrictionModel::effect_names() const {
+  std::vector<std::string> names;
+  for (const Effect& effect : effects_) names.push_back(describe(effect).spelled());
+  return names;
 }
 
 Channels FrictionModel::needs() const {
@@ -87,14 +109,17 @@ Channels FrictionModel::needs() const {
 }
 
 bool FrictionModel::acts_in_stick() const {
-  return std::any_of(effects_.begin(), effects_.end(), [](const Effect& effect) {
-    return std::visit([]<class E>(const E&) { return hooks::ActsInStick<E>; }, effect);
-  });
+  return std::any_of(effects_.begin(), effects_.end(), in_stick);
+}
+
+bool FrictionModel::acts_with(const Effect& effect) const {
+  if (in_stick(effect)) return !acts_in_stick() && std::none_of(effects_.begin(), effects_.end(), ages);
+  return !ages(effect) || !acts_in_stick();
 }
 
 std::string FrictionModel::name() const {
   std::string text(to_string(law_));
-  for (const std::string& key : effect_keys()) text += " + " + key;
+  for (const std::string& name : effect_names()) text += " + " + name;
   return text;
 }
 

@@ -19,6 +19,7 @@
 #include "spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/own_files.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -69,13 +70,14 @@ bool fits(std::string_view pattern, std::string_view name) {
   return p == pattern.size();
 }
 
-/// Names of the files of a folder, sorted; hidden ones and the manifest left out.
+/// Names of the files of a folder, sorted; hidden ones, the manifest and what --csv wrote left out.
 std::vector<std::string> files_of(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (name.front() != '.' && name != manifest_name && !it->is_directory(error)) names.push_back(name);
+    if (name.front() == '.' || name == manifest_name || it->is_directory(error)) continue;
+    if (!is_own_file(it->path().string())) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -163,6 +163,7 @@ void Simulation::begin_stick() {
   stick_begin_ = time_;
   stick_position_ = state_[0] / setup_.natural_frequency;
   stick_travel_ = setup_.disc_travel(time_);
+  friction_.begin_stick(std::span<const double>(state_.data() + 2, friction_.state_count()));
 }
 
 /// Force that the contact must carry for the block to keep up with the disc [N].

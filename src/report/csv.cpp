@@ -17,6 +17,7 @@
 #include "measures.hpp"
 #include "numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/own_files.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/whole_file.hpp"
 
@@ -62,6 +63,11 @@ class WholeFolder {
   std::vector<std::unique_ptr<WholeFile>> files_;
 };
 
+/// How the header of one of the tables begins.
+std::string_view header_of(std::string_view name) {
+  return std::find_if(own_files.begin(), own_files.end(), [&](const OwnFile& f) { return f.name == name; })->header;
+}
+
 /// One line of a CSV file, cell by cell. What is not known is an empty cell.
 class Row {
  public:
@@ -106,7 +112,7 @@ void write_samples(WholeFile& file, const Identification& result, const std::vec
   for (const Cycle& cycle : result.segmentation.cycles) {
     for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, motion.size()); ++i) slips[i] = true;
   }
-  file.write("time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold\n");
+  file.write(std::string(header_of("samples.csv")) + "\n");
   Row row(file);
   for (std::size_t i = 0; i < motion.size(); ++i) {
     const double v = motion.relative_velocity[i];
@@ -122,11 +128,12 @@ void write_samples(WholeFile& file, const Identification& result, const std::vec
 void write_cycles(WholeFile& file, const Identification& result, const Membership& member) {
   const std::string unit = friction_unit(result.motion) == "N" ? "_N" : "";
   const std::string slope = unit.empty() ? "_1_s" : "_N_s";
-  file.write(fmt::format(
-      "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,stick_time_s,slip_time_s,period_s,"
-      "break_away_friction{0},break_away_friction_std_error{0},stick_slope{1},static_friction{0},kinetic_friction{0},"
-      "peak_velocity_mm_s,plateau_velocity_mm_s,stick_complete,slip_complete,held_out_fold\n",
-      unit, slope));
+  file.write(std::string(header_of("cycles.csv")));
+  file.write(
+      fmt::format("stick_time_s,slip_time_s,period_s,break_away_friction{0},break_away_friction_std_error{0},stick_"
+                  "slope{1},static_friction{0},kinetic_friction{0},"
+                  "peak_velocity_mm_s,plateau_velocity_mm_s,stick_complete,slip_complete,held_out_fold\n",
+                  unit, slope));
   Row row(file);
   const std::vector<Cycle>& cycles = result.segmentation.cycles;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
@@ -144,7 +151,7 @@ void write_cycles(WholeFile& file, const Identification& result, const Membershi
 void write_curves(WholeFile& file, std::span<const Fit> fits) {
   constexpr std::size_t kPoints = 201;
   constexpr double kReach = 1.25;  // of the fastest slip, so that the extrapolation is seen as such
-  file.write("law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data\n");
+  file.write(std::string(header_of("curves.csv")) + "\n");
   Row row(file);
   for (const Fit& fit : fits) {
     std::vector<double> velocity(kPoints);
@@ -152,7 +159,7 @@ void write_curves(WholeFile& file, std::span<const Fit> fits) {
       velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(kPoints - 1);
     }
     std::string effects;
-    for (const std::string& key : fit.model.effect_keys()) effects += (effects.empty() ? "" : "+") + key;
+    for (const std::string& name : fit.model.effect_names()) effects += (effects.empty() ? "" : "+") + name;
     const Curve curve = law_curve(fit, velocity);
     for (std::size_t i = 0; i < curve.velocity.size(); ++i) {
       row << to_string(fit.model.law()) << effects << to_string(fit.protocol) << curve.velocity[i] / kMillimetre
@@ -165,8 +172,8 @@ void write_curves(WholeFile& file, std::span<const Fit> fits) {
 void write_errors(WholeFile& file, const Identification& result, const std::vector<double>& model,
                   const Membership& member) {
   const Motion& motion = result.motion;
-  file.write(fmt::format("time_s,relative_velocity_mm_s,residual{},relative_error_1,cycle,held_out_fold\n",
-                         friction_unit(motion) == "N" ? "_N" : "_1"));
+  file.write(std::string(header_of("errors.csv")) +
+             fmt::format("{},relative_error_1,cycle,held_out_fold\n", friction_unit(motion)));
   Row row(file);
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(model[i])) continue;

@@ -99,7 +99,7 @@ class Sentences {
 
   std::string level(double value) const { return significant(value, 3) + (is_force(result_) ? " N" : ""); }
   double last() const { return d_.ladder.empty() ? std::nan("") : d_.ladder.back().held_out_rmse; }
-  std::string law() const { return std::string(to_string(d_.law)); }
+  std::string law() const { return law_text(d_); }
 
   /// How the error stands to the floor: "at the floor of 0.0030, which is noise and scatter".
   std::string against_floor() const {
@@ -122,7 +122,7 @@ class Sentences {
 
   std::string sufficient() const {
     return fmt::format(
-        "The {} law is enough: it leaves {} on data it has not seen, {}. Nothing is missing that these "
+        "The {} is enough: it leaves {} on data it has not seen, {}. Nothing is missing that these "
         "data could show{}.",
         law(), level(last()), against_floor(), untestable() ? "; what they cannot show stands below" : "");
   }
@@ -131,7 +131,7 @@ class Sentences {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (missing_effects(d_).empty()) {
       return fmt::format(
-          "Something is missing that no effect of the catalogue explains: the {} law leaves {} on data "
+          "Something is missing that no effect of the catalogue explains: the {} leaves {} on data "
           "it has not seen, {}. {}",
           law(), level(last()), against_floor(), rest);
     }
@@ -180,12 +180,12 @@ std::vector<std::string> final_model(const DiagnosedTraces& result, const Termin
   bool formulas = false;
   if (!result.fits.empty()) {
     const FrictionModel& model = result.fits[result.best].model;
-    const std::vector<std::string> keys = model.effect_keys();
-    for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::vector<std::string> names = model.effect_names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
       if (std::holds_alternative<Formula>(model.effects()[k])) {
         formulas = true;  // as the user wrote it
       } else {
-        effects.insert(effects.end(), {"--effect", keys[k]});
+        effects.insert(effects.end(), {"--effect", names[k]});
       }
     }
   }
@@ -215,7 +215,13 @@ std::vector<Rung> missing_effects(const Diagnosis& d) {
       return r.added == key || std::find(r.equivalent.begin(), r.equivalent.end(), key) != r.equivalent.end();
     });
   };
+  // What the user put into the model was not found missing.
+  const auto given = [&](const std::string& key) {
+    return std::any_of(d.from_the_start.begin(), d.from_the_start.end(),
+                       [&](const std::string& name) { return name.substr(0, name.find(':')) == key; });
+  };
   for (const EffectFinding& e : d.effects) {
+    if (given(e.key)) continue;
     if (e.status == EffectStatus::missing && !mentioned(e.key)) missing.push_back({e.key, e.held_out_rmse, 0, 0, {}});
   }
   if (missing.size() == rungs) return missing;
@@ -231,6 +237,11 @@ std::vector<Share> worth_naming(const std::vector<Share>& shares) {
     if (s.share >= kWorthNaming && !(s.p_value > kSignificant)) kept.push_back(s);
   }
   return kept;
+}
+
+std::string law_text(const Diagnosis& diagnosis) {
+  const std::string law = std::string(to_string(diagnosis.law)) + " law";
+  return diagnosis.from_the_start.empty() ? law : law + " with " + enumerated(diagnosis.from_the_start);
 }
 
 std::string where_sentence(const std::vector<Share>& shares) {

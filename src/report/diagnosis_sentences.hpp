@@ -34,6 +34,9 @@ const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key
 /// What an effect of the catalogue, or one of the user's in a model of the result, says about itself; empty otherwise.
 EffectInfo info_of(const DiagnosedTraces& result, std::string_view key);
 
+/// "exponential law", or "exponential law with viscous" where the model has had effects from the start.
+std::string law_text(const Diagnosis& diagnosis);
+
 /// "a", "a and b", "a, b and c".
 std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
 

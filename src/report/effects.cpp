@@ -63,12 +63,15 @@ std::string bound(double value) {
 }
 
 std::string what_it_is(const EffectInfo& effect, const Style& style) {
-  std::string text = fmt::format("{}{}{} ({})\n", style.bold, effect.key, style.off, to_string(effect.group));
+  std::string text = fmt::format("{}{}{} ({})\n", style.bold, effect.spelled(), style.off, to_string(effect.group));
   text += "  " + wrapped(effect.statement, style.width, 2) + "\n\n";
   text += line(style, "equation", effect.equation);
   text += line(style, "source", effect.source);
   text += line(style, "needs", channels_text(effect.needs));
   if (!effect.experiment.empty()) text += line(style, "best shown by", effect.experiment);
+  for (const EffectForm& form : effect.forms) {
+    text += line(style, "other form", effect.key + ":" + form.name + ": " + form.statement);
+  }
   text += "\n";
   Table table({"parameter", "unit", "lower", "upper", "start"}, {true, true, false, false, false});
   for (const Parameter& p : effect.parameters) {
@@ -84,8 +87,9 @@ std::string what_it_is(const EffectInfo& effect, const Style& style) {
 }
 
 std::string what_next(const EffectInfo& effect) {
-  return effect.of_motion ? "\nNext, to look for it:\n  identify diagnose --radius 15mm trace.csv\n"
-                          : "\nNext, to fit it:\n  identify --radius 15mm --effect " + effect.key + " trace.csv\n";
+  return effect.of_motion
+             ? "\nNext, to look for it:\n  identify diagnose --radius 15mm trace.csv\n"
+             : "\nNext, to fit it:\n  identify --radius 15mm --effect " + effect.spelled() + " trace.csv\n";
 }
 
 }  // namespace
@@ -101,6 +105,9 @@ std::string render_effects(std::span<const EffectInfo> effects, const TerminalOp
       if (effect.group != group) continue;
       text += fmt::format("  {}{}{}\n", style.bold, effect.key, style.off);
       text += "    " + wrapped(effect.statement, style.width, 4) + "\n";
+      for (const EffectForm& form : effect.forms) {
+        text += "    " + wrapped(effect.key + ":" + form.name + ": " + form.statement, style.width, 4) + "\n";
+      }
       const std::string needs = short_channels(effect.needs);
       text += "    " + std::string(style.dim) +
               wrapped(parameters_text(effect) + (needs.empty() ? "" : "; needs " + needs), style.width, 4) +

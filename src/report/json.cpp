@@ -142,7 +142,8 @@ Json parameter_json(const FitParameter& p, const Motion& motion) {
           {"profile_ci95", Json::array({in_unit(p.profile_lower95), in_unit(p.profile_upper95)})},
           {"start", in_unit(p.start)},
           {"bounds", Json::array({number(p.parameter.lower), number(p.parameter.upper)})},
-          {"at_bound", p.at_bound}};
+          {"at_bound", p.at_bound},
+          {"determined", p.determined}};
 }
 
 namespace {
@@ -159,6 +160,7 @@ Json fit_json(const Fit& fit, const Motion& motion) {
   return {{"law", to_string(fit.model.law())},
           {"protocol", to_string(fit.protocol)},
           {"effects", fit.model.effect_keys()},
+          {"effect_names", fit.model.effect_names()},
           {"parameters", std::move(parameters)},
           {"error",
            {{"rmse", number(fit.error.rmse)},

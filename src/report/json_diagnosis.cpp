@@ -48,6 +48,7 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
   for (const Confirmation& c : d.confirmations) confirmations.push_back(confirmation_json(c));
   return {{"verdict", to_string(d.verdict)},
           {"law", to_string(d.law)},
+          {"from_the_start", d.from_the_start},
           {"where", shares_json(d.where)},
           {"effects", std::move(effects)},
           {"ladder", std::move(ladder)},

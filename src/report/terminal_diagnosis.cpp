@@ -24,7 +24,7 @@ class Page {
   std::string text() {
     header();
     ladder();
-    shares("Where the " + std::string(to_string(d_.law)) + " law fails", d_.where, !at_floor(0));
+    shares("Where the " + law_text(d_) + " fails", d_.where, !at_floor(0));
     if (d_.ladder.size() > 1) shares("What remains", d_.remaining, d_.verdict == Verdict::unexplained);
     verdict();
     effects();
@@ -143,7 +143,7 @@ class Page {
     std::vector<Row> rows;
     for (std::size_t k = 0; k < d_.ladder.size(); ++k) {
       const Rung& rung = d_.ladder[k];
-      const std::string name = k == 0 ? std::string(to_string(d_.law)) + " law" : "+ " + rung.added;
+      const std::string name = k == 0 ? law_text(d_) : "+ " + rung.added;
       rows.push_back({fmt::format("{}  {}", k, name), rung.held_out_rmse, rung.held_out_std_error,
                       k == 0 ? std::nan("") : removed(k)});
     }

@@ -36,6 +36,7 @@ std::string flags_of(const Fit& fit, std::size_t index) {
   const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
                                       [&](const Correlation& c) { return c.first == index || c.second == index; });
   if (correlated) add("correlated");
+  if (!p.determined) add("not determined");
   return flags;
 }
 
@@ -127,7 +128,7 @@ std::string one_fit(const Identification& r, const Fit& fit, const TerminalOptio
                                  style.off, best ? " (best)" : "", equation(fit.model.law()));
   for (const Effect& effect : fit.model.effects()) {
     const EffectInfo info = describe(effect);
-    text += "\n  " + info.key + ":  " + wrapped(info.equation, style.width, info.key.size() + 5);
+    text += "\n  " + info.spelled() + ":  " + wrapped(info.equation, style.width, info.spelled().size() + 5);
   }
   text += "\n";
   if (!fit.converged)

@@ -138,7 +138,6 @@ INSTANTIATE_TEST_SUITE_P(
         Value{"NoSuchChannel", "--radius 15mm --columns vb=v_b_mm_s", {"--columns", "no channel 'vb'", "'v_b'"}},
         Value{"NoSuchColumn", "--radius 15mm --columns mu=COF", {"COF", "mu"}},
         Value{"NoPair", "--radius 15mm --columns mu", {"--columns", "'mu' is not CHANNEL=COLUMN"}},
-        Value{"NoSuchEffect", "--radius 15mm --effect vicous", {"'vicous'", "did you mean 'viscous'"}},
         Value{"BadFormula", "--radius 15mm --formula 'x = a*w; a=1'", {"'w'", "neither a variable nor a parameter"}}),
     [](const auto& param_info) { return param_info.param.name; });
 

@@ -65,6 +65,31 @@ TEST(Diagnose, AHiddenEffectIsNamedAndTheNextCommandRuns) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+/// An effect that the user names is part of the law from the first rung on.
+TEST(Diagnose, StartsFromTheLawWithTheEffectsThatAreNamed) {
+  const Workshop shop;
+  shop.write("trace.csv", viscous_trace());
+  const json bare = result_of(shop, "--radius 15mm --speed 4rpm --load 50N trace.csv");
+  const Outcome outcome =
+      shop.identify("diagnose --radius 15mm --speed 4rpm --load 50N --effect viscous --json d.json trace.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("law with viscous "), HasSubstr("--effect viscous")));
+  const json j = json::parse(contents(shop / "d.json"));
+  const json& diagnosis = j["diagnosis"];
+  EXPECT_EQ(diagnosis["verdict"], "sufficient");
+  EXPECT_EQ(diagnosis["from_the_start"], json({"viscous"}));
+  ASSERT_EQ(diagnosis["ladder"].size(), 1u);
+  EXPECT_TRUE(diagnosis["ladder"][0]["added"].is_null());
+  EXPECT_LT(diagnosis["ladder"][0]["held_out_rmse"],
+            0.8 * bare["diagnosis"]["ladder"][0]["held_out_rmse"].get<double>());
+  EXPECT_EQ(j["fits"][0]["effects"], json({"viscous"}));
+  for (const json& effect : diagnosis["effects"]) {
+    if (effect["key"] != "viscous") continue;
+    EXPECT_EQ(effect["reason"], "it is part of the model from the start");
+    EXPECT_NEAR(effect["parameters"][0]["value"], 0.0015, 0.0002);
+  }
+}
+
 TEST(Diagnose, ResultsAreTheSameForAnyNumberOfThreads) {
   const Workshop shop;
   shop.write("trace.csv", viscous_trace());
@@ -168,10 +193,11 @@ TEST(Diagnose, BadEffectsAreRefusedWithAReason) {
                          {"--formula 'x = a*vv; a=1'", 3, "'vv'"},
                          {"--formula 'x = a*log(v-500); a=0.1'", 1, "'x' is not finite on these data"},
                          {"--formula 'x = a/(v-v); a=0.1'", 1, "'x' is not finite on these data"},
-                         {"--effect viscuos", 3, "did you mean 'viscous'?"},
-                         {"--effect viscous --effect viscous", 3, "the effect 'viscous' is given twice"},
-                         {"--formula 'x = a*v; a=0.1' --formula 'x = a*t; a=0.1'", 3, "the effect 'x' is given twice"},
-                         {"--formula 'viscous = a*v; a=0.1'", 3, "give it another name"},
+                         {"--formula 'x = a*(v-v); a=0.1'", 1, "'x' is zero on these data"},
+                         {"--effect viscuos", 2, "did you mean 'viscous'?"},
+                         {"--effect viscous --effect viscous", 2, "the effect 'viscous' is given twice"},
+                         {"--formula 'x = a*v; a=0.1' --formula 'x = a*t; a=0.1'", 2, "the effect 'x' is given twice"},
+                         {"--formula 'viscous = a*v; a=0.1'", 2, "give it another name"},
                          {"--law exponental", 2, "exponential"},
                          {"--columns mu=COF", 3, "COF"}}) {
     const Outcome outcome =

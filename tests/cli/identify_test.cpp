@@ -141,4 +141,62 @@ TEST_F(Identify, AddsEffectsAndFormulas) {
   EXPECT_THAT(formula.out, HasSubstr("hump.v0"));
 }
 
+TEST_F(Identify, FormulasThatCannotBeFittedAreAFailureAlsoWhenQuiet) {
+  for (const char* quiet : {"", "--quiet "}) {
+    const Outcome not_finite =
+        shop_.identify(std::string(quiet) + "--radius 15mm --formula 'x = a*log(v-500); a=0.1' trace.csv");
+    EXPECT_EQ(not_finite.status, 1);
+    EXPECT_THAT(not_finite.err, HasSubstr("'x' is not finite on these data"));
+    const Outcome nothing = shop_.identify(std::string(quiet) + "--radius 15mm --formula 'x = a*0; a=0.1' trace.csv");
+    EXPECT_EQ(nothing.status, 1);
+    EXPECT_THAT(nothing.err, HasSubstr("'x' is zero on these data"));
+  }
+}
+
+TEST_F(Identify, TablesThatCsvWroteAreNoRuns) {
+  std::filesystem::create_directory(shop_ / "runs");
+  shop_.write("runs/a.csv", good_trace());
+  ASSERT_EQ(shop_.identify("--radius 15mm --quiet --csv runs runs").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(shop_ / "runs/samples.csv"));
+  Outcome again = shop_.identify("--radius 15mm --json r.json runs");
+  EXPECT_EQ(again.status, 0) << again.err;
+  const json j = json::parse(contents(shop_ / "r.json"));
+  EXPECT_EQ(j["trace"]["path"], "runs/a.csv");
+  EXPECT_THAT(again.out, HasSubstr("because --csv wrote them: "));
+  shop_.write("runs/manifest.csv", "file,radius\n*.csv,15mm\n");
+  again = shop_.identify("--quiet runs");
+  EXPECT_EQ(again.status, 0) << again.err;
+  // A run of that name is a run.
+  std::filesystem::create_directory(shop_ / "mine");
+  shop_.write("mine/samples.csv", good_trace());
+  EXPECT_EQ(shop_.identify("--radius 15mm --quiet mine").status, 0);
+  std::filesystem::remove(shop_ / "runs/manifest.csv");
+  std::filesystem::remove(shop_ / "runs/a.csv");
+  const Outcome only = shop_.identify("--radius 15mm runs");
+  EXPECT_EQ(only.status, 3);
+  EXPECT_THAT(only.err, HasSubstr("only tables that --csv wrote"));
+}
+
+TEST_F(Identify, HealingIsSimulatedFittedAndExplained) {
+  ASSERT_EQ(shop_
+                .identify("simulate --radius 15mm --speed 4rpm --duration 6s --effect rate-state:healing,D_c=80um "
+                          "--noise-mu 0.001 --out h.csv")
+                .status,
+            0);
+  EXPECT_EQ(json::parse(contents(shop_ / "h.json"))["effect_names"], json({"rate-state:healing"}));
+  const Outcome fit =
+      shop_.identify("--radius 15mm --speed 4rpm --law exponential --effect rate-state:healing --json r.json h.csv");
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("exponential + rate-state:healing"));
+  const json f = json::parse(contents(shop_ / "r.json"))["fits"][0];
+  EXPECT_EQ(f["effects"], json({"rate-state"}));
+  EXPECT_EQ(f["effect_names"], json({"rate-state:healing"}));
+  EXPECT_EQ(f["parameters"][3]["name"], "D_c");
+  EXPECT_NEAR(f["parameters"][3]["value"], 80, 4);
+  const Outcome page = shop_.identify("effects rate-state:healing");
+  EXPECT_EQ(page.status, 0);
+  EXPECT_THAT(page.out, AllOf(HasSubstr("d theta/dt = 1 - v theta/D_c"), HasSubstr("--effect rate-state:healing")));
+  EXPECT_THAT(shop_.identify("effects rate-state").out, HasSubstr("rate-state:healing"));
+}
+
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "tribofit/friction/evaluate.hpp"
@@ -69,6 +70,7 @@ inline Record make(const tribofit::FrictionModel& model, const std::vector<doubl
   ColouredNoise noise(o.colour, engine), scatter(o.wander, engine);
   const auto stick = static_cast<std::size_t>(o.stick_time * o.rate),
              slip = static_cast<std::size_t>(o.slip_time * o.rate);
+  std::vector<double> earlier_time, earlier_velocity;
   for (std::size_t c = 0; c < o.cycles; ++c) {
     Cycle cycle;
     cycle.stick = {m.size(), m.size() + stick};
@@ -100,6 +102,8 @@ inline Record make(const tribofit::FrictionModel& model, const std::vector<doubl
     view.stick_slope = cycle.stick_slope;
     view.direction = o.direction;
     view.mean_load = 50;
+    view.earlier_time = earlier_time;
+    view.earlier_velocity = earlier_velocity;
     std::vector<double> mu(slip);
     evaluate<double>(model, q.data(), view, view.velocity, mu);
     const double level = break_away_level(model, q.data(), view);
@@ -121,6 +125,8 @@ inline Record make(const tribofit::FrictionModel& model, const std::vector<doubl
       cycle.slip_minimum = std::min(cycle.slip_minimum, m.friction.back() * o.direction);
     }
     record.segmentation.cycles.push_back(cycle);
+    earlier_time = std::move(time);
+    earlier_velocity = std::move(velocity);
   }
   return record;
 }

@@ -26,6 +26,16 @@ std::vector<std::string> catalogue_keys() {
   return keys;
 }
 
+/// With the forms of effects.
+std::vector<std::string> every_name() {
+  std::vector<std::string> names = catalogue_keys();
+  for (const Effect& effect : effect_catalogue()) {
+    const EffectInfo info = describe(effect);
+    for (const EffectForm& form : info.forms) names.push_back(info.key + ":" + form.name);
+  }
+  return names;
+}
+
 class EveryEffect : public testing::TestWithParam<std::string> {
  protected:
   FrictionModel model_{BaseLaw::exponential, {make_effect(GetParam())}};
@@ -202,9 +212,9 @@ TEST(Pairs, AreOfTheCatalogueAndMutual) {
   EXPECT_EQ(telling_test("heating", "interference"), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue_keys()), [](const auto& key) {
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(every_name()), [](const auto& key) {
   std::string name = key.param;
-  for (char& c : name) c = c == '-' ? '_' : c;
+  for (char& c : name) c = c == '-' || c == ':' ? '_' : c;
   return name;
 });
 

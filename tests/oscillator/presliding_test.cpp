@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -137,6 +138,37 @@ TEST(Memory, RateStateFollowsItsDistance) {
     ++checked;
   }
   EXPECT_GT(checked, 10000);
+}
+
+// d theta/dt = 1 - v theta/D_c through slips and the sticks between them, from the samples, by the mean of v over each.
+TEST(Memory, HealingContactsAgeThroughStickAndSlip) {
+  const double critical_distance = 100e-6, direct = 0.005;
+  const Case c = with_effect("rate-state:healing", {critical_distance, direct});
+  const double rate = 1e6;
+  const SimulatedMotion motion = simulate(c, {.duration = 0.7, .rate = rate});
+  ASSERT_GE(motion.slips.size(), 2u);
+  double theta = 0, worst = 0;
+  std::size_t slipping = 0, next = 0;
+  for (std::size_t i = 1; i < motion.size(); ++i) {
+    const double v = 0.5 * (motion.relative_velocity[i - 1] + motion.relative_velocity[i]) / critical_distance,
+                 h = 1 / rate;
+    const double before = theta;
+    theta = v > 0 ? theta * std::exp(-v * h) - std::expm1(-v * h) / v : theta + h;
+    if (next < motion.slips.size() && motion.time[i] >= motion.slips[next].break_away_time) {
+      const double waited = motion.slips[next].break_away_time - motion.time[i - 1];
+      const double level = exponential(c, critical_distance / (before + waited));
+      EXPECT_NEAR(motion.slips[next].break_away_friction, level, 1e-6) << next;
+      ++next;
+    }
+    if (motion.sticks[i - 1] || motion.sticks[i]) continue;
+    ++slipping;
+    const double expected =
+        exponential(c, critical_distance / theta) + direct * std::asinh(motion.relative_velocity[i] / 2e-3);
+    worst = std::max(worst, std::abs(motion.friction[i] - expected));
+  }
+  EXPECT_GT(slipping, 40000u);
+  EXPECT_LT(worst, 1e-6);
+  ASSERT_GE(next, 2u);
 }
 
 // Slip begins from v_r = 0, where even a short distance takes time: the limit is reached slowly, but reached.

@@ -11,8 +11,9 @@
 namespace tribofit {
 
 struct DiagnosisOptions {
-  int threads = 0;       ///< 0: as many as there are; the result does not depend on it
-  int most_effects = 4;  ///< rungs beyond the base law
+  int threads = 0;                          ///< 0: as many as there are; the result does not depend on it
+  int most_effects = 4;                     ///< rungs beyond the base law
+  std::vector<Effect> from_the_start = {};  ///< of the catalogue, in every model beside the base law
   /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
   std::function<void(std::string_view, double)> progress;
 };
@@ -85,11 +86,12 @@ struct Confirmation {
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   BaseLaw law = BaseLaw::exponential;
-  std::vector<Share> where;            ///< of the base law, largest first
-  std::vector<Share> remaining;        ///< of the last rung, largest first
-  std::vector<EffectFinding> effects;  ///< every effect of the catalogue, in its order, then the user's own
-  std::vector<Rung> ladder;            ///< base law first
-  double floor_rmse = 0;               ///< [1 or N]
+  std::vector<std::string> from_the_start = {};  ///< effects beside the law on every rung, as the command line has them
+  std::vector<Share> where;                      ///< of the base law, largest first
+  std::vector<Share> remaining;                  ///< of the last rung, largest first
+  std::vector<EffectFinding> effects;            ///< every effect of the catalogue, in its order, then the user's own
+  std::vector<Rung> ladder;                      ///< base law first
+  double floor_rmse = 0;                         ///< [1 or N]
   std::vector<Confirmation> confirmations;
   std::string next_experiment;  ///< one or two sentences
   std::string formula;          ///< a closed form of what remains, as --formula takes it; empty: none

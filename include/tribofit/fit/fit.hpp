@@ -38,12 +38,13 @@ struct FitParameter {
   Parameter parameter;  ///< name, unit and bounds
   std::string effect;   ///< key; empty for the base law
   double value = 0;
-  double std_error = 0;                             ///< statistical, from cycle to cycle
-  double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval
+  double std_error = 0;                             ///< statistical, from cycle to cycle; infinite where not determined
+  double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval; infinite where not determined
   double systematic = 0;                            ///< standard uncertainty from the declared instruments
   double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for
   double start = 0;
   bool at_bound = false;
+  bool determined = true;  ///< false: the data fix only a combination of it with others, which a message names
 };
 
 /// What the model leaves, over slip samples and break-aways (see Observations).

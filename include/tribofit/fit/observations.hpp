@@ -41,7 +41,9 @@ struct Observations {
     double lead_friction = 0;                  ///< signed, at the first of them
     double tail_friction = 0;                  ///< signed, in the stick right after the slip; NaN where there is none
     double restick_time = 0;                   ///< [s]; NaN where there is none
-    std::size_t stick = npos;                  ///< index in `sticks` of the stick before it; npos: none
+    std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
+    double earlier_restick_time = 0;                 ///< when that came to rest [s]
+    std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none
   };
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 

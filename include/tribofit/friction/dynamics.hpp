@@ -23,6 +23,9 @@ class FrictionDynamics {
   std::size_t state_count() const { return model_.state_count(); }
   bool acts_in_stick() const { return model_.acts_in_stick(); }
 
+  /// Opens a stick, with the states of the memories in which it begins.
+  void begin_stick(std::span<const double> state);
+
   /// Opens a slip: levels of the law for the stick time before it and its direction (+1, -1), plus `offset` on mu_s
   /// (the scatter of this break-away [1]). Models that act in stick keep one law from begin_slip to the next.
   void begin_slip(double stick_time, double direction, double offset = 0);
@@ -40,12 +43,14 @@ class FrictionDynamics {
   void rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const;
 
  private:
+  double friction_at_rest() const;
   double run(const Instant<double>& now, std::span<const double> state, std::span<double> rate, bool want_rates) const;
 
   FrictionModel model_;
   std::vector<double> p_;
   LawParameters<double> law_{};
   double direction_ = 1;
+  double age_left_ = 0, age_ = 0;  ///< of contacts with an age: when the stick began, and when it ends [s]
 };
 
 }  // namespace tribofit

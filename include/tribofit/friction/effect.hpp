@@ -26,6 +26,8 @@ namespace tribofit {
 ///   LocalSliding<T> spread(p, const Instant<T>&)                local speeds within the contact: f is taken at
 ///   `speed`, and
 ///        `share` of it acts along v_r
+///   T    renewal(p, const V& v), aged_speed(p, const T& theta)   contacts with an age, d theta/dt = 1 - renewal theta:
+///        the base law is taken at aged_speed instead of v (see contact_age.hpp)
 ///   T    steady(p, const Instant<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
 ///   Relaxation<T> relaxation(p, const Instant<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
 ///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
@@ -66,6 +68,12 @@ struct LookAlike {
   std::string test;
 };
 
+/// Another form of an effect, which is asked for as KEY:NAME.
+struct EffectForm {
+  std::string name;
+  std::string statement;  ///< in what it differs
+};
+
 /// What an effect says about itself.
 struct EffectInfo {
   std::string key;         ///< name on the command line and in JSON
@@ -78,6 +86,11 @@ struct EffectInfo {
   EffectGroup group = EffectGroup::friction;
   bool of_motion = false;             ///< see is_of_motion(); filled in by describe()
   std::vector<LookAlike> pairs = {};  ///< filled in by describe(), see effect_pairs.hpp
+  std::string option = {};            ///< of an effect that is a form of another: the name of that form
+  std::vector<EffectForm> forms = {};
+
+  /// As the command line takes it: "rate-state", "rate-state:healing".
+  std::string spelled() const { return option.empty() ? key : key + ":" + option; }
 };
 
 /// How friction of a contact is put together from points that slide at different velocities.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "tribofit/friction/contact_age.hpp"
 #include "tribofit/friction/model.hpp"
 
 namespace tribofit {
@@ -29,6 +30,10 @@ concept Spreads = requires(const E e, const T* p, const Instant<T>& x) {
 template <class E, class T>
 concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
   e.steady(p, x, mu);
+};
+template <class E, class T>
+concept Ages = requires(const E e, const T* p, const T& theta) {
+  e.aged_speed(p, theta);
 };
 template <class E, class T>
 concept Remembers = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
@@ -92,8 +97,10 @@ LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& sli
 }
 
 /// Steady friction f(v) [1] at one instant, >= 0, before any memory.
+/// aged_speed: where contacts have an age, the speed at which the base law is taken instead of v [m/s].
 template <class T>
-T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at) {
+T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at,
+                  const T* aged_speed = nullptr) {
   using std::abs;
   T share = T(1.0);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
@@ -103,7 +110,7 @@ T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>
       at.velocity = at.direction * local.speed;
     }
   });
-  T x = law.decay * abs(at.velocity);
+  T x = law.decay * (aged_speed != nullptr ? *aged_speed : T(abs(at.velocity)));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Reduces<E, T>) x = effect.reduce(q, x);
   });
@@ -199,7 +206,8 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, c
 
 }  // namespace detail
 
-/// Steady friction f(v) [1] at every sample of a slip: as above, each effect visited once.
+/// Steady friction f(v) [1] at every sample of a slip: as above, each effect visited once. Contacts with an age carry
+/// it through the slip.
 template <class T>
 void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
@@ -208,7 +216,11 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
     for (std::size_t i = 0; i < n; ++i) mu[i] = steady_friction(model, p, law, slip.at(i, velocity[i]));
     return;
   }
-  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * slip.speed(velocity[i]);
+  for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Ages<E, T>) detail::aged_speeds(effect, q, slip, velocity, mu);
+  });
+  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * mu[i];
   bool bent = false;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Reduces<E, T>) {
@@ -234,6 +246,22 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
 
 namespace detail {
 
+/// |mu| that a rigid stick before `slip` reaches, before anything modulates it: mu_s, or less where the contacts have
+/// an age.
+template <class T>
+T friction_at_rest(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip) {
+  T level = law.mu_s;
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Ages<E, T>) {
+      Instant<T> at;
+      at.velocity = T(0.0 * law.mu_s);
+      const T speed = effect.aged_speed(q, age_at_break_away(effect, q, slip));
+      level = steady_friction(model, p, law, at, &speed);
+    }
+  });
+  return level;
+}
+
 /// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
 template <class T>
 T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
@@ -245,7 +273,9 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   first.time = {&slip.break_away_time, 1};
   Instant<T> at = first.at(0, T(0.0 * p[0]));
   at.acceleration = 0;
-  T mu = slip.direction * peak_friction(model, p, law_for(model, p, slip), at);
+  LawParameters<T> law = law_for(model, p, slip);
+  law.mu_s = friction_at_rest(model, p, law, slip);
+  T mu = slip.direction * peak_friction(model, p, law, at);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, T>) {
@@ -283,7 +313,7 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
   steady_friction(model, p, law, slip, velocity, mu);
   bool is_signed = false;
   if (model.state_count() > 0 && n > 0) {
-    const T at_rest = law.mu_s;
+    const T at_rest = detail::friction_at_rest(model, p, law, slip);
     for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
       if constexpr (hooks::Remembers<E, T>) {
         const auto steady_at = [&](const Instant<T>& at) { return steady_friction(model, p, law, at); };

@@ -29,6 +29,9 @@ class Formula {
 
   EffectInfo info() const;
 
+  /// Both are the same expression of the same names; name, spaces and starts do not matter.
+  bool same_as(const Formula& other) const;
+
   /// Adds the term to signed friction. Derivatives by central differences of each parameter (and of the speed).
   template <class T>
   void modulate_all(const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) const {

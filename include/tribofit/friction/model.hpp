@@ -18,7 +18,7 @@ namespace tribofit {
 class FrictionModel {
  public:
   /// Effects are put into the order of the catalogue, those that act in stick and the user's own last.
-  /// Throws InputError when two effects are the same, or two act in stick.
+  /// Throws InputError when two effects are the same, or when they cannot act together (see acts_with).
   explicit FrictionModel(BaseLaw law, std::vector<Effect> effects = {});
 
   struct Slot {
@@ -38,8 +38,13 @@ class FrictionModel {
   Channels needs() const;
   /// A bristle-like effect is among the effects: the block creeps in stick.
   bool acts_in_stick() const;
+  /// Whether `effect` can be added: of what acts in stick, and of what counts the time at rest, there is one at most.
+  bool acts_with(const Effect& effect) const;
   /// Number of memory states (one per effect with a memory).
   std::size_t state_count() const { return state_count_; }
+
+  /// The effects as the command line takes them: "viscous", "rate-state:healing".
+  std::vector<std::string> effect_names() const;
 
   /// "exponential + viscous + runout".
   std::string name() const;

@@ -45,6 +45,9 @@ struct Slip {
   /// them.
   std::span<const double> lead_time, lead_velocity;
   double lead_friction = 0;
+  /// The slip before the stick that this one begins with, and when it came to rest [s]; empty where not recorded.
+  std::span<const double> earlier_time, earlier_velocity;
+  double earlier_restick_time = 0;
   /// Friction (signed) read in the stick right after the slip; NaN where there is none.
   double tail_friction = std::numeric_limits<double>::quiet_NaN();
   double restick_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN where there is none

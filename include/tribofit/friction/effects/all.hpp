@@ -21,6 +21,7 @@
 #include "tribofit/friction/effects/load_dependence.hpp"
 #include "tribofit/friction/effects/motion_effects.hpp"
 #include "tribofit/friction/effects/rate_state.hpp"
+#include "tribofit/friction/effects/rate_state_healing.hpp"
 #include "tribofit/friction/effects/ringing.hpp"
 #include "tribofit/friction/effects/run_in.hpp"
 #include "tribofit/friction/effects/runout.hpp"
@@ -35,12 +36,12 @@
 namespace tribofit {
 
 /// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
-/// memories. Formula, last, is the user's own (see formula.hpp) and is not part of the catalogue.
+/// memories. The last two are not part of the catalogue: a form of rate-state, and the user's own (see formula.hpp).
 using Effect =
     std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry, Heating,
                  RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout, DiscPattern, SpeedRipple,
                  LoadCoupling, Ringing, SensorInertia, SensorOffset, Crosstalk, ForceBandwidth, ChannelDelay,
-                 RadiusOffset, VelocityGain, VelocityHighPass, Interference, Formula>;
+                 RadiusOffset, VelocityGain, VelocityHighPass, Interference, RateStateHealing, Formula>;
 
 /// Every effect of the catalogue, in its order.
 std::span<const Effect> effect_catalogue();
@@ -51,7 +52,11 @@ EffectInfo describe(const Effect& effect);
 /// It changes v_r and not mu: found and undone by kinematics/, without a term in a friction model.
 bool is_of_motion(const Effect& effect);
 
-/// The effect of that key. Throws InputError that offers the nearest known key.
-Effect make_effect(std::string_view key);
+/// Throws InputError when two of the effects are the same: one key twice, two formulas that say the same, or a formula
+/// that has the name of an effect of the catalogue.
+void refuse_same(std::span<const Effect> effects);
+
+/// The effect of that name: a key, or KEY:FORM. Throws InputError that offers the nearest known name.
+Effect make_effect(std::string_view name);
 
 }  // namespace tribofit

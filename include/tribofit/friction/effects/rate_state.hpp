@@ -20,7 +20,9 @@ struct RateState {
                 "doi:10.1016/S0022-5096(01)00042-4",
             .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
             .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, Grows::with_slip_length},
-                           {"a", "1", 1, 0, 0.02, 0, 0, true}}};
+                           {"a", "1", 1, 0, 0.02, 0, 0, true}},
+            .forms = {
+                {"healing", "contacts also grow older at rest (Dieterich), so break-away grows with the stick time"}}};
   }
 
   template <class T>
@@ -29,13 +31,19 @@ struct RateState {
     return {abs(x.velocity) / p[0], steady};
   }
 
+  /// a asinh(|v|/(2 v0)): what friction does at once.
   template <class T>
-  T output(const T* p, const Instant<T>& x, const T& /*steady*/, const T& phi) const {
+  static T direct(const T* p, const Instant<T>& x) {
     using std::abs;
     using std::log;
     using std::sqrt;
     const T r = abs(x.velocity) / (2 * reference_velocity);
-    return phi + p[1] * log(r + sqrt(r * r + 1.0));
+    return p[1] * log(r + sqrt(r * r + 1.0));
+  }
+
+  template <class T>
+  T output(const T* p, const Instant<T>& x, const T& /*steady*/, const T& phi) const {
+    return phi + direct(p, x);
   }
 };
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace tribofit {
+
+/// A table that `--csv FOLDER` writes: its name, and how its header begins.
+struct OwnFile {
+  std::string_view name, header;
+};
+inline constexpr std::array<OwnFile, 4> own_files = {
+    {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold"},
+     {"cycles.csv", "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,"},
+     {"curves.csv", "law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data"},
+     {"errors.csv", "time_s,relative_velocity_mm_s,residual_"}}};
+
+/// Whether the file is one of those tables, by its name and its header: a result, not a run. A file that cannot be read
+/// is not.
+bool is_own_file(const std::string& path);
+
+}  // namespace tribofit

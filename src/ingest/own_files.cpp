@@ -1,0 +1,20 @@
+#include "tribofit/ingest/own_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace tribofit {
+
+bool is_own_file(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  const auto known =
+      std::find_if(own_files.begin(), own_files.end(), [&](const OwnFile& file) { return file.name == name; });
+  if (known == own_files.end()) return false;
+  std::ifstream in(path, std::ios::binary);
+  std::string header(known->header.size(), '\0');
+  in.read(header.data(), static_cast<std::streamsize>(header.size()));
+  return in && header == known->header;
+}
+
+}  // namespace tribofit
