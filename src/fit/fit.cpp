@@ -233,6 +233,18 @@ void fill_parameters(const Job& job, const Bounds& given, const SolverResult& so
   fit.covariance.assign(spread.covariance.data(), spread.covariance.data() + spread.covariance.size());
 }
 
+/// What the data do not determine has no finite error.
+void open_intervals(const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {
+  for (const std::vector<std::size_t>& group : groups) {
+    for (const std::size_t k : group) {
+      FitParameter& parameter = fit.parameters[k];
+      parameter.determined = false;
+      parameter.std_error = parameter.upper95 = std::numeric_limits<double>::infinity();
+      parameter.lower95 = -parameter.upper95;
+    }
+  }
+}
+
 /// Means over the records, in squares.
 Floor mean_floor(std::span<const Record> records) {
   Floor floor = estimate_floor(*records[0].motion, *records[0].segmentation);
@@ -339,6 +351,12 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     inside[k] = free[k] && !on_bound(p[k], job.bounds.lower[k], job.bounds.upper[k]);
   }
   if (change) free[change->time] = inside[change->time] = false;
+  std::vector<std::vector<std::size_t>> groups;
+  if (!published) {
+    const std::vector<bool> all_inside = inside;
+    groups = undetermined(equations.total, inside);
+    for (std::size_t k = 0; k < p.size(); ++k) free[k] = free[k] && inside[k] == all_inside[k];
+  }
   Eigen::MatrixXd influences =
       published ? published_influence(equations, free, extremes) : influence(equations, inside);
   if (!published && inside != free) {
@@ -350,6 +368,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     }
   }
   fill_parameters(job, given, solution, start, influences, fit);
+  open_intervals(groups, fit);
   if (change) {
     FitParameter& time = fit.parameters[change->time];
     std::tie(time.lower95, time.upper95) = interval_of_change(*change, job.residuals(all_slips(observations), false),
@@ -371,7 +390,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, *records[0].segmentation);
   }
   if (options.profile && !published) add_profiles(residuals, given, inverse_over(equations.total, inside), fit);
-  add_messages(silent, fit);
+  add_messages(silent, groups, fit);
   return fit;
 }
 

@@ -98,6 +98,39 @@ Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bo
   return out;
 }
 
+std::vector<std::vector<std::size_t>> undetermined(const Eigen::MatrixXd& total, std::vector<bool>& free) {
+  // An error a million times that of the parameter alone; products of derivatives by differences round at 1e-16.
+  constexpr double kRounding = 1e-12, kPart = 1e-3, kLarge = 0.3;
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t tries = 0; tries < free.size(); ++tries) {
+    std::vector<std::size_t> index;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      if (free[k] && total(Eigen::Index(k), Eigen::Index(k)) > 0) index.push_back(k);
+    }
+    const auto m = static_cast<Eigen::Index>(index.size());
+    if (m < 2) break;
+    Eigen::MatrixXd scaled(m, m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      for (Eigen::Index j = 0; j < m; ++j) {
+        const auto a = Eigen::Index(index[std::size_t(i)]), b = Eigen::Index(index[std::size_t(j)]);
+        scaled(i, j) = total(a, b) / std::sqrt(total(a, a) * total(b, b));
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);  // the least first
+    if (!(eigen.eigenvalues()(0) < kRounding)) break;
+    const Eigen::VectorXd part = eigen.eigenvectors().col(0).cwiseAbs();
+    std::vector<std::size_t> group;
+    std::size_t spare = index[0];
+    for (Eigen::Index i = 0; i < m; ++i) {
+      if (part(i) > kPart) group.push_back(index[std::size_t(i)]);
+      if (part(i) > kLarge * part.maxCoeff()) spare = index[std::size_t(i)];
+    }
+    free[spare] = false;
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
 Spread spread_of(const Eigen::MatrixXd& influence) {
   const Eigen::Index n = influence.cols();
   const Eigen::Index cycles = influence.rows();

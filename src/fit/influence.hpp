@@ -31,6 +31,10 @@ NormalEquations normal_equations(const ModelResiduals& residuals, const Observat
 /// `free`: which parameters are estimated; the columns of the others are zero.
 Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bool>& free);
 
+/// Parameters of which the data fix combinations only: the directions in which `total` is zero but for rounding, as
+/// groups. One parameter of each group is taken out of `free`, so that the others have errors beside it.
+std::vector<std::vector<std::size_t>> undetermined(const Eigen::MatrixXd& total, std::vector<bool>& free);
+
 /// What the influences say of the parameters.
 struct Spread {
   Eigen::VectorXd std_error, degrees_of_freedom;

@@ -31,7 +31,16 @@ void add_correlations(Fit& fit) {
 
 }  // namespace
 
-void add_messages(const std::vector<bool>& silent, Fit& fit) {
+void add_messages(const std::vector<bool>& silent, const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {
+  for (const std::vector<std::size_t>& group : groups) {
+    std::string names;
+    for (const std::size_t k : group) {
+      names += (names.empty() ? "" : k == group.back() ? " and " : ", ") + shown_name(fit.parameters[k]);
+    }
+    fit.messages.push_back(names +
+                           " are not determined: the data fix a combination of them only, and no interval holds "
+                           "for one alone");
+  }
   add_correlations(fit);
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];

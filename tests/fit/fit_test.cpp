@@ -1,7 +1,9 @@
 #include "tribofit/fit/fit.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -57,11 +59,41 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"coulomb", BaseLaw::coulomb, {}, {}},
                     Case{"viscous", BaseLaw::exponential, {make_effect("viscous")}, {1.2}},
                     Case{"rate_state", BaseLaw::exponential, {make_effect("rate-state")}, {60e-6, 0.004}},
+                    Case{"healing", BaseLaw::exponential, {make_effect("rate-state:healing")}, {60e-6, 0.004}},
                     Case{"formula",
                          BaseLaw::exponential,
                          {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")},
                          {0.02, 25, 6}}),
     [](const auto& c) { return std::string(c.param.name); });
+
+TEST(Fit, WhatTheDataDoNotDetermineHasNoFiniteInterval) {
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.cycles = 40;
+  const FrictionModel law(BaseLaw::exponential);
+  const synthetic::Record record = synthetic::make(law, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const Fit product = fit_record(FrictionModel(BaseLaw::exponential, {Formula("x = a*b*v; a=0.01, b=0.02")}), record);
+  ASSERT_EQ(product.parameters.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const FitParameter& p = product.parameters[k];
+    EXPECT_EQ(p.determined, k < 3) << p.parameter.name;
+    EXPECT_EQ(std::isfinite(p.std_error), k < 3) << p.parameter.name;
+    EXPECT_EQ(std::isfinite(p.upper95 - p.lower95), k < 3) << p.parameter.name;
+  }
+  EXPECT_THAT(product.messages, testing::Contains(testing::HasSubstr("x a and x b are not determined")));
+  // The rest is what it is beside the one term that the two make.
+  const Fit one = fit_record(FrictionModel(BaseLaw::exponential, {Formula("x = a*v; a=0.0002")}), record);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(product.parameters[k].std_error / one.parameters[k].std_error, 1, 1e-3) << k;
+  }
+  EXPECT_TRUE(std::all_of(one.parameters.begin(), one.parameters.end(), [](const auto& p) { return p.determined; }));
+  // A constant is what mu_s and mu_k hold already.
+  const Fit constant = fit_record(FrictionModel(BaseLaw::exponential, {Formula("c = a; a=0.01")}), record);
+  EXPECT_FALSE(constant.parameters[0].determined);
+  EXPECT_FALSE(constant.parameters[1].determined);
+  EXPECT_TRUE(constant.parameters[2].determined);
+  EXPECT_FALSE(constant.parameters[3].determined);
+}
 
 TEST(Fit, MeansOverAFewSamplesDoNotMoveTheBareLaws) {
   for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
