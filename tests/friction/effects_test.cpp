@@ -332,7 +332,9 @@ TEST(ContactSpin, IsTheMeanOverThePad) {
     }
   }
   const std::vector<double> p = {0.509, 0.318, 50, pad};
-  EXPECT_NEAR(read_at(model, p, {.velocity = 0, .disc_speed = omega}), 0, 1e-12);
+  const LawParameters<double> law = {0.509, 0.318, 50};
+  EXPECT_NEAR(steady_friction(model, p.data(), law, {.velocity = 0, .disc_speed = omega}), 0, 1e-12);
+  EXPECT_NEAR(read_at(model, p, {.velocity = 0, .disc_speed = omega}), 0, 1e-5);  // noise about rest
   EXPECT_NEAR(read_at(model, p, {.velocity = 10, .disc_speed = omega}), 0.318, 1e-6);
   EXPECT_NEAR(read_at(model, {0.509, 0.318, 50, 0}, {.velocity = 0.02, .disc_speed = omega}),
               0.318 + 0.191 * std::exp(-1), 1e-6);
@@ -340,6 +342,15 @@ TEST(ContactSpin, IsTheMeanOverThePad) {
     const double mu = read_at(model, {0.5, 0.5, 50, pad}, {.velocity = u * rim, .disc_speed = omega});
     EXPECT_NEAR(ContactSpin{}.creep(&pad, 0.5, mu, 1.0, omega), u * rim, 2e-3 * rim);
   }
+}
+
+TEST(ContactSpin, WithoutSpinReadingsAtRestHaveTheFrictionOfTheLaw) {
+  samples::ExampleSlip made(200);
+  for (std::size_t i = 0; i < made.velocity.size(); i += 3) made.velocity[i] = i % 2 == 0 ? -1e-5 : 1e-5;
+  const FrictionModel spinning(BaseLaw::exponential, {make_effect("contact-spin")}), rigid(BaseLaw::exponential);
+  const std::vector<double> with = run(spinning, {0.509, 0.318, 52.14, 0}, made.slip);
+  const std::vector<double> without = run(rigid, {0.509, 0.318, 52.14}, made.slip);
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 4e-3) << made.velocity[i];
 }
 
 TEST(Formula, FollowsItsExpressionInTheUnitsOfThePage) {

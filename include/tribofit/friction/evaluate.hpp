@@ -123,11 +123,17 @@ T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>
 
 namespace detail {
 
+/// A reading of a slip as a contact that slides at several speeds takes it; `spreads`: whether the model has one.
 template <class T>
-bool has_spread(const FrictionModel& model, const T* p) {
-  bool found = false;
-  for_each_effect(model, p, [&]<class E>(const E&, const T*) { found |= hooks::Spreads<E, T>; });
-  return found;
+Instant<T> as_read(const FrictionModel& model, const T* p, Instant<T> at, bool& spreads) {
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Spreads<E, T>) {
+      spreads = true;
+      const T slowest = effect.slowest_reading(q, at);
+      if (std::abs(scalar_part(at.velocity)) < scalar_part(slowest)) at.velocity = at.direction * slowest;
+    }
+  });
+  return at;
 }
 
 /// The highest steady friction from rest on [1]: mu_s, or less where a contact never sticks as a whole.
@@ -212,10 +218,12 @@ template <class T>
 void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
   const std::size_t n = slip.size();
-  if (detail::has_spread<T>(model, p)) {
-    for (std::size_t i = 0; i < n; ++i) mu[i] = steady_friction(model, p, law, slip.at(i, velocity[i]));
-    return;
+  bool spreads = false;
+  for (std::size_t i = 0; i < n && (i == 0 || spreads); ++i) {
+    const Instant<T> at = detail::as_read(model, p, slip.at(i, velocity[i]), spreads);
+    if (spreads) mu[i] = steady_friction(model, p, law, at);
   }
+  if (spreads) return;
   for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Ages<E, T>) detail::aged_speeds(effect, q, slip, velocity, mu);

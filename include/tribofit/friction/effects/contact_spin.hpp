@@ -18,7 +18,6 @@ struct ContactSpin {
   /// Spin never falls below this speed at the rim [m/s]: it keeps friction finite where the disc stands still, and
   /// lies below what a vibrometer sees.
   static constexpr double least_rim_speed = 2e-5;
-
   static EffectInfo info() {
     return {.key = "contact-spin",
             .statement =
@@ -39,6 +38,15 @@ struct ContactSpin {
     using std::sqrt;
     const T rim = disc_speed * p[0];
     return sqrt(rim * rim + least_rim_speed * least_rim_speed);
+  }
+
+  /// Readings of a slip below this speed are noise about rest [m/s]: taken as they are, a contact that hardly spins
+  /// would lose all its friction in them. Five least rim speeds where nothing spins, which leaves 99.5 % of friction,
+  /// and soon nothing where the spin itself can be read.
+  template <class T>
+  T slowest_reading(const T* p, const Instant<T>& x) const {
+    const T rim = rim_speed(p, x.disc_speed);
+    return 5 * least_rim_speed * least_rim_speed * least_rim_speed / (rim * rim);
   }
 
   /// g(u)/min(u, 1) as a function of x = min(u, 1/u)^2: the power series of Farkas' integrals, which is the same on
