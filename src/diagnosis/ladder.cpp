@@ -355,6 +355,8 @@ bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>
     const Candidate& now = candidates[*step.added];
     const Trial without = try_without(bench, bench.fine, full, index_of(full.model, now.info.key));
     if (!without.usable) continue;
+    std::erase_if(rivals, [&](const Judged* r) { return !without.model.acts_with(candidates[r->candidate].effect); });
+    if (rivals.empty()) continue;
     std::vector<Judged> judged(rivals.size() + 1);
     judged[0] = compare(bench, bench.fine, without, full, now, 1, limits);
     judged[0].candidate = *step.added;
