@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
     "each condition is kept for confirming the finding.\n"
     "Every effect of the catalogue is tried; --effect KEY puts one into the law from the start, --formula\n"
-    "adds one of your own to those tried. rate-state:healing is tried only where --effect names it.\n\n"
+    "adds one of your own to those tried.\n\n"
     "Examples:\n"
     "  identify diagnose --radius 15mm trace.csv\n"
     "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"

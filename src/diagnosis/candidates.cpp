@@ -188,6 +188,12 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
     std::string why = obstacle(info, observations, seen);
     const Motion& motion = *records[0].motion;
     const auto possible = possible_beside_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
+    for (const EffectForm& form : info.forms) {
+      const Effect other = make_effect(info.key + ":" + form.name);
+      EffectInfo other_info = describe(other);
+      std::string why_not = obstacle(other_info, observations, seen);
+      out.push_back({other, std::move(other_info), std::move(why_not), possible});
+    }
     out.push_back({effect, std::move(info), std::move(why), possible});
   }
   for (const Effect& effect : own) out.push_back({effect, describe(effect), {}, {}});

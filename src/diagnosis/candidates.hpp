@@ -18,8 +18,8 @@ struct Candidate {
   std::optional<Possible> possible = {};  ///< beside what the instruments file declares
 };
 
-/// Every effect of the catalogue and the user's own, each checked for its channels and for what excites it, and
-/// bounded by what the instruments file declares.
+/// Every effect of the catalogue with its forms (of the same key) and the user's own, each checked for its channels and
+/// for what excites it, and bounded by what the instruments file declares.
 /// Effects of the motion are left out: kinematics/ answers for them.
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
                                   const std::vector<Effect>& own, const Instruments& instruments = {});

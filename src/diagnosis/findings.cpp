@@ -79,6 +79,17 @@ std::vector<FitParameter> parameters_of(const Fit& fit, const std::string& key) 
   return out;
 }
 
+/// The candidate that stands for an effect: the form of it that is on the ladder or in a group, else the effect itself.
+std::size_t form_of(const Ladder& ladder, const std::vector<Candidate>& all, std::size_t effect) {
+  for (const LadderStep& step : ladder.steps) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const bool stands = step.added == k || contains(step.equivalent, k);
+      if (stands && all[k].info.key == all[effect].info.key) return k;
+    }
+  }
+  return effect;
+}
+
 /// The user has not thought of it already.
 bool is_new(const FrictionModel& model, const Formula& formula) {
   return std::none_of(model.effects().begin(), model.effects().end(), [&](const Effect& effect) {
@@ -94,7 +105,9 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
   std::vector<EffectFinding> out;
   const double base = fits.front().error.held_out_rmse;
   const double above = std::max(1e-300, base * base - floor * floor);
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  for (std::size_t effect = 0; effect < all.size(); ++effect) {
+    if (!all[effect].info.option.empty()) continue;
+    const std::size_t k = form_of(ladder, all, effect);
     EffectFinding finding;
     finding.key = all[k].info.key;
     finding.held_out_rmse = finding.error_reduction = finding.p_value = kNaN;

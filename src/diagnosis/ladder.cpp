@@ -143,7 +143,22 @@ struct Choice {
   std::vector<std::size_t> group;     ///< candidates
 };
 
-Choice choose(const Bench& bench, const std::vector<Judged>& judged, const std::vector<Candidate>& candidates) {
+/// Of the forms of one effect one has the name: the plain one, unless the data tell another from it.
+void keep_one_form(const Bench& bench, const std::vector<Candidate>& candidates, std::vector<Judged>& judged) {
+  for (Judged& form : judged) {
+    const EffectInfo& info = candidates[form.candidate].info;
+    if (info.option.empty() || !form.passes) continue;
+    const auto plain = std::find_if(judged.begin(), judged.end(), [&](const Judged& other) {
+      const EffectInfo& known = candidates[other.candidate].info;
+      return known.key == info.key && known.option.empty();
+    });
+    if (plain == judged.end() || !plain->passes) continue;
+    (told_apart(bench, form, *plain) ? *plain : form).passes = false;
+  }
+}
+
+Choice choose(const Bench& bench, std::vector<Judged>& judged, const std::vector<Candidate>& candidates) {
+  keep_one_form(bench, candidates, judged);
   Choice choice;
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < judged.size(); ++k) {
@@ -419,7 +434,9 @@ void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   // What was added after all is told apart: both are there.
   for (LadderStep& step : ladder.steps) {
     std::erase_if(step.equivalent, [&](std::size_t k) {
-      return std::any_of(ladder.steps.begin(), ladder.steps.end(), [&](const LadderStep& s) { return s.added == k; });
+      return std::any_of(ladder.steps.begin(), ladder.steps.end(), [&](const LadderStep& s) {
+        return s.added && candidates[*s.added].info.key == candidates[k].info.key;
+      });
     });
   }
 }

@@ -40,9 +40,15 @@ std::string strength(const DiagnosedTraces& result, const EffectFinding& finding
                      unit == "1" ? "" : " " + unit);
 }
 
+/// As the command line takes it.
+std::string spelled(const DiagnosedTraces& result, const std::string& key) {
+  const std::string name = info_of(result, key).spelled();
+  return name.empty() ? key : name;
+}
+
 /// "runout (A = 0.048 +/- 0.001), which means that ..." without an end.
 std::string named_effect(const DiagnosedTraces& result, const Rung& rung) {
-  std::string text = rung.added;
+  std::string text = spelled(result, rung.added);
   const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
   const std::string size = finding == nullptr ? "" : strength(result, *finding);
   if (!size.empty()) text += " (" + size + ")";
@@ -53,7 +59,7 @@ std::string named_effect(const DiagnosedTraces& result, const Rung& rung) {
 /// "one of these, which cannot be told apart here: ..." for a group, else the effect.
 std::string missing_clause(const DiagnosedTraces& result, const Rung& rung) {
   if (rung.equivalent.empty()) return named_effect(result, rung);
-  return fmt::format("{} or {}, which these data cannot tell apart. The best fit has {}", rung.added,
+  return fmt::format("{} or {}, which these data cannot tell apart. The best fit has {}", spelled(result, rung.added),
                      enumerated(rung.equivalent, "or"), named_effect(result, rung));
 }
 
@@ -265,15 +271,15 @@ const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key
 }
 
 EffectInfo info_of(const DiagnosedTraces& result, std::string_view key) {
-  for (const Effect& effect : effect_catalogue()) {
-    EffectInfo info = describe(effect);
-    if (info.key == key) return info;
-  }
   for (const Fit& fit : result.fits) {
     for (const Effect& effect : fit.model.effects()) {
       EffectInfo info = describe(effect);
       if (info.key == key) return info;
     }
+  }
+  for (const Effect& effect : effect_catalogue()) {
+    EffectInfo info = describe(effect);
+    if (info.key == key) return info;
   }
   return {};
 }

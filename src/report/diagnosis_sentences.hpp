@@ -31,7 +31,7 @@ std::string diagnosis_verdict(const DiagnosedTraces& result);
 /// The effect that a finding or a rung is about; nullptr where none of that key is known here.
 const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key);
 
-/// What an effect of the catalogue, or one of the user's in a model of the result, says about itself; empty otherwise.
+/// What an effect of that key says about itself, in the form that a model of the result has; empty where it is unknown.
 EffectInfo info_of(const DiagnosedTraces& result, std::string_view key);
 
 /// "exponential law", or "exponential law with viscous" where the model has had effects from the start.

@@ -136,6 +136,12 @@ class Page {
     return whole > 0 ? std::clamp(1 - (rmse(rung) * rmse(rung) - floor) / whole, -9.99, 1.0) : std::nan("");
   }
 
+  /// As the command line takes it.
+  std::string shown_key(const std::string& key) const {
+    const EffectInfo info = info_of(result_, key);
+    return info.key.empty() ? key : info.spelled();
+  }
+
   void ladder() {
     if (d_.ladder.empty() || !std::isfinite(rmse(0))) return;
     const auto [pale, full] = bar_signs(options_.unicode);
@@ -143,7 +149,7 @@ class Page {
     std::vector<Row> rows;
     for (std::size_t k = 0; k < d_.ladder.size(); ++k) {
       const Rung& rung = d_.ladder[k];
-      const std::string name = k == 0 ? law_text(d_) : "+ " + rung.added;
+      const std::string name = k == 0 ? law_text(d_) : "+ " + shown_key(rung.added);
       rows.push_back({fmt::format("{}  {}", k, name), rung.held_out_rmse, rung.held_out_std_error,
                       k == 0 ? std::nan("") : removed(k)});
     }
@@ -227,7 +233,7 @@ class Page {
     text_ += 2 + table.width() <= style_.width ? table.text(2, style_.dim, style_.off) : lines;
     for (const EffectFinding* e : added) {
       const std::string equation = info_of(result_, e->key).equation;
-      if (!equation.empty()) line(e->key + ": " + equation);
+      if (!equation.empty()) line(shown_key(e->key) + ": " + equation);
     }
   }
 
