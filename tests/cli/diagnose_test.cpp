@@ -90,6 +90,27 @@ TEST(Diagnose, StartsFromTheLawWithTheEffectsThatAreNamed) {
   }
 }
 
+/// Both forms of an effect are tried under one key; the plain one stays unless the data tell the other from it.
+TEST(Diagnose, TheFormOfAnEffectIsToldWhereTheDataTellIt) {
+  const Workshop shop;
+  for (const char* name : {"rate-state", "rate-state:healing"}) {
+    const std::string effect = std::string(name) + (std::string(name) == "rate-state" ? ":" : ",") + "D_c=80um";
+    shop.write("trace.csv", trace("--speed 4rpm --effect " + effect, 6));
+    const json j = result_of(shop, "--radius 15mm --speed 4rpm trace.csv");
+    ASSERT_EQ(j["diagnosis"]["ladder"].size(), 2u) << name;
+    EXPECT_EQ(j["diagnosis"]["ladder"][1]["added"], "rate-state") << name;
+    EXPECT_EQ(j["fits"].back()["effect_names"], json({name}));
+    int findings = 0;
+    for (const json& effect_found : j["diagnosis"]["effects"]) {
+      if (effect_found["key"] != "rate-state") continue;
+      ++findings;
+      EXPECT_EQ(effect_found["status"], "missing");
+      EXPECT_NEAR(effect_found["parameters"][0]["value"], 80, 8) << name;
+    }
+    EXPECT_EQ(findings, 1) << name;
+  }
+}
+
 TEST(Diagnose, ResultsAreTheSameForAnyNumberOfThreads) {
   const Workshop shop;
   shop.write("trace.csv", viscous_trace());
