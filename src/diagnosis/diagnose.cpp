@@ -143,7 +143,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
 
   const std::vector<BaseLaw> laws = base_laws(records, given);
   std::vector<Candidate> given_effects;
-  for (const Effect& effect : options.from_the_start) given_effects.push_back({effect, describe(effect), {}});
+  for (const Effect& effect : options.from_the_start) given_effects.push_back({effect, describe(effect), {}, {}});
   for (const Candidate& effect : given_effects) diagnosis.from_the_start.push_back(effect.info.spelled());
   std::vector<Ladder> ladders = climb(bench, laws, given_effects, all, Limits(), options.most_effects,
                                       [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
