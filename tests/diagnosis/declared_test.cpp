@@ -15,7 +15,9 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
   lab.vibrometer.delay = {-1e-3, 2e-5};
   const auto left = [&](const char* key) {
     const auto possible = possible_beside_declared(lab, key, FrictionKind::coefficient, {});
-    if (possible) EXPECT_EQ(possible->lower, -possible->upper) << key;
+    if (possible) {
+      EXPECT_EQ(possible->lower, -possible->upper) << key;
+    }
     return possible ? possible->upper : -1;
   };
   EXPECT_DOUBLE_EQ(left("sensor-offset"), 0.003);
