@@ -98,7 +98,7 @@ std::string reason_of(const DiagnosedTraces& result) {
 
 int run(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
-  const Split split = keep_for_confirmation(inputs_from(s.traces, options.read), s.confirm, options.read);
+  const Split split = keep_for_confirmation(find_runs(s.traces, options.read).runs, s.confirm, options.read);
   check_usage(s, split);
   DiagnoseOptions more;
   more.diagnosis.threads = s.threads;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "batch.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
@@ -85,6 +86,13 @@ int run_all(const Settings& s, const std::vector<Input>& inputs, const IdentifyO
   return unreadable > 0 ? kFailed : status;
 }
 
+void add_batch_options(CLI::App& app, Settings& s) {
+  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)")->group("Batch");
+  app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` ends it")
+      ->group("Batch");
+  app.add_flag("--again", s.again, "Fit what has a result already, too")->group("Batch");
+}
+
 void add_fit_options(CLI::App& app, Settings& s) {
   add_model_options(app, s);
   app.add_option("--protocol", s.protocol, "joint, published, or both (default)")
@@ -100,6 +108,7 @@ void add_identify(CLI::App& app, int& status) {
   add_input_options(app, *settings);
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
+  add_batch_options(app, *settings);
   app.parse_complete_callback([settings, &app] {  // runs before that of a verb
     const auto verbs = app.get_subcommands();
     if (verbs.empty() || (own_options(app).empty() && settings->traces.empty())) return;
@@ -114,7 +123,12 @@ void add_identify(CLI::App& app, int& status) {
     const std::vector<std::string> arguments = own_options(app);
     if (s.traces.empty()) throw CLI::ValidationError("no trace given; try `identify --radius 15mm trace.csv`");
     const IdentifyOptions options = options_from(s);
-    const std::vector<Input> inputs = inputs_from(s.traces, options.read);
+    const Campaign campaign = find_runs(s.traces, options.read, ManifestErrors::collect);
+    if (is_batch(s, campaign)) {
+      status = run_as_batch(s, campaign, options, arguments);
+      return;
+    }
+    const std::vector<Input> inputs = find_runs(s.traces, options.read).runs;  // refuses what is wrong
     check_usage(s, inputs);
     status = run_all(s, inputs, options, arguments);
   });

@@ -4,20 +4,9 @@
 #include <vector>
 
 #include "settings.hpp"
-#include "tribofit/ingest/manifest.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/campaign/run.hpp"
 
-/// A trace to read and where what is known of it contradicts itself.
-struct Input {
-  tribofit::TraceInput trace;
-  std::vector<std::string> notes, warnings;
-  tribofit::ManifestRow known;  ///< as stated in manifest and command line, for telling repeats
-};
-
-/// The traces named. A folder stands for the runs of its manifest.csv, or, where it has none, for the CSV files in it
-/// in order of name. What the command line says (`read`) beats the manifest.
-/// Throws tribofit::InputError for a folder without traces and for a manifest that cannot be used.
-std::vector<Input> inputs_from(const std::vector<std::string>& names, const tribofit::ReadOptions& read);
+using Input = tribofit::Run;
 
 /// Whether two names lead to one file.
 bool same_file(const std::string& a, const std::string& b);

@@ -22,6 +22,8 @@ struct Settings {
   bool profile = false;
 
   std::string json, csv;
+  std::string out, shard;  // a batch
+  bool again = false;
   int threads = 0;
   std::string seed_text;
   unsigned long long seed = 1;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -85,7 +86,9 @@ std::vector<std::string> files_of(const fs::path& folder) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& folder) : folder_(folder) { manifest_.path = (folder_ / manifest_name).string(); }
+  Reader(const std::string& folder, ManifestErrors errors) : folder_(folder), errors_(errors) {
+    manifest_.path = (folder_ / manifest_name).string();
+  }
 
   Manifest read() {
     const InputFile file(manifest_.path);
@@ -100,11 +103,12 @@ class Reader {
       if (columns_.empty()) {
         read_header(line, number);
       } else {
-        read_row(line, number);
+        take_row(line, number);
       }
     }
     if (columns_.empty()) refuse("has no header", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
-    if (manifest_.rows.empty()) refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
+    if (manifest_.rows.empty() && manifest_.problems.empty())
+      refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
     note_others();
     return std::move(manifest_);
   }
@@ -187,6 +191,26 @@ class Reader {
     }
   }
 
+  void take_row(std::string_view line, std::size_t number) {
+    file_.clear();
+    if (errors_ == ManifestErrors::refuse) return read_row(line, number);
+    try {
+      read_row(line, number);
+    } catch (const InputError& error) {
+      const std::string path = (folder_ / file_).string();
+      const bool is_one_run = !file_.empty() && file_.find_first_of("*?") == std::string::npos;
+      if (!is_one_run || !row_of_.emplace(identity_of(path), manifest_.rows.size()).second) {
+        manifest_.problems.push_back(error.what());
+        return;
+      }
+      ManifestRow row;
+      row.path = path;
+      row.line = number;
+      row.problem = error.what();
+      manifest_.rows.push_back(std::move(row));
+    }
+  }
+
   void read_row(std::string_view line, std::size_t number) {
     std::vector<std::string> cells = split_cells(line, separator_);
     while (cells.size() > columns_.size() && cells.back().empty()) cells.pop_back();
@@ -199,10 +223,11 @@ class Reader {
     cells.resize(columns_.size());
     ManifestRow row;
     row.line = number;
-    std::string file;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (columns_[k].role == Role::file) file_ = cells[k];
+    }
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const ManifestColumn& column = columns_[k];
-      if (column.role == Role::file) file = cells[k];
       if (cells[k].empty()) continue;
       if (column.role == Role::radius) row.conditions.radius = condition(cells[k], column, number);
       if (column.role == Role::speed) row.conditions.speed = condition(cells[k], column, number);
@@ -210,8 +235,8 @@ class Reader {
       if (column.role == Role::repeat) row.repeat = repeat(cells[k], column, number);
       if (column.role == Role::other) row.others.push_back({column.name, cells[k]});
     }
-    if (file.empty()) refuse("the row names no file", "fill in the file or remove the row", number, named(Role::file));
-    add_runs(file, row);
+    if (file_.empty()) refuse("the row names no file", "fill in the file or remove the row", number, named(Role::file));
+    add_runs(file_, row);
   }
 
   Condition condition(std::string text, const ManifestColumn& column, std::size_t line) {
@@ -281,22 +306,36 @@ class Reader {
   }
 
   void add_run(std::string path, ManifestRow row) {
-    std::error_code ignored;
-    const fs::path identity = fs::weakly_canonical(path, ignored);
-    for (std::size_t k = 0; k < identities_.size(); ++k) {
-      if (identities_[k] != identity) continue;
-      const ManifestRow& earlier = manifest_.rows[k];
-      const std::string name = fs::path(path).filename().string();
-      if (same_conditions(earlier, row) && earlier.repeat == row.repeat) {
-        refuse(fmt::format("'{}' is listed twice, in line {} and here", name, earlier.line), "remove one of the rows",
-               row.line, named(Role::file));
-      }
-      refuse(fmt::format("'{}' has other conditions here than in line {}", name, earlier.line),
-             "keep the row that is right", row.line, named(Role::file));
+    const auto [known, is_new] = row_of_.emplace(identity_of(path), manifest_.rows.size());
+    if (is_new) {
+      row.path = std::move(path);
+      manifest_.rows.push_back(std::move(row));
+      return;
     }
-    identities_.push_back(identity);
-    row.path = std::move(path);
-    manifest_.rows.push_back(std::move(row));
+    ManifestRow& earlier = manifest_.rows[known->second];
+    const std::string name = fs::path(path).filename().string();
+    const std::string& column = named(Role::file);
+    if (same_conditions(earlier, row) && earlier.repeat == row.repeat) {
+      name_problem({fmt::format("'{}' is listed twice, in line {} and here", name, earlier.line),
+                    "remove one of the rows",
+                    {manifest_.path, row.line, column}});
+      return;
+    }
+    const InputError error(fmt::format("'{}' has other conditions here than in line {}", name, earlier.line),
+                           "keep the row that is right", {manifest_.path, row.line, column});
+    if (errors_ == ManifestErrors::refuse) throw error;
+    if (earlier.problem.empty()) earlier.problem = error.what();  // neither row is known to be right
+  }
+
+  /// Refuses the manifest, or goes on with the other rows.
+  void name_problem(const InputError& error) {
+    if (errors_ == ManifestErrors::refuse) throw error;
+    manifest_.problems.push_back(error.what());
+  }
+
+  static std::string identity_of(const fs::path& path) {
+    std::error_code ignored;
+    return fs::weakly_canonical(path, ignored).string();
   }
 
   void note_others() {
@@ -311,10 +350,12 @@ class Reader {
   }
 
   fs::path folder_;
+  ManifestErrors errors_;
   Manifest manifest_;
+  std::string file_;  // named by the row being read, as written
   char separator_ = ',';
   std::vector<ManifestColumn> columns_;
-  std::vector<fs::path> identities_;  // of the rows
+  std::map<std::string, std::size_t> row_of_;  // by the identity of its file
   bool bare_loads_ = false;
 };
 
@@ -326,8 +367,8 @@ bool same(const Condition& a, const Condition& b) {
 
 }  // namespace
 
-Manifest read_manifest(const std::string& folder) {
-  return Reader(folder).read();
+Manifest read_manifest(const std::string& folder, ManifestErrors errors) {
+  return Reader(folder, errors).read();
 }
 
 bool same_conditions(const ManifestRow& a, const ManifestRow& b) {

@@ -30,15 +30,6 @@ std::string_view name_of(HealthItem::Status status) {
   return "problem";
 }
 
-Json conditions_json(const Conditions& conditions) {
-  return {{"radius_mm", number(conditions.radius.value / kMillimetre)},
-          {"speed_rpm", number(conditions.speed.value / kRpm)},
-          {"speed_source", text_or_null(conditions.speed.source)},
-          {"load_N", number(conditions.load.value)},
-          {"radius_source", text_or_null(conditions.radius.source)},
-          {"load_source", text_or_null(conditions.load.source)}};
-}
-
 Json measure_json(const Measure& measure, double unit) {
   const Interval ci = interval_of(measure);
   return {{"value", number(measure.value / unit)},
@@ -70,6 +61,15 @@ Json text_or_null(const std::string& text) {
 
 Json tool_json(const JsonOptions& options) {
   return {{"name", "tribofit"}, {"version", version}, {"arguments", options.arguments}};
+}
+
+Json conditions_json(const Conditions& conditions) {
+  return {{"radius_mm", number(conditions.radius.value / kMillimetre)},
+          {"speed_rpm", number(conditions.speed.value / kRpm)},
+          {"speed_source", text_or_null(conditions.speed.source)},
+          {"load_N", number(conditions.load.value)},
+          {"radius_source", text_or_null(conditions.radius.source)},
+          {"load_source", text_or_null(conditions.load.source)}};
 }
 
 Json trace_json(const Identification& result) {
@@ -148,6 +148,21 @@ Json parameter_json(const FitParameter& p, const Motion& motion) {
 
 namespace {
 
+/// In the units in which the parameters are shown; empty where it is not known.
+Json covariance_json(const Fit& fit) {
+  Json rows = Json::array();
+  const std::size_t n = fit.parameters.size();
+  if (fit.covariance.size() != n * n) return rows;
+  for (std::size_t i = 0; i < n; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < n; ++j) {
+      row.push_back(number(shown(fit.parameters[i], shown(fit.parameters[j], fit.covariance[i * n + j]))));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 Json fit_json(const Fit& fit, const Motion& motion) {
   Json parameters = Json::array();
   for (const FitParameter& p : fit.parameters) parameters.push_back(parameter_json(p, motion));
@@ -177,7 +192,9 @@ Json fit_json(const Fit& fit, const Motion& motion) {
           {"fastest_mm_s", number(fit.fastest / kMillimetre)},
           {"samples", fit.observations},
           {"cycles", fit.cycles},
-          {"correlations", std::move(correlations)}};
+          {"correlations", std::move(correlations)},
+          {"covariance", covariance_json(fit)},
+          {"degrees_of_freedom", number(fit.degrees_of_freedom)}};
 }
 
 Json comparison_json(const LawComparison& c) {
@@ -208,17 +225,21 @@ std::string text_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json identification_json(const Identification& result, const JsonOptions& options) {
+  return {{"tool", tool_json(options)},
+          {"trace", trace_json(result)},
+          {"conditions", conditions_of(result.motion)},
+          {"health", health_json(result.motion)},
+          {"stick_slip", stick_slip_json(result)},
+          {"fits", fits_json(result.fits, result.motion)},
+          {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)},
+          {"law_comparison", comparisons_json(result.fits, result.best)},
+          {"analysed", result.analysed},
+          {"warnings", result.warnings}};
+}
+
 std::string to_json(const Identification& result, const JsonOptions& options) {
-  return text_of({{"tool", tool_json(options)},
-                  {"trace", trace_json(result)},
-                  {"conditions", conditions_of(result.motion)},
-                  {"health", health_json(result.motion)},
-                  {"stick_slip", stick_slip_json(result)},
-                  {"fits", fits_json(result.fits, result.motion)},
-                  {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)},
-                  {"law_comparison", comparisons_json(result.fits, result.best)},
-                  {"analysed", result.analysed},
-                  {"warnings", result.warnings}});
+  return text_of(identification_json(result, options));
 }
 
 }  // namespace tribofit

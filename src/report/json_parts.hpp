@@ -20,6 +20,8 @@ Json text_or_null(const std::string& text);
 
 Json tool_json(const JsonOptions& options);
 Json trace_json(const Identification& trace);
+Json conditions_json(const Conditions& conditions);
+/// With those of the steps, where there are several.
 Json conditions_of(const Motion& motion);
 Json health_json(const Motion& motion);
 Json stick_slip_json(const Identification& trace);
@@ -27,6 +29,9 @@ Json stick_slip_json(const Identification& trace);
 Json parameter_json(const FitParameter& parameter, const Motion& motion);
 Json fits_json(std::span<const Fit> fits, const Motion& motion);
 Json comparisons_json(std::span<const Fit> fits, std::size_t best);
+
+/// The whole result of one trace.
+Json identification_json(const Identification& result, const JsonOptions& options);
 
 std::string text_of(const Json& json);
 

@@ -1,6 +1,7 @@
 #include "tribofit/report/whole_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -36,6 +38,15 @@ void strike_off(const char* name) {
     const char* expected = name;
     if (place.compare_exchange_strong(expected, nullptr)) return;
   }
+}
+
+constexpr std::string_view kTemporaryEnd = ".part";
+
+/// A name beside the final one that no other process uses, on this machine or another.
+std::string temporary_name(const std::string& target) {
+  const std::filesystem::path path(target);
+  const std::string unique = std::to_string(::getpid()) + "-" + std::to_string(std::random_device{}());
+  return (path.parent_path() / ("." + path.filename().string() + "." + unique + std::string(kTemporaryEnd))).string();
 }
 
 std::string advice_for(int error) {
@@ -73,17 +84,28 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) 
   std::error_code ignored;  // a link that leads nowhere is replaced
   if (exists) target_ = std::filesystem::canonical(path_, ignored).string();
   if (target_.empty()) target_ = path_;
-  const std::filesystem::path final_path(target_);
-  const std::string hidden = "." + final_path.filename().string() + "." + std::to_string(::getpid()) + ".part";
-  temporary_ = (final_path.parent_path() / hidden).string();
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC,
-                       exists ? status.st_mode & 07777U : 0666U);
-  if (descriptor_ < 0) {
-    const int error = errno;
-    temporary_.clear();
-    fail(error);
-  }
+  open_temporary(exists ? status.st_mode & 07777U : 0666U);
   enlist(temporary_.c_str());
+}
+
+void WholeFile::open_temporary(unsigned rights) {
+  for (;;) {
+    temporary_ = temporary_name(target_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, rights);
+    if (descriptor_ < 0) {
+      if (errno == EEXIST) continue;
+      const int error = errno;
+      temporary_.clear();
+      fail(error);
+    }
+    // The lock, which dies with its process, says that somebody still writes here (see remove_abandoned_files). Where
+    // locks do not work nothing is taken for abandoned either.
+    const bool swept = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status {};
+    if (!swept && (::fstat(descriptor_, &status) != 0 || status.st_nlink > 0)) return;
+    ::close(descriptor_);  // taken for abandoned between the two calls
+    ::unlink(temporary_.c_str());
+  }
 }
 
 WholeFile::~WholeFile() {
@@ -117,7 +139,10 @@ void WholeFile::finish() {
   if (descriptor_ < 0) return;
   flush();
   // A full disc may show only now. A pipe or a terminal has nothing to synchronise.
-  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
+  if (!temporary_.empty()) {  // stays open, and so locked, until it has its name
+    if (::fsync(descriptor_) != 0) fail(errno);
+    return;
+  }
   const int status = ::close(descriptor_);
   const int error = errno;
   descriptor_ = -1;
@@ -130,12 +155,25 @@ void WholeFile::commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   strike_off(temporary_.c_str());
   temporary_.clear();
+  ::close(std::exchange(descriptor_, -1));
 }
 
 void remove_unfinished_files() noexcept {
   for (const auto& place : unfinished_files) {
     const char* name = place.load();
     if (name != nullptr) ::unlink(name);
+  }
+}
+
+void remove_abandoned_files(const std::string& folder) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(kTemporaryEnd)) continue;
+    const int descriptor = ::open(it->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(it->path().c_str());
+    ::close(descriptor);
   }
 }
 

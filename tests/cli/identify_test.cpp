@@ -9,6 +9,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -119,7 +120,8 @@ TEST_F(Identify, AFolderIsEveryTraceInIt) {
   shop_.write("runs/notes.txt", "x\n");
   const Outcome outcome = shop_.identify("--radius 15mm runs");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_LT(outcome.out.find("runs/a.csv"), outcome.out.find("runs/b.csv"));
+  EXPECT_LT(outcome.out.find("\n  a "), outcome.out.find("\n  b "));
+  EXPECT_THAT(shop_.names(), Contains("runs-results"));
 }
 
 TEST_F(Identify, RadiiBySteps) {

@@ -120,5 +120,24 @@ TEST_F(ManifestTest, BadInputIsNamedWithPlaceAndAdvice) {
   refuses("# nothing\n", 0, "", "no header", "file,radius");
 }
 
+TEST_F(ManifestTest, DefectsOfRowsAreCollectedWhereAsked) {
+  write(
+      "file,radius\nr15-1.csv,15mm\nmissing.csv,15mm\nr15-2.csv,15mn\nr15-1.csv,15mm\nr9-1.csv,9mm\nr9-1.csv,8mm\n"
+      "x*.csv,9mm\n,9mm\nr15-3.csv,15mm\n",
+      manifest_name);
+  const Manifest m = read_manifest(folder_.string(), ManifestErrors::collect);
+  using ::testing::HasSubstr;
+  ASSERT_EQ(m.rows.size(), 5u);
+  EXPECT_EQ(m.rows[0].problem, "");
+  EXPECT_THAT(m.rows[1].problem, HasSubstr("manifest.csv:3: column file: 'missing.csv' does not exist"));
+  EXPECT_THAT(m.rows[2].problem, HasSubstr("manifest.csv:4: column radius: unknown unit 'mn'"));
+  EXPECT_THAT(m.rows[3].problem, HasSubstr("manifest.csv:7: column file: 'r9-1.csv' has other conditions"));
+  EXPECT_EQ(m.rows[4].problem, "");
+  ASSERT_EQ(m.problems.size(), 3u);
+  EXPECT_THAT(m.problems[0], HasSubstr(":5: column file: 'r15-1.csv' is listed twice, in line 2"));
+  EXPECT_THAT(m.problems[1], HasSubstr(":8: column file: no file fits 'x*.csv'"));
+  EXPECT_THAT(m.problems[2], HasSubstr(":9: column file: the row names no file"));
+}
+
 }  // namespace
 }  // namespace tribofit

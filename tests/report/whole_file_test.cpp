@@ -103,5 +103,32 @@ TEST(WholeFile, KeepsLinksAndRights) {
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
+TEST(WholeFile, OnlyAbandonedFilesAreSwept) {
+  const Folder folder;
+  std::ofstream(folder.path(".b.json.1-2.part")) << "half";  // its writer was killed
+  std::ofstream(folder.path(".mine")) << "x";
+  std::ofstream(folder.path("c.part")) << "x";
+  WholeFile file(folder.path("a.json"));
+  file.write("whole");
+  file.finish();
+  remove_abandoned_files(folder.path(""));
+  EXPECT_EQ(folder.names().size(), 3u);  // .mine, c.part and what is being written
+  file.commit();
+  EXPECT_EQ(contents(folder.path("a.json")), "whole");
+  EXPECT_THAT(folder.names(), ::testing::UnorderedElementsAre(".mine", "a.json", "c.part"));
+}
+
+TEST(WholeFile, TwoWritersOfOneNameDoNotMix) {
+  const Folder folder;
+  WholeFile first(folder.path("a.json")), second(folder.path("a.json"));
+  first.write("first");
+  second.write("second");
+  first.commit();
+  EXPECT_EQ(contents(folder.path("a.json")), "first");
+  second.commit();
+  EXPECT_EQ(contents(folder.path("a.json")), "second");
+  EXPECT_EQ(folder.names().size(), 1u);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -21,13 +21,21 @@ struct ManifestRow {
   std::optional<int> repeat;
   std::vector<OtherCondition> others;
   std::size_t line = 0;  ///< of the manifest, 1-based
+  std::string problem;   ///< why this run cannot be taken as stated; empty: it can (see ManifestErrors::collect)
 };
 
 /// The manifest of a folder of runs.
 struct Manifest {
   std::string path;
-  std::vector<ManifestRow> rows;   ///< in the order of the file, those of a pattern by name
-  std::vector<std::string> notes;  ///< what was assumed, for the report
+  std::vector<ManifestRow> rows;      ///< in the order of the file, those of a pattern by name
+  std::vector<std::string> notes;     ///< what was assumed, for the report
+  std::vector<std::string> problems;  ///< of rows that name no run of their own (see ManifestErrors::collect)
+};
+
+/// What a defect of a single row does.
+enum class ManifestErrors {
+  refuse,  ///< the manifest is refused with an InputError
+  collect  ///< it is named, in the row's `problem` or in Manifest::problems, and the other rows are taken
 };
 
 /// Name of the manifest in a folder of runs.
@@ -42,7 +50,12 @@ inline constexpr const char* manifest_name = "manifest.csv";
 /// Throws InputError with file, line and column: no column of files, a file that does not exist, a pattern that none
 /// fits, a run listed twice (with the same conditions or with others), a missing or unknown unit (the nearest known one
 /// offered), a value that cannot be. Cost: linear in rows, and one listing of the folder for each pattern.
-Manifest read_manifest(const std::string& folder);
+///
+/// ManifestErrors::collect takes the rows that are right beside others that are not. A file that does not exist and a
+/// cell that cannot be used are the `problem` of their row; so are conditions that contradict an earlier row of the
+/// same file, for both. A row listed twice, a pattern that none fits and a row without a file are among
+/// Manifest::problems. A header that cannot be used is refused all the same.
+Manifest read_manifest(const std::string& folder, ManifestErrors errors = ManifestErrors::refuse);
 
 /// Whether two runs were made under the same conditions, so that one repeats the other: equal radius, speed, load and
 /// other conditions, where both say nothing or the same.

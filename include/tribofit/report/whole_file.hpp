@@ -25,6 +25,7 @@ class WholeFile {
 
  private:
   [[noreturn]] void fail(int error);
+  void open_temporary(unsigned rights);
   void flush();
 
   std::string path_, target_, temporary_;
@@ -35,6 +36,10 @@ class WholeFile {
 /// Removes what every WholeFile has written so far under a temporary name; for a handler of a signal that ends the
 /// program (it is async-signal-safe), after which no WholeFile may be used.
 void remove_unfinished_files() noexcept;
+
+/// Removes what programs that were killed left under temporary names in a folder; files that somebody still writes
+/// stay, wherever that program runs.
+void remove_abandoned_files(const std::string& folder);
 
 /// Writes `content` to `path`, whole or not at all (see WholeFile).
 void write_whole(const std::string& path, std::string_view content);

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tribofit/ingest/manifest.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace tribofit {
+
+/// One run of a campaign: a trace to read and what is known of it beforehand.
+struct Run {
+  TraceInput trace;                          ///< with the conditions of the command line over those of the manifest
+  std::vector<std::string> notes, warnings;  ///< how it was found; where what is known contradicts itself
+  ManifestRow known;                         ///< as stated in manifest and command line, for telling repeats
+  std::string name;                          ///< of its result: the file without extension, unique in the campaign
+  std::string file;                          ///< relative to the folder of the campaign, or as named
+  std::string problem;                       ///< why it cannot be read; empty: nothing is known against it
+};
+
+/// A set of runs that are fitted alike.
+struct Campaign {
+  std::string folder;  ///< empty where files were named one by one
+  std::vector<Run> runs;
+  std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
+};
+
+/// The run of one file of which nothing but `read` is known.
+Run run_of(const std::string& path, const ReadOptions& read);
+
+/// The runs that `names` stand for. A folder stands for the runs of its manifest.csv in that order, or, where it has
+/// none, for the CSV files in it in order of name. What the user says (`read`) beats the manifest; contradictions
+/// become warnings of the run.
+/// Throws InputError for a folder without traces and for a manifest that cannot be used; what defects of single rows do
+/// is `errors`.
+Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read,
+                   ManifestErrors errors = ManifestErrors::refuse);
+
+}  // namespace tribofit

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/ingest/conditions.hpp"
+#include "tribofit/ingest/manifest.hpp"
+
+namespace tribofit {
+
+/// How the work on a run ended.
+enum class RunStatus {
+  ok,         ///< fitted
+  failed,     ///< read, but the analysis could not be done; doing it again ends alike
+  unreadable  ///< not read, or not to the end; tried again each time
+};
+std::string_view to_string(RunStatus status);
+
+/// What a result file says of its run besides the analysis, under the key "run".
+struct RunRecord {
+  std::string name, file;  ///< see Run
+  std::string key;         ///< of all that the result depends on, see run_key(); 16 hexadecimal digits
+  std::string settings;    ///< the part of it that is known without reading the trace
+  RunStatus status = RunStatus::ok;
+  std::string message;    ///< why it is not ok
+  Conditions conditions;  ///< as stated beforehand
+  std::optional<int> repeat;
+  std::vector<OtherCondition> others;
+};
+
+/// A parameter of a stored fit, in `unit`.
+struct ResultParameter {
+  std::string name, unit;
+  std::string effect;  ///< key; empty for the base law
+  double value = 0;
+  double std_error = 0;             ///< statistical, from cycle to cycle of the run
+  double systematic = 0;            ///< standard uncertainty from the declared instruments; 0 where none is declared
+  double lower95 = 0, upper95 = 0;  ///< statistical 95 % interval
+  bool at_bound = false;
+};
+
+/// A stored fit. What is not known is NaN.
+struct ResultFit {
+  std::string law, protocol;  ///< "exponential", "joint"
+  std::vector<std::string> effects;
+  std::vector<ResultParameter> parameters;
+  std::vector<double> covariance;  ///< statistical, in the units of the parameters, row by row; empty: not known
+  double degrees_of_freedom = 1;   ///< of the t distribution of the statistical errors
+  double rmse = 0, held_out_rmse = 0, floor_rmse = 0;  ///< [1], or [N] where friction is a force
+  double mean_relative = 0, max_relative = 0;          ///< [D] Eq 5
+  double explained = 0;
+  bool converged = false;
+  std::size_t cycles = 0;
+  std::vector<std::string> messages;
+};
+
+/// A stored mean over cycles with its standard error; NaN where not known.
+struct ResultMeasure {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double std_error = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The result of one run as read back from its file.
+struct RunResult {
+  RunRecord run;
+  std::size_t position = 0;     ///< in the campaign, from 0
+  std::optional<double> order;  ///< rank in time from 0 (ties share their mean), where a condition says it, see below
+  Conditions conditions;        ///< as used [SI]
+  std::string friction_unit = "1";  ///< "N" where friction is a force
+  std::size_t samples = 0;
+  double duration = 0, rate = 0;  ///< [s], [Hz]
+
+  std::size_t cycles = 0;
+  ResultMeasure frequency;   ///< [Hz]
+  ResultMeasure amplitude;   ///< of v_r [mm/s]
+  ResultMeasure stick_time;  ///< [s]
+  ResultMeasure slip_time;   ///< [s]
+  double rms_velocity = 0;   ///< of the block [mm/s]
+
+  std::vector<ResultFit> fits;
+  std::size_t best = 0;  ///< index in fits
+  std::vector<std::string> warnings;
+
+  /// The fit of that law and protocol; null where there is none with parameters.
+  const ResultFit* fit(std::string_view law, std::string_view protocol) const;
+};
+
+/// A run without a whole result that was made with the settings of the campaign.
+struct MissingRun {
+  std::string name, file;
+  std::size_t position = 0;
+};
+
+/// The results of a campaign as they lie in a folder.
+struct CampaignResults {
+  std::string folder;                 ///< of the traces; empty where they were named one by one
+  std::vector<RunResult> runs;        ///< in the order of the campaign
+  std::vector<MissingRun> missing;    ///< in the order of the campaign
+  std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
+};
+
+/// A JSON object with its own checksum as last key, by which half a file and a damaged one are told.
+std::string sealed(std::string_view json);
+
+/// Whether a text is one that sealed() made, to the last byte.
+bool is_whole(std::string_view text);
+
+/// What a campaign is made of, in the folder of its results.
+inline constexpr const char* campaign_name = "campaign.json";
+
+/// The folder of traces that a folder of results belongs to (empty: named one by one); nothing where campaign.json is
+/// missing or damaged. Never throws.
+std::optional<std::string> folder_of_campaign(const std::string& results);
+
+/// Reads the record of one result file; nothing where the file is missing, damaged or of another make. Never throws.
+std::optional<RunRecord> read_record(const std::string& path);
+
+/// Reads all results of a campaign; `order` comes from the first further condition that is called order, run order,
+/// sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text, which
+/// puts ISO dates in order).
+/// Throws InputError where the folder holds no campaign. Cost: linear in runs.
+CampaignResults read_campaign(const std::string& folder);
+
+/// The runs of read_campaign().
+std::vector<RunResult> read_results(const std::string& folder);
+
+}  // namespace tribofit

@@ -1,0 +1,241 @@
+#include "tribofit/campaign/batch.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "content_hash.hpp"
+#include "tribofit/fit/parallel.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+/// What tells without reading whether a file was written to.
+struct FileState {
+  std::uint64_t bytes = 0;
+  timespec changed{};
+  bool operator==(const FileState& other) const {
+    return bytes == other.bytes && changed.tv_sec == other.changed.tv_sec && changed.tv_nsec == other.changed.tv_nsec;
+  }
+};
+
+FileState state_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  return {static_cast<std::uint64_t>(status.st_size), status.st_mtim};
+}
+
+/// Keeps the traces that are in memory at the same time below a number of bytes; one alone may have more.
+class Admission {
+ public:
+  explicit Admission(std::uint64_t limit) : limit_(limit) {}
+  void enter(std::uint64_t bytes) {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [&] { return inside_ == 0 || inside_ + bytes <= limit_; });
+    inside_ += bytes;
+  }
+  void leave(std::uint64_t bytes) {
+    {
+      const std::lock_guard lock(mutex_);
+      inside_ -= bytes;
+    }
+    room_.notify_all();
+  }
+
+ private:
+  std::uint64_t limit_, inside_ = 0;
+  std::mutex mutex_;
+  std::condition_variable room_;
+};
+
+std::string with_place(const InputError& error, const Run& run) {
+  InputLocation where = error.where();
+  if (where.file == run.trace.path) where.file = run.file;  // results do not depend on how the folder was named
+  return InputError(error.problem(), error.advice(), where).what();
+}
+
+/// Why the analysis could not be done; empty where it was.
+std::string failure_of(const Identification& result) {
+  const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
+                                  [](const Fit& f) { return f.converged && !f.parameters.empty(); });
+  if (result.analysed && fitted) return "";
+  return result.warnings.empty() ? "no fit converged" : result.warnings.back();
+}
+
+class Batch {
+ public:
+  Batch(const Campaign& campaign, const BatchOptions& options, const BatchHooks& hooks)
+      : options_(options), hooks_(hooks), admission_(options.bytes_at_once), options_hash_(options_hash(options)) {
+    for (std::size_t k = 0; k < campaign.runs.size(); ++k) {
+      if (k % options.shard.count + 1 != options.shard.index) continue;
+      outcome_.ends.emplace_back().run = &campaign.runs[k];
+      bytes_.push_back(state_of(campaign.runs[k].trace.path).bytes);
+      progress_.left_bytes += bytes_.back();
+    }
+    progress_.total = outcome_.ends.size();
+    threads_ = options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  }
+
+  BatchOutcome run() {
+    run_tasks(outcome_.ends.size(), static_cast<int>(threads_), [&](std::size_t k) { end_run(k); });
+    for (const RunEnd& end : outcome_.ends) {
+      if (!end.begun) {
+        outcome_.stopped = true;
+      } else if (end.status != RunStatus::ok || !end.kept) {
+        ++outcome_.failed;
+      } else {
+        ++(end.present ? outcome_.present : outcome_.fitted);
+      }
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  void end_run(std::size_t k) {
+    RunEnd& end = outcome_.ends[k];
+    if (unwritten_in_a_row_ >= kMostUnwritten) {
+      end.begun = false;
+      return;
+    }
+    const Run& run = *end.run;
+    const FileState before = state_of(run.trace.path);
+    RunRecord record = record_of(run);
+    if (is_present(run, record)) {
+      end.present = true;
+      end.status = record.status;
+      end.message = record.message;
+    } else {
+      admission_.enter(bytes_[k]);
+      fit_and_keep(k, before, record, end);
+      admission_.leave(bytes_[k]);
+    }
+    tell(k, end);
+  }
+
+  RunRecord record_of(const Run& run) const {
+    RunRecord record;
+    record.name = run.name;
+    record.file = run.file;
+    record.settings = settings_hash(run, options_hash_);
+    record.conditions = run.trace.read.conditions;
+    record.repeat = run.known.repeat;
+    record.others = run.known.others;
+    return record;
+  }
+
+  /// Finds the key of the run by reading its files, and whether its result is there; takes over what that says.
+  bool is_present(const Run& run, RunRecord& record) const {
+    record.status = RunStatus::unreadable;
+    record.message = run.problem;
+    record.key = hexadecimal(xxh64(record.settings));
+    if (!run.problem.empty()) return false;
+    try {
+      record.key = hexadecimal(xxh64(record.settings, content_hash(std::vector{run.trace.path})));
+    } catch (const InputError& error) {
+      record.message = with_place(error, run);
+      return false;
+    }
+    record.status = RunStatus::ok;
+    if (options_.again) return false;
+    const auto found = read_record(result_path(options_.results, run.name));
+    if (!found || found->key != record.key || found->status == RunStatus::unreadable) return false;
+    record.status = found->status;
+    record.message = found->message;
+    return true;
+  }
+
+  void fit_and_keep(std::size_t k, const FileState& before, RunRecord& record, RunEnd& end) {
+    const Run& run = *end.run;
+    std::optional<Identification> result;
+    if (record.status == RunStatus::ok) result = analysis_of(run, k, before, record);
+    end.status = record.status;
+    end.message = record.message;
+    try {
+      hooks_.keep(record, result ? &*result : nullptr);
+      unwritten_in_a_row_ = 0;
+    } catch (const InputError& error) {
+      end.kept = false;
+      end.message = error.what();
+      ++unwritten_in_a_row_;
+    }
+  }
+
+  std::optional<Identification> analysis_of(const Run& run, std::size_t k, const FileState& before,
+                                            RunRecord& record) const {
+    const auto refuse = [&](std::string message) {
+      record.status = RunStatus::unreadable;
+      record.message = std::move(message);
+      return std::nullopt;
+    };
+    std::optional<Identification> result;
+    try {
+      IdentifyOptions own = options_.identify;
+      own.read = run.trace.read;
+      own.threads = own.read.threads = threads_inside(bytes_[k]);
+      result = identify(run.trace.path, own);
+    } catch (const InputError& error) {
+      return refuse(with_place(error, run));
+    } catch (const std::bad_alloc&) {
+      return refuse(run.file + ": there is not enough memory for it; use fewer --threads");
+    }
+    if (!(state_of(run.trace.path) == before)) {
+      return refuse(run.file + ": changed while it was read; run again when it is complete");
+    }
+    result->path = run.file;
+    result->warnings.insert(result->warnings.begin(), run.warnings.begin(), run.warnings.end());
+    record.message = failure_of(*result);
+    if (!record.message.empty()) record.status = RunStatus::failed;
+    return result;
+  }
+
+  /// A trace so long that it leaves no room for others gets the threads that would be theirs.
+  int threads_inside(std::uint64_t bytes) const {
+    const std::uint64_t beside = std::clamp<std::uint64_t>(options_.bytes_at_once / std::max<std::uint64_t>(bytes, 1),
+                                                           1, std::min(threads_, outcome_.ends.size()));
+    return static_cast<int>(std::max<std::uint64_t>(1, threads_ / beside));
+  }
+
+  void tell(std::size_t k, const RunEnd& end) {
+    const std::lock_guard lock(telling_);
+    ++progress_.done;
+    progress_.left_bytes -= bytes_[k];
+    if (!end.present) progress_.fitted_bytes += bytes_[k];
+    progress_.name = end.run->name;
+    if (hooks_.progress) hooks_.progress(progress_);
+  }
+
+  /// A disc that takes none of so many results in a row is full or gone: there is no use in fitting on.
+  static constexpr int kMostUnwritten = 8;
+
+  const BatchOptions& options_;
+  const BatchHooks& hooks_;
+  Admission admission_;
+  std::string options_hash_;
+  std::size_t threads_ = 1;
+  std::vector<std::uint64_t> bytes_;  // of the trace of each end
+  BatchOutcome outcome_;
+  std::atomic<int> unwritten_in_a_row_ = 0;
+  std::mutex telling_;
+  BatchProgress progress_;
+};
+
+}  // namespace
+
+std::string result_path(const std::string& results, const std::string& name) {
+  return (std::filesystem::path(results) / (name + ".json")).string();
+}
+
+BatchOutcome run_batch(const Campaign& campaign, const BatchOptions& options, const BatchHooks& hooks) {
+  return Batch(campaign, options, hooks).run();
+}
+
+}  // namespace tribofit

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <system_error>
+#include <utility>
+
+#include "ingest/spelling.hpp"
+#include "tribofit/campaign/run.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kRpm = 2 * std::numbers::pi / 60;
+
+bool is_trace_name(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // The manifest of a folder of runs holds their conditions, not a run.
+  return (extension == ".csv" || extension == ".tsv") && path.filename() != manifest_name &&
+         path.filename().string().front() != '.';
+}
+
+std::vector<std::string> traces_in(const std::string& folder) {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
+  }
+  if (error) {
+    throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
+  }
+  if (found.empty()) {
+    throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {folder, 0, ""});
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// The manifest's condition where the command line says nothing; where both speak and differ, a warning.
+void merge(const Condition& manifest, Condition& merged, const char* option, double unit, const char* unit_name,
+           const std::string& place, std::vector<std::string>& warnings) {
+  if (!manifest.known()) return;
+  if (!merged.known()) {
+    merged = manifest;
+    return;
+  }
+  constexpr double kSame = 1e-6;
+  if (std::abs(merged.value - manifest.value) <= kSame * std::abs(manifest.value)) return;
+  warnings.push_back(fmt::format("{} {:.4g} {} is used, not the {:.4g} {} of {}", option, merged.value / unit,
+                                 unit_name, manifest.value / unit, unit_name, place));
+}
+
+Run manifest_run(const Manifest& manifest, const ManifestRow& row, const ReadOptions& read) {
+  Run run = run_of(row.path, read);
+  Conditions& merged = run.trace.read.conditions;
+  const std::string place = fmt::format("{}:{}", manifest.path, row.line);
+  if (read.step_radii.empty()) {
+    merge(row.conditions.radius, merged.radius, "--radius", 1e-3, "mm", place, run.warnings);
+  } else if (row.conditions.radius.known()) {
+    run.warnings.push_back("the radii of the steps given with --radius are used, not the radius of " + place);
+  }
+  merge(row.conditions.speed, merged.speed, "--speed", kRpm, "rpm", place, run.warnings);
+  merge(row.conditions.load, merged.load, "--load", 1, "N", place, run.warnings);
+  run.known = row;
+  run.known.conditions = merged;
+  run.notes = manifest.notes;
+  return run;
+}
+
+/// `path` without the folder before it.
+std::string inside(const std::string& folder, const std::string& path) {
+  const std::string prefix = (fs::path(folder) / "").string();
+  return path.starts_with(prefix) ? path.substr(prefix.size()) : path;
+}
+
+void add_folder(const std::string& folder, const ReadOptions& read, ManifestErrors errors, Campaign& campaign) {
+  const std::size_t first = campaign.runs.size();
+  std::error_code error;
+  if (fs::exists(fs::path(folder) / manifest_name, error)) {
+    const Manifest manifest = read_manifest(folder, errors);
+    for (const ManifestRow& row : manifest.rows) {
+      campaign.runs.push_back(manifest_run(manifest, row, read));
+      // Results do not depend on the way by which the folder was named.
+      campaign.runs.back().problem = replaced(row.problem, manifest.path, manifest_name);
+    }
+    for (const std::string& problem : manifest.problems) {
+      campaign.problems.push_back(replaced(problem, manifest.path, manifest_name));
+    }
+  } else {
+    for (const std::string& path : traces_in(folder)) campaign.runs.push_back(run_of(path, read));
+  }
+  for (std::size_t k = first; k < campaign.runs.size(); ++k) {
+    campaign.runs[k].file = inside(folder, campaign.runs[k].trace.path);
+  }
+}
+
+/// What a file name is called by, from short to long: "a" and "sub-a.csv" of sub/a.csv.
+std::string short_name(const Run& run) {
+  return fs::path(run.file).stem().string();
+}
+
+std::string long_name(const Run& run) {
+  std::string name = replaced(run.file, "/", "-");
+  name.erase(0, name.find_first_not_of(".-"));
+  return name.empty() ? "run" : name;
+}
+
+/// The short name where it is the only one of its kind, else the long one, with a number where that is taken as well.
+void name_runs(std::vector<Run>& runs) {
+  std::map<std::string, std::size_t> count = {{"summary", 1}, {"campaign", 1}};  // files of the campaign itself
+  for (const Run& run : runs) ++count[short_name(run)];
+  std::map<std::string, std::size_t> taken;
+  for (Run& run : runs) {
+    run.name = count[short_name(run)] == 1 ? short_name(run) : long_name(run);
+    ++taken[run.name];
+  }
+  std::map<std::string, std::size_t> number;
+  for (Run& run : runs) {
+    if (taken[run.name] == 1 || ++number[run.name] == 1) continue;
+    std::string name;
+    do {
+      name = fmt::format("{}-{}", run.name, number[run.name]);
+    } while (taken.contains(name) && ++number[run.name] > 0);
+    ++taken[name];
+    run.name = name;
+  }
+}
+
+}  // namespace
+
+Run run_of(const std::string& path, const ReadOptions& read) {
+  Run run;
+  run.trace = {path, read};
+  run.file = path;
+  run.known.path = path;
+  run.known.conditions = read.conditions;
+  return run;
+}
+
+Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read, ManifestErrors errors) {
+  Campaign campaign;
+  for (const std::string& name : names) {
+    std::error_code error;
+    if (fs::is_directory(name, error)) {
+      add_folder(name, read, errors, campaign);
+      if (names.size() == 1) campaign.folder = name;
+    } else {
+      campaign.runs.push_back(run_of(name, read));
+    }
+  }
+  name_runs(campaign.runs);
+  return campaign;
+}
+
+}  // namespace tribofit

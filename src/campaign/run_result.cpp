@@ -1,0 +1,246 @@
+#include "tribofit/campaign/run_result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <utility>
+
+#include "content_hash.hpp"
+#include "order.hpp"
+#include "tribofit/campaign/batch.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kMillimetre = 1e-3, kRpm = 2 * std::numbers::pi / 60;
+constexpr std::string_view kEnd = "\n}\n", kSeal = ",\n  \"checksum\": \"";
+
+/// A number, NaN for null and for what is not there.
+double number(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string text(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::size_t count(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
+}
+
+std::vector<std::string> texts(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>{};
+}
+
+Conditions conditions_of(const Json& json) {
+  return {{number(json, "radius_mm") * kMillimetre, text(json, "radius_source")},
+          {number(json, "speed_rpm") * kRpm, text(json, "speed_source")},
+          {number(json, "load_N"), text(json, "load_source")}};
+}
+
+RunStatus status_of(const std::string& name) {
+  if (name == "ok") return RunStatus::ok;
+  return name == "failed" ? RunStatus::failed : RunStatus::unreadable;
+}
+
+RunRecord record_of(const Json& run) {
+  RunRecord record;
+  record.name = text(run, "name");
+  record.file = text(run, "file");
+  record.key = text(run, "key");
+  record.settings = text(run, "settings");
+  record.status = status_of(text(run, "status"));
+  record.message = text(run, "message");
+  record.conditions = conditions_of(run.at("stated"));
+  if (run.at("repeat").is_number()) record.repeat = run.at("repeat").get<int>();
+  for (const Json& other : run.at("others")) record.others.push_back({text(other, "name"), text(other, "value")});
+  return record;
+}
+
+ResultParameter parameter_of(const Json& json) {
+  ResultParameter p;
+  p.name = text(json, "name");
+  p.unit = text(json, "unit");
+  p.effect = text(json, "effect");
+  p.value = number(json, "value");
+  p.std_error = number(json, "std_error");
+  p.systematic = json.at("systematic_error").is_null() ? 0 : number(json, "systematic_error");
+  const Json& ci = json.at("ci95");
+  const auto end = [&](std::size_t k) {
+    return ci.at(k).is_number() ? ci.at(k).get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
+  p.lower95 = end(0);
+  p.upper95 = end(1);
+  p.at_bound = json.at("at_bound").get<bool>();
+  return p;
+}
+
+ResultFit fit_of(const Json& json) {
+  ResultFit fit;
+  fit.law = text(json, "law");
+  fit.protocol = text(json, "protocol");
+  fit.effects = texts(json, "effects");
+  for (const Json& parameter : json.at("parameters")) fit.parameters.push_back(parameter_of(parameter));
+  for (const Json& row : json.at("covariance")) {
+    for (const Json& value : row) {
+      fit.covariance.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  fit.degrees_of_freedom = number(json, "degrees_of_freedom");
+  const Json& error = json.at("error");
+  fit.rmse = number(error, "rmse");
+  fit.held_out_rmse = number(error, "held_out_rmse");
+  fit.mean_relative = number(error, "mean_relative");
+  fit.max_relative = number(error, "max_relative");
+  fit.floor_rmse = number(json, "floor_rmse");
+  fit.explained = number(json, "explained");
+  fit.converged = json.at("converged").get<bool>();
+  fit.cycles = count(json, "cycles");
+  fit.messages = texts(json, "messages");
+  return fit;
+}
+
+void read_stick_slip(const Json& json, RunResult& result) {
+  result.cycles = count(json, "cycles");
+  result.frequency = {number(json.at("frequency_hz"), "value"), number(json.at("frequency_hz"), "std_error")};
+  result.amplitude = {number(json, "amplitude_mm_s"), number(json, "amplitude_std_error_mm_s")};
+  result.stick_time = {number(json, "stick_time_s"), number(json, "stick_time_std_error_s")};
+  result.slip_time = {number(json, "slip_time_s"), number(json, "slip_time_std_error_s")};
+  result.rms_velocity = number(json, "rms_velocity_mm_s");
+}
+
+RunResult result_of(const Json& json) {
+  RunResult result;
+  result.run = record_of(json.at("run"));
+  if (json.contains("conditions")) result.conditions = conditions_of(json.at("conditions"));
+  if (json.contains("trace")) {
+    const Json& trace = json.at("trace");
+    if (trace.contains("friction_unit")) result.friction_unit = text(trace, "friction_unit");
+    result.samples = count(trace, "samples");
+    result.duration = number(trace, "duration_s");
+    result.rate = number(trace, "rate_hz");
+  }
+  if (json.contains("stick_slip")) read_stick_slip(json.at("stick_slip"), result);
+  for (const Json& fit : json.at("fits")) result.fits.push_back(fit_of(fit));
+  result.best = json.contains("best") && json.at("best").is_number() ? count(json, "best") : 0;
+  if (result.best >= result.fits.size()) result.best = 0;
+  result.warnings = texts(json, "warnings");
+  return result;
+}
+
+/// The bytes of a file, empty where it cannot be read.
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << in.rdbuf();  // a folder reads as nothing
+  return std::move(bytes).str();
+}
+
+/// The object in a sealed file, or nothing.
+std::optional<Json> object_in(const std::string& path) {
+  const std::string bytes = bytes_of(path);
+  if (!is_whole(bytes)) return std::nullopt;
+  Json json = Json::parse(bytes, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  return json;
+}
+
+Json campaign_object(const std::string& folder) {
+  const std::string path = (std::filesystem::path(folder) / campaign_name).string();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError("holds no results of a campaign (there is no campaign.json)",
+                     "name the folder given to --out, or make it: identify runs/ --out " + folder, {folder, 0, ""});
+  }
+  auto json = object_in(path);
+  if (!json) {
+    throw InputError("is damaged", "run the batch again: it writes the file anew and keeps the results", {path, 0, ""});
+  }
+  return std::move(*json);
+}
+
+}  // namespace
+
+std::string_view to_string(RunStatus status) {
+  if (status == RunStatus::ok) return "ok";
+  return status == RunStatus::failed ? "failed" : "unreadable";
+}
+
+const ResultFit* RunResult::fit(std::string_view law, std::string_view protocol) const {
+  const auto found = std::find_if(fits.begin(), fits.end(), [&](const ResultFit& f) {
+    return f.law == law && f.protocol == protocol && !f.parameters.empty();
+  });
+  return found == fits.end() ? nullptr : &*found;
+}
+
+std::string sealed(std::string_view json) {
+  std::string text(json.substr(0, json.size() - std::min(json.size(), kEnd.size())));
+  const std::string checksum = hexadecimal(xxh64(text));
+  text += std::string(kSeal) + checksum + "\"" + std::string(kEnd);
+  return text;
+}
+
+bool is_whole(std::string_view text) {
+  const std::size_t at = text.rfind(kSeal);
+  return at != std::string_view::npos && text == sealed(std::string(text.substr(0, at)) + std::string(kEnd));
+}
+
+std::optional<RunRecord> read_record(const std::string& path) {
+  try {
+    const auto json = object_in(path);
+    if (!json) return std::nullopt;
+    return record_of(json->at("run"));
+  } catch (const Json::exception&) {  // whole, but of another make
+    return std::nullopt;
+  }
+}
+
+std::optional<std::string> folder_of_campaign(const std::string& results) {
+  const auto json = object_in((std::filesystem::path(results) / campaign_name).string());
+  if (!json) return std::nullopt;
+  return text(*json, "folder");
+}
+
+CampaignResults read_campaign(const std::string& folder) {
+  CampaignResults results;
+  const Json campaign = campaign_object(folder);
+  results.folder = text(campaign, "folder");
+  results.problems = texts(campaign, "problems");
+  std::size_t position = 0;
+  for (const Json& run : campaign.at("runs")) {
+    const std::string name = text(run, "name");
+    std::optional<RunResult> result;
+    try {
+      const auto json = object_in(result_path(folder, name));
+      if (json && text(json->at("run"), "settings") == text(run, "settings")) result = result_of(*json);
+    } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
+      result.reset();
+    }
+    if (result) {
+      result->position = position;
+      results.runs.push_back(std::move(*result));
+    } else {
+      results.missing.push_back({name, text(run, "file"), position});
+    }
+    ++position;
+  }
+  put_in_order(results.runs);
+  return results;
+}
+
+std::vector<RunResult> read_results(const std::string& folder) {
+  return read_campaign(folder).runs;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runs.hpp"
+
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Batch : public ::testing::Test {
+ protected:
+  Batch() { make_runs(shop_, 5); }
+  Workshop shop_;
+};
+
+TEST_F(Batch, WritesAFileARunAndASummaryInTheOrderOfTheManifest) {
+  const Outcome outcome = shop_.identify("runs/");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("5 fitted, 0 already there, 0 failed; results in runs-results/"));
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto files = files_in(shop_ / "runs-results");
+  EXPECT_EQ(files.size(), 8u);  // five runs, campaign.json, the summary twice
+  const auto lines = lines_of(files.at("summary.csv"));
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_EQ(lines[0].find("run,file,status,message,radius_mm,speed_rpm,load_N,repeat,lot,"), 0u);
+  EXPECT_EQ(lines[1].find("a1,a1.csv,ok,,15.1,"), 0u);
+  EXPECT_EQ(lines[5].find("a5,a5.csv,ok,,15.1,"), 0u);
+  const auto summary = json_in(shop_ / "runs-results/summary.json");
+  EXPECT_EQ(summary["runs"].size(), 5u);
+  EXPECT_EQ(summary["runs"][1]["conditions"]["radius_mm"], 15.0);
+  EXPECT_EQ(json_in(shop_ / "runs-results/a1.json")["trace"]["path"], "a1.csv");
+}
+
+TEST_F(Batch, EveryNumberOfThreadsGivesTheSameBytes) {
+  ASSERT_EQ(shop_.identify("runs --out one --threads 1 --quiet").status, 0);
+  ASSERT_EQ(shop_.identify("runs --out four --threads 4 --quiet").status, 0);
+  ASSERT_EQ(shop_.identify((shop_ / "runs").string() + " --out absolute --quiet").status, 0);
+  EXPECT_EQ(files_in(shop_ / "one"), files_in(shop_ / "four"));
+  EXPECT_EQ(files_in(shop_ / "one"), files_in(shop_ / "absolute"));
+}
+
+TEST_F(Batch, ASecondRunDoesWhatIsNewOrChanged) {
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const auto first = files_in(shop_ / "res");
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("0 fitted, 5 already there, 0 failed"));
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+  EXPECT_THAT(shop_.identify("runs --out res --again").out, HasSubstr("5 fitted, 0 already there"));
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+
+  shop_.write("runs/a2.csv", short_trace(12));
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("1 fitted, 4 already there"));
+  shop_.write("runs/a2.csv", short_trace(2));
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("1 fitted, 4 already there"));
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+
+  std::string manifest = contents(shop_ / "runs/manifest.csv");
+  shop_.write("runs/manifest.csv", manifest.replace(manifest.find("50N"), 3, "60N"));
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("1 fitted, 4 already there"));
+  EXPECT_THAT(shop_.identify("runs --out res --law exponential").out, HasSubstr("5 fitted, 0 already there"));
+  shop_.write("lab.json", R"({"vibrometer": {"gain": [1.0, 0.01]}})");
+  EXPECT_THAT(shop_.identify("runs --out res --instruments lab.json").out, HasSubstr("5 fitted"));
+  EXPECT_THAT(shop_.identify("runs --out res --instruments lab.json").out, HasSubstr("0 fitted, 5 already"));
+  shop_.write("lab.json", R"({"vibrometer": {"gain": [1.0, 0.02]}})");
+  EXPECT_THAT(shop_.identify("runs --out res --instruments lab.json").out, HasSubstr("5 fitted"));
+}
+
+TEST_F(Batch, ARunThatIsAddedOrGoneChangesNoOther) {
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const std::string manifest = contents(shop_ / "runs/manifest.csv");
+  shop_.write("runs/a0.csv", short_trace(10));
+  std::string more = manifest;
+  shop_.write("runs/manifest.csv", more.insert(manifest.find('\n') + 1, "a0.csv,15mm,50N,9,L\n"));
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("1 fitted, 5 already there"));
+  EXPECT_EQ(json_in(shop_ / "res/summary.json")["runs"][0]["name"], "a0");
+  ASSERT_EQ(shop_.identify("runs --out fresh --quiet").status, 0);
+  EXPECT_EQ(files_in(shop_ / "res"), files_in(shop_ / "fresh"));
+  shop_.write("runs/manifest.csv", manifest);
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("0 fitted, 5 already there"));
+  EXPECT_EQ(json_in(shop_ / "res/summary.json")["runs"].size(), 5u);
+}
+
+TEST_F(Batch, ADamagedResultIsDoneAgain) {
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const auto first = files_in(shop_ / "res");
+  const std::string& whole = first.at("a3.json");
+  std::string changed = whole;
+  const std::size_t digit = changed.find("\"value\": ") + 11;
+  changed[digit] = changed[digit] == '1' ? '2' : '1';
+  for (const std::string& damaged : {whole.substr(0, whole.size() / 2), changed, std::string(), std::string("{}")}) {
+    shop_.write("res/a3.json", damaged);
+    EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("1 fitted, 4 already there"));
+    EXPECT_EQ(files_in(shop_ / "res"), first);
+  }
+  shop_.write("res/campaign.json", "{");
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("0 fitted, 5 already there"));
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+}
+
+TEST_F(Batch, FilesNamedOneByOneAreABatchWithOut) {
+  std::filesystem::create_directory(shop_ / "other");
+  shop_.write("other/a1.csv", short_trace(7));
+  ASSERT_EQ(shop_.identify("--radius 15mm runs/a1.csv other/a1.csv runs/a2.csv --out res --quiet").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(shop_ / "res/runs-a1.csv.json"));
+  EXPECT_TRUE(std::filesystem::exists(shop_ / "res/other-a1.csv.json"));
+  EXPECT_TRUE(std::filesystem::exists(shop_ / "res/a2.json"));
+  EXPECT_THAT(shop_.identify("--radius 15mm runs/a1.csv runs/a2.csv").out, HasSubstr("Stick-slip"));  // shown
+}
+
+TEST_F(Batch, TwoBatchesAtOnceDoNotHarmEachOther) {
+  ASSERT_EQ(shop_.identify("runs --out alone --quiet").status, 0);
+  const Outcome outcome = shop_.shell(
+      "identify runs --out res --quiet & first=$!; identify runs --out res --quiet & second=$!\n"
+      "wait $first && wait $second");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(files_in(shop_ / "res"), files_in(shop_ / "alone"));
+}
+
+TEST_F(Batch, LeftoversOfAKilledBatchAreSwept) {
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const auto first = files_in(shop_ / "res");
+  shop_.write("res/.a1.json.99999-1.part", "half");
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+}
+
+TEST_F(Batch, ResultsOfOtherTracesAndForeignFilesAreNotOverwritten) {
+  std::filesystem::create_directory(shop_ / "others");
+  for (const char* name : {"others/a1.csv", "others/a2.csv"}) shop_.write(name, short_trace(8));
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const auto first = files_in(shop_ / "res");
+  const Outcome outcome = shop_.identify("--radius 15mm others --out res");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("holds the results of " + (shop_ / "runs").string()));
+  EXPECT_EQ(files_in(shop_ / "res"), first);
+  std::filesystem::create_directory(shop_ / "mine");
+  shop_.write("mine/a1.json", "precious");
+  EXPECT_EQ(shop_.identify("--radius 15mm others --out mine").status, 1);
+  EXPECT_EQ(contents(shop_ / "mine/a1.json"), "precious");
+  EXPECT_EQ(shop_.identify("--radius 15mm others --out others").status, 2);
+  shop_.write("mine/summary.csv", short_trace(1));
+  EXPECT_EQ(shop_.identify("--radius 15mm mine/summary.csv --out mine").status, 2);
+}
+
+TEST_F(Batch, WhatGoesWithOneTraceOnlyIsWrongUsage) {
+  for (const char* option : {"--json r.json", "--csv out", "--with b.csv", "--continue b.csv", "--shard 0/2",
+                             "--shard 3/2", "--shard 1", "--shard 1/2x", "--out ''"}) {
+    EXPECT_EQ(shop_.identify(std::string("runs ") + option).status, 2) << option;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,220 @@
+#include "batch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "console.hpp"
+#include "inputs.hpp"
+#include "options.hpp"
+#include "tribofit/campaign/batch.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/report/campaign.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
+
+/// "3/16"
+Shard shard_from(const std::string& text) {
+  if (text.empty()) return {};
+  Shard shard;
+  const char *end = text.data() + text.size(), *slash = text.data() + std::min(text.find('/'), text.size());
+  const auto [first_end, first_error] = std::from_chars(text.data(), slash, shard.index);
+  const auto [last, error] = std::from_chars(std::min(slash + 1, end), end, shard.count);
+  const bool read = first_error == std::errc{} && first_end == slash && error == std::errc{} && last == end;
+  if (!read || shard.index < 1 || shard.index > shard.count) {
+    throw CLI::ValidationError("--shard: '" + text + "' is not I/N with I from 1 to N, as in 1/4");
+  }
+  return shard;
+}
+
+std::string default_results(const std::string& folder) {
+  if (folder.empty()) throw CLI::ValidationError("--shard of traces named one by one needs --out");
+  std::error_code ignored;
+  fs::path path = fs::weakly_canonical(folder, ignored);
+  if (!path.has_filename()) path = path.parent_path();
+  return path.filename().string() + "-results";
+}
+
+std::vector<std::string> without_threads(std::vector<std::string> arguments) {
+  const auto at = std::find(arguments.begin(), arguments.end(), "--threads");
+  if (at != arguments.end()) arguments.erase(at, at + 2);
+  return arguments;
+}
+
+void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
+  if (!s.json.empty()) throw CLI::ValidationError("--json goes with one trace at a time; --out has a file for each");
+  if (!s.csv.empty()) throw CLI::ValidationError("--csv goes with one trace at a time");
+  if (campaign.runs.size() > 1 && !s.second_file.empty()) {
+    throw CLI::ValidationError("--with goes with one trace at a time");
+  }
+  if (campaign.runs.size() > 1 && !s.continued_in.empty()) {
+    throw CLI::ValidationError("--continue goes with one trace at a time");
+  }
+  if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
+    throw CLI::ValidationError("--out is the folder of the traces; name another");
+  }
+  std::vector<std::string> inputs = batch.companions;
+  for (const Run& run : campaign.runs) inputs.push_back(run.trace.path);
+  std::vector<std::string> outputs = {(fs::path(batch.results) / "summary.csv").string()};
+  for (const Run& run : campaign.runs) outputs.push_back(result_path(batch.results, run.name));
+  for (const std::string& output : outputs) {
+    std::error_code ignored;
+    if (!fs::exists(output, ignored)) continue;
+    for (const std::string& input : inputs) {
+      if (same_file(output, input)) throw CLI::ValidationError("--out would overwrite " + input);
+    }
+  }
+}
+
+/// Makes the folder, or makes sure that it is one of this campaign.
+void claim_results(const Campaign& campaign, const BatchOptions& batch) {
+  const fs::path folder(batch.results);
+  std::error_code error, ignored;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError("the folder cannot be made: " + error.message(), "name a place you may write to with --out",
+                     {batch.results, 0, ""});
+  }
+  if (fs::exists(folder / campaign_name, ignored)) {
+    const auto known = folder_of_campaign(batch.results);
+    const std::string own = campaign.folder.empty() ? "" : fs::weakly_canonical(campaign.folder, ignored).string();
+    if (!known || *known == own || batch.again) return;  // a damaged file is written anew
+    throw InputError("holds the results of " + (known->empty() ? "other traces" : *known),
+                     "name another folder with --out, or do them anew with --again", {batch.results, 0, ""});
+  }
+  for (const Run& run : campaign.runs) {
+    if (!fs::exists(result_path(batch.results, run.name), ignored)) continue;
+    throw InputError("exists and is no result of a campaign", "name another folder with --out",
+                     {result_path(batch.results, run.name), 0, ""});
+  }
+}
+
+void write_campaign(const Campaign& campaign, const BatchOptions& batch) {
+  const std::string path = (fs::path(batch.results) / campaign_name).string();
+  const std::string text = campaign_json(campaign, batch);
+  std::ifstream in(path, std::ios::binary);
+  if (in && std::string(std::istreambuf_iterator<char>(in), {}) == text) return;
+  write_whole(path, text);
+}
+
+/// Runs done and the time left, from the bytes fitted so far.
+class Watch {
+ public:
+  void show(const BatchProgress& p) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+    std::string text = fmt::format("[{}/{}] {}", p.done, p.total, p.name);
+    if (p.fitted_bytes > 0) {
+      text += "; " + left(elapsed.count() * static_cast<double>(p.left_bytes) / static_cast<double>(p.fitted_bytes));
+    }
+    line_.show(text, static_cast<double>(p.done) / static_cast<double>(p.total));
+  }
+
+ private:
+  static std::string left(double seconds) {
+    if (seconds < 90) return fmt::format("{:.0f} s left", seconds);
+    if (seconds < 5400) return fmt::format("{:.0f} min left", seconds / 60);
+    return fmt::format("{:.1f} h left", seconds / 3600);
+  }
+
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  ProgressLine line_;
+};
+
+BatchOutcome fit_runs(const Campaign& campaign, const BatchOptions& batch) {
+  Watch watch;
+  BatchHooks hooks;
+  hooks.keep = [&](const RunRecord& record, const Identification* result) {
+    write_whole(result_path(batch.results, record.name), run_json(record, result, {batch.arguments}));
+  };
+  hooks.progress = [&](const BatchProgress& progress) { watch.show(progress); };
+  return run_batch(campaign, batch, hooks);
+}
+
+std::string counts(const BatchOutcome& outcome) {
+  return fmt::format("{} fitted, {} already there, {} failed", outcome.fitted, outcome.present, outcome.failed);
+}
+
+void complain_of(const Campaign& campaign, const BatchOutcome& outcome) {
+  for (const std::string& problem : campaign.problems) complain(problem);
+  for (const RunEnd& end : outcome.ends) {
+    if (!end.begun || end.message.empty()) continue;
+    complain(end.status == RunStatus::failed && end.kept
+                 ? end.run->file + ": the analysis could not be done: " + end.message
+                 : end.message);
+  }
+  if (outcome.stopped) complain("no result can be written any more: the other runs are left for the next time");
+}
+
+int status_of(const Campaign& campaign, const BatchOutcome& outcome) {
+  const bool none_read = !outcome.ends.empty() && std::all_of(outcome.ends.begin(), outcome.ends.end(), [](auto& end) {
+    return end.kept && end.status == RunStatus::unreadable;
+  });
+  if (none_read) return kBadInput;
+  return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? kFailed : kDone;
+}
+
+}  // namespace
+
+std::string as_folder(std::string name) {
+  return name.ends_with('/') ? name : name + "/";
+}
+
+bool is_batch(const Settings& s, const Campaign& campaign) {
+  return !s.out.empty() || !s.shard.empty() || (!campaign.folder.empty() && campaign.runs.size() > 1);
+}
+
+void summarise(const Settings& s, const std::string& folder, const CampaignResults& results) {
+  write_summary(folder, results);
+  if (!s.quiet) print(render_results(results, terminal_options(s, {})));
+}
+
+int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOptions& options,
+                 const std::vector<std::string>& arguments) {
+  BatchOptions batch;
+  batch.identify = options;
+  batch.arguments = without_threads(arguments);
+  batch.companions = input_files(s);
+  std::erase(batch.companions, "");
+  batch.results = s.out.empty() ? default_results(campaign.folder) : s.out;
+  batch.shard = shard_from(s.shard);
+  batch.again = s.again;
+  batch.threads = s.threads;
+  check_usage(s, campaign, batch);
+  BatchOutcome outcome;
+  try {
+    claim_results(campaign, batch);
+    remove_abandoned_files(batch.results);
+    write_campaign(campaign, batch);
+    outcome = fit_runs(campaign, batch);
+    complain_of(campaign, outcome);
+    if (s.shard.empty()) summarise(s, batch.results, read_campaign(batch.results));
+  } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
+    complain(error.what());
+    return kFailed;
+  }
+  if (!s.quiet) {
+    const std::string folder = as_folder(batch.results);
+    print(fmt::format("{}; results in {}{}\n", counts(outcome), folder,
+                      s.out.empty() ? " (name another folder with --out)" : ""));
+    print(s.shard.empty()
+              ? fmt::format("\nNext, to see what the laws miss:\n  identify diagnose {}\n",
+                            shell_quoted(campaign.folder.empty() ? campaign.runs.front().trace.path
+                                                                 : as_folder(campaign.folder)))
+              : fmt::format("\nNext, when every shard is done:\n  identify merge {}\n", shell_quoted(folder)));
+  }
+  return status_of(campaign, outcome);
+}
