@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -47,6 +51,14 @@ std::string default_results(const std::string& folder) {
   fs::path path = fs::weakly_canonical(folder, ignored);
   if (!path.has_filename()) path = path.parent_path();
   return path.filename().string() + "-results";
+}
+
+/// Blocks of the size of a channel go back to the system when they are freed, whichever thread freed them: else each
+/// thread's own heap keeps the largest trace it has seen.
+void give_memory_back() {
+#ifdef __GLIBC__
+  ::mallopt(M_MMAP_THRESHOLD, 4 << 20);
+#endif
 }
 
 std::vector<std::string> without_threads(std::vector<std::string> arguments) {
@@ -194,6 +206,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
   batch.again = s.again;
   batch.threads = s.threads;
   check_usage(s, campaign, batch);
+  give_memory_back();
   BatchOutcome outcome;
   try {
     claim_results(campaign, batch);

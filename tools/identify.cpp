@@ -88,6 +88,8 @@ int run_all(const Settings& s, const std::vector<Input>& inputs, const IdentifyO
 
 void add_batch_options(CLI::App& app, Settings& s) {
   app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)")->group("Batch");
+  app.add_option("--pattern", s.pattern, "How file names say the conditions: 'r{radius}mm_{repeat}.csv'")
+      ->group("Batch");
   app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` ends it")
       ->group("Batch");
   app.add_flag("--again", s.again, "Fit what has a result already, too")->group("Batch");
@@ -123,12 +125,17 @@ void add_identify(CLI::App& app, int& status) {
     const std::vector<std::string> arguments = own_options(app);
     if (s.traces.empty()) throw CLI::ValidationError("no trace given; try `identify --radius 15mm trace.csv`");
     const IdentifyOptions options = options_from(s);
-    const Campaign campaign = find_runs(s.traces, options.read, ManifestErrors::collect);
+    FindOptions find;
+    find.errors = ManifestErrors::collect;
+    if (!s.pattern.empty()) find.pattern.emplace(s.pattern);
+    const Campaign campaign = find_runs(s.traces, options.read, find);
     if (is_batch(s, campaign)) {
       status = run_as_batch(s, campaign, options, arguments);
       return;
     }
-    const std::vector<Input> inputs = find_runs(s.traces, options.read).runs;  // refuses what is wrong
+    find.errors = ManifestErrors::refuse;
+    const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
+    if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
     check_usage(s, inputs);
     status = run_all(s, inputs, options, arguments);
   });

@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "identify " + std::string(tribofit::version), "Print the version and leave");
   int status = 0;
   add_identify(app, status);
+  add_manifest(app, status);
   add_merge(app, status);
   add_diagnose(app, status);
   add_effects(app, status);

@@ -80,7 +80,7 @@ std::vector<std::string> own_options(const CLI::App& app) {
     const std::string name = option->get_name();
     if (option->count() == 0 || option->get_positional()) continue;
     if (name == "--json" || name == "--csv" || name == "--quiet") continue;
-    if (name == "--out" || name == "--shard" || name == "--again") continue;
+    if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
     if (option->get_items_expected_max() == 0) {
       const bool negated = option->results().front() == "false";
       arguments.push_back(negated ? "--no-" + name.substr(2) : name);

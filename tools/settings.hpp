@@ -22,7 +22,7 @@ struct Settings {
   bool profile = false;
 
   std::string json, csv;
-  std::string out, shard;  // a batch
+  std::string out, shard, pattern;  // a batch
   bool again = false;
   int threads = 0;
   std::string seed_text;

@@ -1,3 +1,5 @@
+#include "find_runs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "ingest/spelling.hpp"
+#include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -29,22 +32,6 @@ bool is_trace_name(const fs::path& path) {
          path.filename().string().front() != '.';
 }
 
-std::vector<std::string> traces_in(const std::string& folder) {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
-  }
-  if (error) {
-    throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
-  }
-  if (found.empty()) {
-    throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {folder, 0, ""});
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
 /// The manifest's condition where the command line says nothing; where both speak and differ, a warning.
 void merge(const Condition& manifest, Condition& merged, const char* option, double unit, const char* unit_name,
            const std::string& place, std::vector<std::string>& warnings) {
@@ -59,10 +46,10 @@ void merge(const Condition& manifest, Condition& merged, const char* option, dou
                                  unit_name, manifest.value / unit, unit_name, place));
 }
 
-Run manifest_run(const Manifest& manifest, const ManifestRow& row, const ReadOptions& read) {
+/// What is stated of a run in `place`, under what the user says (`read`).
+Run stated_run(const ManifestRow& row, const std::string& place, const ReadOptions& read) {
   Run run = run_of(row.path, read);
   Conditions& merged = run.trace.read.conditions;
-  const std::string place = fmt::format("{}:{}", manifest.path, row.line);
   if (read.step_radii.empty()) {
     merge(row.conditions.radius, merged.radius, "--radius", 1e-3, "mm", place, run.warnings);
   } else if (row.conditions.radius.known()) {
@@ -72,7 +59,7 @@ Run manifest_run(const Manifest& manifest, const ManifestRow& row, const ReadOpt
   merge(row.conditions.load, merged.load, "--load", 1, "N", place, run.warnings);
   run.known = row;
   run.known.conditions = merged;
-  run.notes = manifest.notes;
+  run.problem = row.problem;
   return run;
 }
 
@@ -82,21 +69,50 @@ std::string inside(const std::string& folder, const std::string& path) {
   return path.starts_with(prefix) ? path.substr(prefix.size()) : path;
 }
 
-void add_folder(const std::string& folder, const ReadOptions& read, ManifestErrors errors, Campaign& campaign) {
+/// A run of which its name says something.
+Run named_run(const std::string& path, const NamePattern& pattern, const ReadOptions& read) {
+  const std::string file = fs::path(path).filename().string();
+  const auto refused = [&](const std::string& problem, const std::string& advice) {
+    Run run = run_of(path, read);
+    run.problem = InputError(problem, advice, {file, 0, ""}).what();
+    return run;
+  };
+  try {
+    const auto fields = pattern.read(file);
+    if (fields) return stated_run(row_from(*fields, path, "file name"), "its name", read);
+  } catch (const InputError& error) {
+    return refused(error.problem(), error.advice());
+  }
+  return refused("does not fit the pattern '" + pattern.text() + "'", "change the pattern or move the file");
+}
+
+void add_manifest(const std::string& folder, const ReadOptions& read, ManifestErrors errors, Campaign& campaign) {
+  const Manifest manifest = read_manifest(folder, errors);
+  for (const ManifestRow& row : manifest.rows) {
+    campaign.runs.push_back(stated_run(row, fmt::format("{}:{}", manifest.path, row.line), read));
+    campaign.runs.back().notes = manifest.notes;
+    // Results do not depend on the way by which the folder was named.
+    campaign.runs.back().problem = replaced(row.problem, manifest.path, manifest_name);
+  }
+  for (const std::string& problem : manifest.problems) {
+    campaign.problems.push_back(replaced(problem, manifest.path, manifest_name));
+  }
+}
+
+void add_folder(const std::string& folder, const ReadOptions& read, const FindOptions& options, Campaign& campaign) {
   const std::size_t first = campaign.runs.size();
   std::error_code error;
-  if (fs::exists(fs::path(folder) / manifest_name, error)) {
-    const Manifest manifest = read_manifest(folder, errors);
-    for (const ManifestRow& row : manifest.rows) {
-      campaign.runs.push_back(manifest_run(manifest, row, read));
-      // Results do not depend on the way by which the folder was named.
-      campaign.runs.back().problem = replaced(row.problem, manifest.path, manifest_name);
-    }
-    for (const std::string& problem : manifest.problems) {
-      campaign.problems.push_back(replaced(problem, manifest.path, manifest_name));
-    }
+  const bool has_manifest = fs::exists(fs::path(folder) / manifest_name, error);
+  if (has_manifest && options.pattern) {
+    throw InputError("has a manifest.csv, which says what the runs are",
+                     "leave out --pattern, or move the manifest away", {folder, 0, ""});
+  }
+  if (has_manifest) {
+    add_manifest(folder, read, options.errors, campaign);
   } else {
-    for (const std::string& path : traces_in(folder)) campaign.runs.push_back(run_of(path, read));
+    for (const std::string& path : traces_in(folder)) {
+      campaign.runs.push_back(options.pattern ? named_run(path, *options.pattern, read) : run_of(path, read));
+    }
   }
   for (std::size_t k = first; k < campaign.runs.size(); ++k) {
     campaign.runs[k].file = inside(folder, campaign.runs[k].trace.path);
@@ -137,6 +153,22 @@ void name_runs(std::vector<Run>& runs) {
 
 }  // namespace
 
+std::vector<std::string> traces_in(const std::string& folder) {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
+  }
+  if (error) {
+    throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
+  }
+  if (found.empty()) {
+    throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {folder, 0, ""});
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 Run run_of(const std::string& path, const ReadOptions& read) {
   Run run;
   run.trace = {path, read};
@@ -146,15 +178,15 @@ Run run_of(const std::string& path, const ReadOptions& read) {
   return run;
 }
 
-Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read, ManifestErrors errors) {
+Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read, const FindOptions& options) {
   Campaign campaign;
   for (const std::string& name : names) {
     std::error_code error;
     if (fs::is_directory(name, error)) {
-      add_folder(name, read, errors, campaign);
+      add_folder(name, read, options, campaign);
       if (names.size() == 1) campaign.folder = name;
     } else {
-      campaign.runs.push_back(run_of(name, read));
+      campaign.runs.push_back(options.pattern ? named_run(name, *options.pattern, read) : run_of(name, read));
     }
   }
   name_runs(campaign.runs);

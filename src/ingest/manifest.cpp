@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "dialect.hpp"
 #include "encoding.hpp"
 #include "input_file.hpp"
+#include "manifest_roles.hpp"
 #include "spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -28,27 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Role { file, radius, speed, load, repeat, other };
-
 constexpr std::string_view kColumns = "the columns are file, radius, speed, load, repeat and others of your own";
-
-bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-Role role_of(const ColumnName& name) {
-  if (is_one_of(name.base, {"file", "filename", "trace", "path", "datei"})) return Role::file;
-  if (is_one_of(name.base, {"radius", "r", "frictionradius", "reibradius"})) return Role::radius;
-  if (is_one_of(name.base, {"repeat", "repetition", "replicate", "rep", "wiederholung"})) return Role::repeat;
-  if (name_rank(name.base, Channel::speed, std::nullopt) != no_rank) return Role::speed;
-  if (name_rank(name.base, Channel::load, std::nullopt) != no_rank) return Role::load;
-  return Role::other;
-}
-
-Quantity quantity_of(Role role) {
-  if (role == Role::radius) return Quantity::length;
-  return role == Role::speed ? Quantity::angular_velocity : Quantity::force;
-}
 
 /// Whether `name` fits a pattern of literal bytes, * (any run of them) and ? (any one).
 bool fits(std::string_view pattern, std::string_view name) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tribofit/campaign/names.hpp"
 #include "tribofit/ingest/manifest.hpp"
 #include "tribofit/pipeline.hpp"
 
@@ -28,12 +30,16 @@ struct Campaign {
 /// The run of one file of which nothing but `read` is known.
 Run run_of(const std::string& path, const ReadOptions& read);
 
+struct FindOptions {
+  ManifestErrors errors = ManifestErrors::refuse;  ///< what defects of single rows of a manifest do
+  std::optional<NamePattern> pattern;              ///< by which names of files say the conditions of their runs
+};
+
 /// The runs that `names` stand for. A folder stands for the runs of its manifest.csv in that order, or, where it has
-/// none, for the CSV files in it in order of name. What the user says (`read`) beats the manifest; contradictions
-/// become warnings of the run.
-/// Throws InputError for a folder without traces and for a manifest that cannot be used; what defects of single rows do
-/// is `errors`.
-Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read,
-                   ManifestErrors errors = ManifestErrors::refuse);
+/// none, for the CSV files in it in order of name. What the user says (`read`) beats manifest and file names;
+/// contradictions become warnings of the run. A file that does not fit the pattern is a run with a problem.
+/// Throws InputError for a folder without traces, a manifest that cannot be used, and a folder with a manifest where a
+/// pattern is given.
+Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& read, const FindOptions& options = {});
 
 }  // namespace tribofit

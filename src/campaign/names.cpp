@@ -1,0 +1,218 @@
+#include "tribofit/campaign/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "ingest/dialect.hpp"
+#include "ingest/encoding.hpp"
+#include "ingest/input_file.hpp"
+#include "ingest/manifest_roles.hpp"
+#include "ingest/spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr const char* kNumber = "[0-9]+(?:[.,][0-9]+)?";
+constexpr const char* kAdvice = "write it as in 'r{radius}mm_{repeat}.csv'";
+
+struct Measured {
+  const char* name;
+  Quantity quantity;
+  std::string StatedFields::*field;
+};
+constexpr std::array<Measured, 3> kMeasured = {{{"radius", Quantity::length, &StatedFields::radius},
+                                                {"speed", Quantity::angular_velocity, &StatedFields::speed},
+                                                {"load", Quantity::force, &StatedFields::load}}};
+
+const Measured* measured(const std::string& name) {
+  const auto found =
+      std::find_if(kMeasured.begin(), kMeasured.end(), [&](const Measured& m) { return m.name == name; });
+  return found == kMeasured.end() ? nullptr : &*found;
+}
+
+/// The longest beginning of `text` that is a unit of the quantity, as letters.
+std::string unit_at_beginning(std::string_view text, Quantity quantity) {
+  std::size_t letters = 0;
+  while (letters < text.size() && std::isalpha(static_cast<unsigned char>(text[letters]))) ++letters;
+  for (; letters > 0; --letters) {
+    const std::string unit(text.substr(0, letters));
+    if (find_unit(unit, quantity)) return unit;
+  }
+  return "";
+}
+
+std::string escaped(char c) {
+  return std::string_view("\\^$.|?*+()[]{}").find(c) == std::string_view::npos ? std::string(1, c)
+                                                                               : std::string("\\") + c;
+}
+
+/// The one thing that an expression finds in a text: its groups put together; empty where it finds nothing, or several
+/// things.
+std::string only_match(const std::string& text, const std::regex& expression) {
+  std::string found;
+  for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it) {
+    std::string match;
+    for (std::size_t group = 1; group < it->size(); ++group) match += (*it)[group].str();
+    if (!found.empty() && found != match) return "";
+    found = match;
+  }
+  return replaced(found, ",", ".");
+}
+
+std::regex regex_of(const std::string& text) {
+  return std::regex(text, std::regex::ECMAScript | std::regex::icase);
+}
+
+Condition condition_from(const std::string& text, const Measured& what, const std::string& source) {
+  if (text.empty()) return {};
+  if (text.find_first_not_of("+-.0123456789 ") == std::string::npos) {
+    throw InputError(fmt::format("the {} '{}' has no unit", what.name, text),
+                     fmt::format("write the unit behind it in the pattern, as in {}", kAdvice));
+  }
+  const double value = parse_quantity(text, what.quantity, what.name);
+  if (!(value > 0)) {
+    throw InputError(fmt::format("the {} '{}' is not greater than zero", what.name, text), "correct the name");
+  }
+  return {value, source};
+}
+
+}  // namespace
+
+NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
+  const std::string lower = lower_case(pattern);
+  with_extension_ = lower.ends_with(".csv") || lower.ends_with(".tsv");
+  std::string expression;
+  for (std::size_t at = 0; at < pattern.size(); ++at) {
+    if (pattern[at] == '*') {
+      expression += ".*";
+    } else if (pattern[at] == '{') {
+      const std::size_t end = pattern.find('}', at);
+      if (end == std::string::npos) throw InputError("--pattern: a { is not closed", kAdvice);
+      add_field(pattern.substr(at + 1, end - at - 1), std::string_view(pattern).substr(end + 1), expression);
+      at = end;
+    } else if (pattern[at] == '}') {
+      throw InputError("--pattern: a } stands alone", kAdvice);
+    } else {
+      expression += escaped(pattern[at]);
+    }
+  }
+  if (fields_.empty()) throw InputError(fmt::format("--pattern: '{}' names nothing to read", pattern), kAdvice);
+  expression_ = std::regex(expression);
+}
+
+void NamePattern::add_field(const std::string& name, std::string_view behind, std::string& expression) {
+  if (name.empty() || name == "file") throw InputError("--pattern: {" + name + "} is no name of a condition", kAdvice);
+  if (std::any_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; })) {
+    throw InputError("--pattern: {" + name + "} is given twice", "use each name once; * stands for anything");
+  }
+  Field field{name, ""};
+  if (const Measured* what = measured(name)) {
+    field.unit = unit_at_beginning(behind, what->quantity);
+    expression += field.unit.empty() ? fmt::format("({} ?[A-Za-z]*)", kNumber) : fmt::format("({})", kNumber);
+  } else {
+    expression += name == "repeat" ? "([0-9]+)" : "(.+?)";
+  }
+  fields_.push_back(std::move(field));
+}
+
+std::optional<StatedFields> NamePattern::read(const std::string& file_name) const {
+  const std::string name = with_extension_ ? file_name : std::filesystem::path(file_name).stem().string();
+  std::smatch match;
+  if (!std::regex_match(name, match, expression_)) return std::nullopt;
+  StatedFields stated;
+  for (std::size_t k = 0; k < fields_.size(); ++k) {
+    const std::string text = match[k + 1].str();
+    const Field& field = fields_[k];
+    if (const Measured* what = measured(field.name)) {
+      stated.*(what->field) = replaced(text, ",", ".") + field.unit;
+    } else if (field.name == "repeat") {
+      stated.repeat = text;
+    } else {
+      stated.others.push_back({field.name, text});
+    }
+  }
+  return stated;
+}
+
+StatedFields usual_fields(const std::string& file_name) {
+  const std::string stem = std::filesystem::path(file_name).stem().string();
+  const std::string begin = "(?:^|[^0-9a-z.,])", number = fmt::format("({})[-_ ]?", kNumber);
+  static const std::regex radius =
+      regex_of(begin + "(?:r|radius)?[-_= ]?" + number + "(mm|cm)(?![a-z]|[-_ ]?s(?![a-z]))");
+  static const std::regex speed = regex_of(begin + "(?:n|v|w|speed)?[-_= ]?" + number + "(rpm)(?![a-z])");
+  static const std::regex load = regex_of(begin + "(?:f|fn|p|l|load)?[-_= ]?" + number + "(k?n)(?![a-z])");
+  static const std::regex temperature = regex_of(begin + "(?:t|temp)?[-_= ]?" + number + "(?:deg)?(c)(?![a-z])");
+  static const std::regex named_repeat = regex_of(begin + "(?:run|rep|repeat|no|nr|trial)[-_ ]?0*([0-9]+)(?![0-9a-z])");
+  static const std::regex last_number = regex_of("[-_ (]0*([0-9]{1,3})\\)?$");
+  StatedFields stated;
+  stated.radius = only_match(stem, radius);
+  stated.speed = only_match(stem, speed);
+  stated.load = only_match(stem, load);
+  if (!stated.load.empty()) {  // units of force know capitals
+    stated.load = replaced(lower_case(stated.load), "n", "N");
+  }
+  stated.radius = lower_case(stated.radius);
+  stated.speed = lower_case(stated.speed);
+  const std::string degrees = only_match(stem, temperature);
+  if (!degrees.empty()) stated.others.push_back({"temperature", degrees.substr(0, degrees.size() - 1) + "degC"});
+  stated.repeat = only_match(stem, named_repeat);
+  if (stated.repeat.empty()) stated.repeat = only_match(stem, last_number);
+  return stated;
+}
+
+StatedFields header_fields(const std::string& path) {
+  constexpr std::uint64_t kLongest = 1 << 16;
+  StatedFields stated;
+  try {
+    const InputFile file(path);
+    std::string bytes(static_cast<std::size_t>(std::min(find_dialect(file).data_begin, kLongest)), '\0');
+    bytes.resize(file.read(0, bytes));
+    const std::string head = to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
+    for (std::size_t at = 0; at < head.size();) {
+      const std::size_t end = std::min(head.find('\n', at), head.size());
+      std::string line(trimmed(std::string_view(head).substr(at, end - at)));
+      at = end + 1;
+      line.erase(0, line.find_first_not_of("#%/!\"' \t"));
+      const std::size_t split = line.find_first_of(":=;,\t");
+      if (split == std::string::npos) continue;
+      const ColumnName name = parse_column_name(trimmed(replaced(line.substr(0, split), "\"", "")));
+      const Role role = role_of(name);
+      if (role != Role::radius && role != Role::speed && role != Role::load) continue;
+      std::string value = line.substr(split + 1);
+      value = replaced(replaced(std::move(value), "\"", ""), ";", " ");
+      value = std::string(trimmed(replaced(value, ",", ".")));
+      if (value.find_first_of("0123456789") == std::string::npos) continue;
+      if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
+      const Measured& what = kMeasured[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
+      try {
+        if (condition_from(value, what, "file").known()) stated.*(what.field) = value;
+      } catch (const InputError&) {  // a line that only looks like one
+      }
+    }
+  } catch (const InputError&) {  // the batch will say what is wrong with the file
+  }
+  return stated;
+}
+
+ManifestRow row_from(const StatedFields& fields, const std::string& path, const std::string& source) {
+  ManifestRow row;
+  row.path = path;
+  row.conditions.radius = condition_from(fields.radius, kMeasured[0], source);
+  row.conditions.speed = condition_from(fields.speed, kMeasured[1], source);
+  row.conditions.load = condition_from(fields.load, kMeasured[2], source);
+  int repeat = 0;
+  const auto [end, error] = std::from_chars(fields.repeat.data(), fields.repeat.data() + fields.repeat.size(), repeat);
+  if (!fields.repeat.empty() && error == std::errc{}) row.repeat = repeat;
+  row.others = fields.others;
+  return row;
+}
+
+}  // namespace tribofit
