@@ -1,6 +1,7 @@
 #include "batch.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -12,7 +13,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "console.hpp"
 #include "inputs.hpp"
@@ -58,6 +62,7 @@ std::string default_results(const std::string& folder) {
 void give_memory_back() {
 #ifdef __GLIBC__
   ::mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 4 << 20);  // small blocks are kept: asking for them anew costs more than they are worth
 #endif
 }
 
@@ -65,6 +70,29 @@ std::vector<std::string> without_threads(std::vector<std::string> arguments) {
   const auto at = std::find(arguments.begin(), arguments.end(), "--threads");
   if (at != arguments.end()) arguments.erase(at, at + 2);
   return arguments;
+}
+
+/// What tells a file from another; nothing where there is none.
+std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return std::pair{status.st_dev, status.st_ino};
+}
+
+void refuse_overwriting_inputs(const Campaign& campaign, const BatchOptions& batch) {
+  std::map<std::pair<dev_t, ino_t>, std::string> inputs;
+  const auto add = [&](const std::string& path) {
+    if (const auto identity = identity_of(path)) inputs.emplace(*identity, path);
+  };
+  for (const std::string& companion : batch.companions) add(companion);
+  for (const Run& run : campaign.runs) add(run.trace.path);
+  const auto check = [&](const std::string& output) {
+    const auto identity = identity_of(output);
+    const auto found = identity ? inputs.find(*identity) : inputs.end();
+    if (found != inputs.end()) throw CLI::ValidationError("--out would overwrite " + found->second);
+  };
+  check((fs::path(batch.results) / "summary.csv").string());
+  for (const Run& run : campaign.runs) check(result_path(batch.results, run.name));
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
@@ -79,17 +107,7 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
     throw CLI::ValidationError("--out is the folder of the traces; name another");
   }
-  std::vector<std::string> inputs = batch.companions;
-  for (const Run& run : campaign.runs) inputs.push_back(run.trace.path);
-  std::vector<std::string> outputs = {(fs::path(batch.results) / "summary.csv").string()};
-  for (const Run& run : campaign.runs) outputs.push_back(result_path(batch.results, run.name));
-  for (const std::string& output : outputs) {
-    std::error_code ignored;
-    if (!fs::exists(output, ignored)) continue;
-    for (const std::string& input : inputs) {
-      if (same_file(output, input)) throw CLI::ValidationError("--out would overwrite " + input);
-    }
-  }
+  refuse_overwriting_inputs(campaign, batch);
 }
 
 /// Makes the folder, or makes sure that it is one of this campaign.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -63,10 +64,11 @@ std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed) {
 }
 
 std::uint64_t content_hash(std::span<const std::string> paths) {
-  std::vector<char> block(std::size_t{1} << 20);
+  constexpr std::uint64_t kBlock = std::uint64_t{1} << 18;
   std::uint64_t hash = 0;
   for (const std::string& path : paths) {
     const InputFile file(path);
+    std::vector<char> block(static_cast<std::size_t>(std::min(kBlock, file.size() + 1)));
     std::uint64_t at = 0;
     for (std::size_t count = block.size(); count == block.size(); at += count) {
       count = file.read(at, block);

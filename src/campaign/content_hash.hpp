@@ -12,8 +12,8 @@ namespace tribofit {
 /// places may cancel.)
 std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed = 0);
 
-/// Hash of the contents of files in their order. Throws InputError for one that cannot be read. Cost: linear in bytes,
-/// a megabyte of memory.
+/// Hash of the contents of files in their order. Throws InputError for one that cannot be read. Cost: linear in bytes;
+/// memory: a block of 256 KB.
 std::uint64_t content_hash(std::span<const std::string> paths);
 
 /// 16 hexadecimal digits.

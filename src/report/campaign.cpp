@@ -132,13 +132,18 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
 }
 
 std::string summary_json(const CampaignResults& results) {
-  Json runs = Json::array();
+  const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  std::string text = "{\"tool\": " + line(tool_only()) + ",\n\"runs\": [", separator = "\n";
+  const auto add = [&](const Json& run) {  // a line a run: a tree of a thousand would be many times the text
+    text += separator + line(run);
+    separator = ",\n";
+  };
   for_each_run(
-      results, [&](const RunResult& result) { runs.push_back(result_json(result)); },
+      results, [&](const RunResult& result) { add(result_json(result)); },
       [&](const MissingRun& run) {
-        runs.push_back({{"name", run.name}, {"file", run.file}, {"status", "missing"}, {"message", nullptr}});
+        add({{"name", run.name}, {"file", run.file}, {"status", "missing"}, {"message", nullptr}});
       });
-  return text_of({{"tool", tool_only()}, {"runs", std::move(runs)}, {"problems", results.problems}});
+  return text + "\n],\n\"problems\": " + line(results.problems) + "}\n";
 }
 
 void write_summary(const std::string& folder, const CampaignResults& results) {

@@ -23,7 +23,7 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
 /// result have the status "missing". Nothing in it depends on when, where or how fast the runs were fitted.
 std::string summary_csv(const CampaignResults& results);
 
-/// summary.json: the same as objects, {"tool", "runs": [...], "problems": [...]}.
+/// summary.json: the same as objects, {"tool", "runs": [...], "problems": [...]}, a line a run.
 std::string summary_json(const CampaignResults& results);
 
 /// Writes both into the folder of the results, each whole or not at all. Throws InputError.
