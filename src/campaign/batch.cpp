@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <new>
@@ -162,7 +163,7 @@ class Batch {
     try {
       hooks_.keep(record, result ? &*result : nullptr);
       unwritten_in_a_row_ = 0;
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {
       end.kept = false;
       end.message = error.what();
       ++unwritten_in_a_row_;
@@ -186,6 +187,8 @@ class Batch {
       return refuse(with_place(error, run));
     } catch (const std::bad_alloc&) {
       return refuse(run.file + ": there is not enough memory for it; use fewer --threads");
+    } catch (const std::exception& error) {  // whatever it is, it is this run's alone
+      return refuse(run.file + ": " + error.what());
     }
     if (!(state_of(run.trace.path) == before)) {
       return refuse(run.file + ": changed while it was read; run again when it is complete");

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "ingest/encoding.hpp"
 #include "ingest/spelling.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
@@ -119,15 +120,25 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
   }
 }
 
+/// A name that JSON can hold: bytes that are not UTF-8 and control characters become '_'.
+std::string plain(std::string name) {
+  const bool is_utf8 = guess_encoding(name + "\n") == Encoding::utf8;  // a letter may not be cut off at the end
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F || (byte > 0x7F && !is_utf8)) c = '_';
+  }
+  return name;
+}
+
 /// What a file name is called by, from short to long: "a" and "sub-a.csv" of sub/a.csv.
 std::string short_name(const Run& run) {
-  return fs::path(run.file).stem().string();
+  return plain(fs::path(run.file).stem().string());
 }
 
 std::string long_name(const Run& run) {
   std::string name = replaced(run.file, "/", "-");
   name.erase(0, name.find_first_not_of(".-"));
-  return name.empty() ? "run" : name;
+  return name.empty() ? "run" : plain(name);
 }
 
 /// The short name where it is the only one of its kind, else the long one, with a number where that is taken as well.

@@ -108,6 +108,21 @@ TEST_F(Batch, FilesNamedOneByOneAreABatchWithOut) {
   EXPECT_THAT(shop_.identify("--radius 15mm runs/a1.csv runs/a2.csv").out, HasSubstr("Stick-slip"));  // shown
 }
 
+TEST_F(Batch, NamesOfFilesMayHoldAnything) {
+  std::filesystem::create_directory(shop_ / "odd");
+  for (const char* name : {"Versuch \xe4.csv", "Versuch \xf6.csv", "\xc3\xa4.csv", "summary.csv", "campaign.csv",
+                           "a,\"b\".csv", "two\nlines.csv", "x.y.csv", "x.y.tsv"}) {
+    shop_.write(std::string("odd/") + name, short_trace(1));
+  }
+  const Outcome outcome = shop_.identify("--radius 15mm odd --out res");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("9 fitted"));
+  EXPECT_THAT(shop_.identify("--radius 15mm odd --out res").out, HasSubstr("0 fitted, 9 already there"));
+  const auto summary = json_in(shop_ / "res/summary.json");
+  for (const auto& run : summary["runs"]) EXPECT_EQ(run["status"], "ok") << run["name"];
+  EXPECT_EQ(lines_of(contents(shop_ / "res/summary.csv")).size(), 10u);
+}
+
 TEST_F(Batch, TwoBatchesAtOnceDoNotHarmEachOther) {
   ASSERT_EQ(shop_.identify("runs --out alone --quiet").status, 0);
   const Outcome outcome = shop_.shell(
