@@ -207,11 +207,6 @@ bool is_batch(const Settings& s, const Campaign& campaign) {
   return !s.out.empty() || !s.shard.empty() || (!campaign.folder.empty() && campaign.runs.size() > 1);
 }
 
-void summarise(const Settings& s, const std::string& folder, const CampaignResults& results) {
-  write_summary(folder, results);
-  if (!s.quiet) print(render_results(results, terminal_options(s, {})));
-}
-
 int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOptions& options,
                  const std::vector<std::string>& arguments) {
   BatchOptions batch;
@@ -232,7 +227,10 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     write_campaign(campaign, batch);
     outcome = fit_runs(campaign, batch);
     complain_of(campaign, outcome);
-    if (s.shard.empty()) summarise(s, batch.results, read_campaign(batch.results));
+    if (s.shard.empty()) {
+      const CampaignSummary summary = write_summary(ResultReader(batch.results), terminal_options(s, {}));
+      if (!s.quiet) print(summary.table);
+    }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     complain(error.what());
     return kFailed;

@@ -5,7 +5,6 @@
 
 #include "settings.hpp"
 #include "tribofit/campaign/run.hpp"
-#include "tribofit/campaign/run_result.hpp"
 
 /// Whether what was typed asks for a batch: results in a folder, one file a run.
 bool is_batch(const Settings& settings, const tribofit::Campaign& campaign);
@@ -13,9 +12,6 @@ bool is_batch(const Settings& settings, const tribofit::Campaign& campaign);
 /// Fits the runs into the folder of results and shows them; the exit status.
 int run_as_batch(const Settings& settings, const tribofit::Campaign& campaign, const tribofit::IdentifyOptions& options,
                  const std::vector<std::string>& arguments);
-
-/// Writes the summary of what lies in a folder of results and shows it.
-void summarise(const Settings& settings, const std::string& results_folder, const tribofit::CampaignResults& results);
 
 /// Puts '/' behind a name, for showing that it is a folder.
 std::string as_folder(std::string name);

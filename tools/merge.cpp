@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "options.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/report/campaign.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -26,30 +26,27 @@ constexpr const char* kFooter =
     "status is 1; doing a shard again does only those.";
 
 int merge(const Settings& s, const std::string& folder) {
-  const CampaignResults results = read_campaign(folder);
+  const ResultReader results(folder);
+  CampaignSummary summary;
   try {
-    summarise(s, folder, results);
-  } catch (const InputError& error) {
+    summary = write_summary(results, terminal_options(s, {}));
+  } catch (const InputError& error) {  // it cannot be written
     complain(error.what());
     return kFailed;
   }
-  for (const std::string& problem : results.problems) complain(problem);
-  std::size_t failed = 0;
-  for (const RunResult& result : results.runs) {
-    if (result.run.status == RunStatus::ok) continue;
-    ++failed;
-    complain(result.run.file + ": " + std::string(to_string(result.run.status)) + ": " + result.run.message);
-  }
-  for (const MissingRun& run : results.missing) complain(run.file + ": there is no result of it yet");
+  for (const std::string& problem : results.problems()) complain(problem);
+  for (const std::string& complaint : summary.complaints) complain(complaint);
   if (!s.quiet) {
-    print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", results.runs.size() - failed,
-                      failed, results.missing.size(), as_folder(folder)));
-    const bool again = !results.missing.empty() && !results.folder.empty();
-    print(again ? fmt::format("\nNext, to do what is missing:\n  identify {} --out {}\n",
-                              shell_quoted(as_folder(results.folder)), shell_quoted(as_folder(folder)))
-                : "\nNext, to see what can be done with a trace:\n  identify --help\n");
+    print(summary.table);
+    print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,
+                      summary.missing, as_folder(folder)));
+    print(summary.missing > 0 && !results.traces().empty()
+              ? fmt::format("\nNext, to do what is missing, with the same options:\n  identify {} --out {}\n",
+                            shell_quoted(as_folder(results.traces())), shell_quoted(as_folder(folder)))
+              : "\nNext, to see what can be done with a trace:\n  identify --help\n");
   }
-  return failed > 0 || !results.missing.empty() || !results.problems.empty() ? kFailed : kDone;
+  const bool whole = summary.failed == 0 && summary.missing == 0 && results.problems().empty();
+  return whole ? kDone : kFailed;
 }
 
 }  // namespace

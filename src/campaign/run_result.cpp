@@ -212,28 +212,43 @@ std::optional<std::string> folder_of_campaign(const std::string& results) {
   return text(*json, "folder");
 }
 
-CampaignResults read_campaign(const std::string& folder) {
-  CampaignResults results;
-  const Json campaign = campaign_object(folder);
-  results.folder = text(campaign, "folder");
-  results.problems = texts(campaign, "problems");
-  std::size_t position = 0;
+ResultReader::ResultReader(std::string folder) : folder_(std::move(folder)) {
+  const Json campaign = campaign_object(folder_);
+  traces_ = text(campaign, "folder");
+  problems_ = texts(campaign, "problems");
   for (const Json& run : campaign.at("runs")) {
-    const std::string name = text(run, "name");
-    std::optional<RunResult> result;
-    try {
-      const auto json = object_in(result_path(folder, name));
-      if (json && text(json->at("run"), "settings") == text(run, "settings")) result = result_of(*json);
-    } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
-      result.reset();
-    }
-    if (result) {
-      result->position = position;
+    runs_.push_back({text(run, "name"), text(run, "file"), text(run, "settings")});
+  }
+}
+
+std::optional<RunResult> ResultReader::read(std::size_t k) const {
+  const Listed& run = runs_.at(k);
+  try {
+    const auto json = object_in(result_path(folder_, run.name));
+    if (!json || text(json->at("run"), "settings") != run.settings) return std::nullopt;
+    RunResult result = result_of(*json);
+    result.position = k;
+    return result;
+  } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
+    return std::nullopt;
+  }
+}
+
+MissingRun ResultReader::missing(std::size_t k) const {
+  return {runs_.at(k).name, runs_.at(k).file, k};
+}
+
+CampaignResults read_campaign(const std::string& folder) {
+  const ResultReader reader(folder);
+  CampaignResults results;
+  results.folder = reader.traces();
+  results.problems = reader.problems();
+  for (std::size_t k = 0; k < reader.size(); ++k) {
+    if (auto result = reader.read(k)) {
       results.runs.push_back(std::move(*result));
     } else {
-      results.missing.push_back({name, text(run, "file"), position});
+      results.missing.push_back(reader.missing(k));
     }
-    ++position;
   }
   put_in_order(results.runs);
   return results;

@@ -4,9 +4,7 @@
 #include <utility>
 
 #include "json_parts.hpp"
-#include "numbers.hpp"
-#include "style.hpp"
-#include "summary_rows.hpp"
+#include "summary_tables.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 
@@ -97,6 +95,10 @@ Json result_json(const RunResult& result) {
           {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)}};
 }
 
+std::string complaint(const RunRecord& run) {
+  return run.status == RunStatus::failed ? run.file + ": the analysis could not be done: " + run.message : run.message;
+}
+
 }  // namespace
 
 std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options) {
@@ -131,25 +133,46 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
                          {"problems", campaign.problems}}));
 }
 
-std::string summary_json(const CampaignResults& results) {
-  const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
-  std::string text = "{\"tool\": " + line(tool_only()) + ",\n\"runs\": [", separator = "\n";
-  const auto add = [&](const Json& run) {  // a line a run: a tree of a thousand would be many times the text
-    text += separator + line(run);
+CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options) {
+  const std::filesystem::path folder(results.folder());
+  WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
+  const auto line = [](const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  json.write("{\"tool\": " + line(tool_only()) + ",\n\"runs\": [");
+  std::string separator = "\n";
+  const auto add = [&](const Json& run) {
+    json.write(separator + line(run));
     separator = ",\n";
   };
-  for_each_run(
-      results, [&](const RunResult& result) { add(result_json(result)); },
-      [&](const MissingRun& run) {
-        add({{"name", run.name}, {"file", run.file}, {"status", "missing"}, {"message", nullptr}});
-      });
-  return text + "\n],\n\"problems\": " + line(results.problems) + "}\n";
-}
 
-void write_summary(const std::string& folder, const CampaignResults& results) {
-  const std::filesystem::path path(folder);
-  write_whole((path / "summary.csv").string(), summary_csv(results));
-  write_whole((path / "summary.json").string(), summary_json(results));
+  CampaignSummary summary;
+  SummarySheet sheet;
+  for_each_run(
+      results, [&](const RunResult& result) { sheet.declare(result); }, [](const MissingRun&) {});
+  csv.write(sheet.header());
+  ResultTable table(options);
+  for_each_run(
+      results,
+      [&](const RunResult& result) {
+        csv.write(sheet.row(result));
+        add(result_json(result));
+        table.add(result);
+        const bool ok = result.run.status == RunStatus::ok;
+        ++(ok ? summary.fitted : summary.failed);
+        if (!ok) summary.complaints.push_back(complaint(result.run));
+      },
+      [&](const MissingRun& run) {
+        csv.write(sheet.row(run));
+        add({{"name", run.name}, {"file", run.file}, {"status", "missing"}, {"message", nullptr}});
+        table.add(run);
+        ++summary.missing;
+        summary.complaints.push_back(run.file + ": there is no result of it yet");
+      });
+  json.write("\n],\n\"problems\": " + line(results.problems()) + "}\n");
+  json.finish();
+  csv.commit();
+  json.commit();
+  summary.table = table.text();
+  return summary;
 }
 
 }  // namespace tribofit

@@ -119,6 +119,30 @@ std::optional<std::string> folder_of_campaign(const std::string& results);
 /// Reads the record of one result file; nothing where the file is missing, damaged or of another make. Never throws.
 std::optional<RunRecord> read_record(const std::string& path);
 
+/// The results of a campaign one after the other, so that memory does not grow with what they hold.
+class ResultReader {
+ public:
+  /// Throws InputError where the folder holds no campaign, or one that is damaged.
+  explicit ResultReader(std::string folder);
+
+  const std::string& folder() const { return folder_; }
+  const std::string& traces() const { return traces_; }  ///< see CampaignResults::folder
+  const std::vector<std::string>& problems() const { return problems_; }
+  std::size_t size() const { return runs_.size(); }  ///< runs of the campaign
+  /// The result of the k-th run, without its order in time; nothing where it is missing.
+  std::optional<RunResult> read(std::size_t k) const;
+  MissingRun missing(std::size_t k) const;
+
+ private:
+  struct Listed {
+    std::string name, file, settings;
+  };
+
+  std::string folder_, traces_;
+  std::vector<std::string> problems_;
+  std::vector<Listed> runs_;
+};
+
 /// Reads all results of a campaign; `order` comes from the first further condition that is called order, run order,
 /// sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text, which
 /// puts ISO dates in order).

@@ -19,17 +19,18 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
 /// manifest that are no runs. Every shard of a campaign writes the same.
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options);
 
-/// summary.csv: a row a run in the order of the campaign; units stand in the names of the columns. Runs without a
-/// result have the status "missing". Nothing in it depends on when, where or how fast the runs were fitted.
-std::string summary_csv(const CampaignResults& results);
+/// What `identify runs/` and `identify merge` write and say of a campaign.
+struct CampaignSummary {
+  std::size_t fitted = 0, failed = 0, missing = 0;  ///< runs
+  std::vector<std::string> complaints;              ///< a line for each run that is failed or missing
+  std::string table;                                ///< a row a run for people, the first ones where there are many
+};
 
-/// summary.json: the same as objects, {"tool", "runs": [...], "problems": [...]}, a line a run.
-std::string summary_json(const CampaignResults& results);
-
-/// Writes both into the folder of the results, each whole or not at all. Throws InputError.
-void write_summary(const std::string& folder, const CampaignResults& results);
-
-/// A row a run for people, the first ones where there are very many.
-std::string render_results(const CampaignResults& results, const TerminalOptions& options = {});
+/// Writes summary.csv and summary.json into the folder of the results, each whole or not at all: a row and an object a
+/// run in the order of the campaign. Units stand in the names of the columns and keys. Runs without a result have the
+/// status "missing". Nothing in them depends on when, where or how fast the runs were fitted.
+/// summary.json is {"tool", "runs": [...], "problems": [...]}, a line a run.
+/// Throws InputError. Cost: linear in runs; memory hardly grows with them.
+CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {});
 
 }  // namespace tribofit
