@@ -84,6 +84,26 @@ Condition condition_from(const std::string& text, const Measured& what, const st
   return {value, source};
 }
 
+/// "# Radius [mm]: 15" as a radius of 15mm.
+void take_header_line(std::string_view text, StatedFields& stated) {
+  std::string line(trimmed(text));
+  line.erase(0, line.find_first_not_of("#%/!\"' \t"));
+  const std::size_t split = line.find_first_of(":=;,\t");
+  if (split == std::string::npos) return;
+  const ColumnName name = parse_column_name(trimmed(replaced(line.substr(0, split), "\"", "")));
+  const Role role = role_of(name);
+  if (role != Role::radius && role != Role::speed && role != Role::load) return;
+  std::string value = replaced(replaced(line.substr(split + 1), "\"", ""), ";", " ");
+  value = std::string(trimmed(replaced(std::move(value), ",", ".")));
+  if (value.find_first_of("0123456789") == std::string::npos) return;
+  if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
+  const Measured& what = kMeasured[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
+  try {
+    if (condition_from(value, what, "file").known()) stated.*(what.field) = value;
+  } catch (const InputError&) {  // a line that only looks like one
+  }
+}
+
 }  // namespace
 
 NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
@@ -178,24 +198,8 @@ StatedFields header_fields(const std::string& path) {
     const std::string head = to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
     for (std::size_t at = 0; at < head.size();) {
       const std::size_t end = std::min(head.find('\n', at), head.size());
-      std::string line(trimmed(std::string_view(head).substr(at, end - at)));
+      take_header_line(std::string_view(head).substr(at, end - at), stated);
       at = end + 1;
-      line.erase(0, line.find_first_not_of("#%/!\"' \t"));
-      const std::size_t split = line.find_first_of(":=;,\t");
-      if (split == std::string::npos) continue;
-      const ColumnName name = parse_column_name(trimmed(replaced(line.substr(0, split), "\"", "")));
-      const Role role = role_of(name);
-      if (role != Role::radius && role != Role::speed && role != Role::load) continue;
-      std::string value = line.substr(split + 1);
-      value = replaced(replaced(std::move(value), "\"", ""), ";", " ");
-      value = std::string(trimmed(replaced(value, ",", ".")));
-      if (value.find_first_of("0123456789") == std::string::npos) continue;
-      if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
-      const Measured& what = kMeasured[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
-      try {
-        if (condition_from(value, what, "file").known()) stated.*(what.field) = value;
-      } catch (const InputError&) {  // a line that only looks like one
-      }
     }
   } catch (const InputError&) {  // the batch will say what is wrong with the file
   }

@@ -152,7 +152,7 @@ TEST_F(BadCampaign, ATraceThatIsDeletedOnTheWayIsNamedAndTheRestDone) {
   const Outcome outcome = shop_.shell(
       "for k in 5 6 7 8 9; do cp runs/a1.csv runs/b$k.csv; done\n"
       "( while [ ! -e runs-results/campaign.json ]; do :; done; rm -f runs/b9.csv ) &\n"
-      "identify --radius 15mm --threads 1 --starts 40 runs; status=$?; wait; exit $status");
+      "identify --radius 15mm --threads 1 --starts 200 runs; status=$?; wait; exit $status");
   EXPECT_EQ(outcome.status, 1) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("b9.csv: cannot be opened"));
   EXPECT_THAT(outcome.out, HasSubstr("8 fitted, 0 already there, 1 failed"));
