@@ -24,6 +24,7 @@ namespace {
 constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
 
 void check_usage(const Settings& s, const std::vector<Input>& inputs) {
+  if (s.again) throw CLI::ValidationError("--again goes with a folder of runs, or with --out");
   if (inputs.size() > 1) {
     const auto alone = [](bool given, const char* name) {
       if (given) throw CLI::ValidationError(std::string(name) + " goes with one trace at a time");

@@ -163,6 +163,7 @@ TEST_F(Batch, WhatGoesWithOneTraceOnlyIsWrongUsage) {
                              "--shard 3/2", "--shard 1", "--shard 1/2x", "--out ''"}) {
     EXPECT_EQ(shop_.identify(std::string("runs ") + option).status, 2) << option;
   }
+  EXPECT_EQ(shop_.identify("--radius 15mm --again runs/a1.csv").status, 2);
 }
 
 }  // namespace
