@@ -236,6 +236,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     return kFailed;
   }
   if (!s.quiet) {
+    for (const std::string& note : campaign.notes) print(note + "\n");
     const std::string folder = as_folder(batch.results);
     print(fmt::format("{}; results in {}{}\n", counts(outcome), folder,
                       s.out.empty() ? " (name another folder with --out)" : ""));

@@ -29,7 +29,8 @@ const std::string* value_of(const StatedFields& fields, const std::string& name)
 class Draft {
  public:
   Draft(const std::string& folder, const std::optional<NamePattern>& pattern) {
-    for (const std::string& path : traces_in(folder)) add(path, pattern);
+    const FolderTraces traces = traces_in(folder);
+    for (const std::string& path : traces.paths) add(path, pattern);
   }
 
   ManifestDraft text() const {

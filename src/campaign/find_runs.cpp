@@ -16,6 +16,7 @@
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/own_files.hpp"
 
 namespace tribofit {
 namespace {
@@ -111,8 +112,13 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
   if (has_manifest) {
     add_manifest(folder, read, options.errors, campaign);
   } else {
-    for (const std::string& path : traces_in(folder)) {
+    const FolderTraces traces = traces_in(folder);
+    for (const std::string& path : traces.paths) {
       campaign.runs.push_back(options.pattern ? named_run(path, *options.pattern, read) : run_of(path, read));
+    }
+    if (!traces.left_out.empty()) {
+      campaign.notes.push_back("left out of " + folder + ", because --csv wrote them: " + traces.left_out);
+      campaign.runs[first].notes.push_back(campaign.notes.back());  // said once
     }
   }
   for (std::size_t k = first; k < campaign.runs.size(); ++k) {
@@ -164,19 +170,27 @@ void name_runs(std::vector<Run>& runs) {
 
 }  // namespace
 
-std::vector<std::string> traces_in(const std::string& folder) {
-  std::vector<std::string> found;
+FolderTraces traces_in(const std::string& folder) {
+  FolderTraces found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (is_trace_name(it->path()) && !it->is_directory(error)) found.push_back(it->path().string());
+    const std::string path = it->path().string();
+    if (!is_trace_name(it->path()) || it->is_directory(error)) continue;
+    if (!is_own_file(path)) {
+      found.paths.push_back(path);
+    } else {
+      found.left_out += (found.left_out.empty() ? "" : ", ") + it->path().filename().string();
+    }
   }
   if (error) {
     throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
   }
-  if (found.empty()) {
-    throw InputError("the folder has no traces", "name a folder with .csv files, or a trace itself", {folder, 0, ""});
+  if (found.paths.empty()) {
+    const std::string only = ", only tables that --csv wrote (" + found.left_out + ")";
+    throw InputError("the folder has no traces" + (found.left_out.empty() ? "" : only),
+                     "name a folder with .csv files, or a trace itself", {folder, 0, ""});
   }
-  std::sort(found.begin(), found.end());
+  std::sort(found.paths.begin(), found.paths.end());
   return found;
 }
 

@@ -5,7 +5,12 @@
 
 namespace tribofit {
 
-/// The CSV files of a folder in order of name, without its manifest. Throws InputError where there are none.
-std::vector<std::string> traces_in(const std::string& folder);
+struct FolderTraces {
+  std::vector<std::string> paths;  ///< in order of name
+  std::string left_out;            ///< tables that --csv wrote there, as a list
+};
+
+/// The CSV files of a folder without its manifest. Throws InputError where there are none.
+FolderTraces traces_in(const std::string& folder);
 
 }  // namespace tribofit

@@ -25,6 +25,7 @@ struct Campaign {
   std::string folder;  ///< empty where files were named one by one
   std::vector<Run> runs;
   std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
+  std::vector<std::string> notes;     ///< files of the folder that were left out
 };
 
 /// The run of one file of which nothing but `read` is known.
