@@ -24,6 +24,7 @@
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
+#include "tribofit/report/pooled.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
@@ -197,7 +198,26 @@ int status_of(const Campaign& campaign, const BatchOutcome& outcome) {
   return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? kFailed : kDone;
 }
 
+/// Throws CLI::ValidationError.
+Sharing sharing_from(const Settings& s) {
+  Sharing sharing;
+  try {
+    for (const std::string& text : s.share) sharing.common.push_back(share_from(text));
+    for (const std::string& text : s.vary) sharing.common.push_back(vary_from(text));
+  } catch (const InputError& error) {
+    throw CLI::ValidationError(error.what());
+  }
+  return sharing;
+}
+
 }  // namespace
+
+std::string pool_results(const Settings& s, const std::string& results) {
+  const std::vector<RunResult> runs = read_results(results);
+  const Pooled pooled = pool_campaign(runs, sharing_from(s));
+  write_pooled(results, runs, pooled);
+  return pooled_table(pooled, terminal_options(s, {}));
+}
 
 std::string as_folder(std::string name) {
   return name.ends_with('/') ? name : name + "/";
@@ -219,6 +239,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
   batch.again = s.again;
   batch.threads = s.threads;
   check_usage(s, campaign, batch);
+  sharing_from(s);  // refused before anything is fitted
   give_memory_back();
   BatchOutcome outcome;
   try {
@@ -229,7 +250,8 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     complain_of(campaign, outcome);
     if (s.shard.empty()) {
       const CampaignSummary summary = write_summary(ResultReader(batch.results), terminal_options(s, {}));
-      if (!s.quiet) print(summary.table);
+      const std::string together = pool_results(s, batch.results);
+      if (!s.quiet) print(summary.table + together);
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     complain(error.what());

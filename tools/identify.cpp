@@ -25,6 +25,9 @@ constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
 
 void check_usage(const Settings& s, const std::vector<Input>& inputs) {
   if (s.again) throw CLI::ValidationError("--again goes with a folder of runs, or with --out");
+  if (!s.share.empty() || !s.vary.empty()) {
+    throw CLI::ValidationError("--share and --vary go with a folder of runs, or with --out");
+  }
   if (inputs.size() > 1) {
     const auto alone = [](bool given, const char* name) {
       if (given) throw CLI::ValidationError(std::string(name) + " goes with one trace at a time");
@@ -112,6 +115,7 @@ void add_identify(CLI::App& app, int& status) {
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
   add_batch_options(app, *settings);
+  add_pooling_options(app, *settings);
   app.parse_complete_callback([settings, &app] {  // runs before that of a verb
     const auto verbs = app.get_subcommands();
     if (verbs.empty() || (own_options(app).empty() && settings->traces.empty())) return;

@@ -9,6 +9,7 @@
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
+#include "tribofit/report/pooled.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -30,6 +31,7 @@ int merge(const Settings& s, const std::string& folder) {
   CampaignSummary summary;
   try {
     summary = write_summary(results, terminal_options(s, {}));
+    summary.table += pool_results(s, folder);
   } catch (const InputError& error) {  // it cannot be written
     complain(error.what());
     return kFailed;
@@ -57,6 +59,7 @@ void add_merge(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("merge", "Put the results of the shards of a campaign together");
   verb->footer(kFooter);
   verb->add_option("RESULTS", *folder, "Folder of results, as given to --out")->required();
+  add_pooling_options(*verb, *settings);
   verb->add_flag("--quiet", settings->quiet, "Do not print the table")->group("Output");
   verb->callback([settings, folder, verb, &status] {
     refuse_empty_values(*verb);

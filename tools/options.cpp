@@ -74,6 +74,14 @@ void refuse_clashes(const std::vector<Effect>& effects) {
   }
 }
 
+void add_pooling_options(CLI::App& app, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    app.add_option(name, value, help)->allow_extra_args(false)->group("Runs together");
+  };
+  add("--share", s.share, "Parameter that all runs have in common: --share alpha (repeatable)");
+  add("--vary", s.vary, "Parameter with one value for each value of a condition: --vary mu_s:radius (repeatable)");
+}
+
 std::vector<std::string> own_options(const CLI::App& app) {
   std::vector<std::string> arguments;
   for (const CLI::Option* option : app.get_options()) {
@@ -81,6 +89,7 @@ std::vector<std::string> own_options(const CLI::App& app) {
     if (option->count() == 0 || option->get_positional()) continue;
     if (name == "--json" || name == "--csv" || name == "--quiet") continue;
     if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
+    if (name == "--share" || name == "--vary") continue;  // of what is said of all runs together
     if (option->get_items_expected_max() == 0) {
       const bool negated = option->results().front() == "false";
       arguments.push_back(negated ? "--no-" + name.substr(2) : name);

@@ -12,6 +12,8 @@ void add_input_options(CLI::App& app, Settings& settings);
 /// Laws, effects and how they are fitted.
 void add_model_options(CLI::App& app, Settings& settings);
 void add_output_options(CLI::App& app, Settings& settings);
+/// What several runs have in common.
+void add_pooling_options(CLI::App& app, Settings& settings);
 
 /// The effect of that name. Wrong usage (CLI::ValidationError) when there is none, with the nearest known name.
 tribofit::Effect effect_named(const std::string& name);

@@ -24,6 +24,7 @@ struct Settings {
   std::string json, csv;
   std::string out, shard, pattern;  // a batch
   bool again = false;
+  std::vector<std::string> share, vary;  // parameters common to runs
   int threads = 0;
   std::string seed_text;
   unsigned long long seed = 1;

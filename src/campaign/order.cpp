@@ -9,9 +9,7 @@
 #include "ingest/spelling.hpp"
 
 namespace tribofit {
-namespace {
 
-/// Names of a column that can mean nothing but when a run was made.
 bool tells_order(const std::string& name) {
   const std::string plain = replaced(replaced(lower_case(name), "_", " "), "-", " ");
   constexpr std::array<std::string_view, 11> known = {"order",    "run order",  "sequence",  "date",
@@ -20,19 +18,21 @@ bool tells_order(const std::string& name) {
   return std::find(known.begin(), known.end(), plain) != known.end();
 }
 
-const std::string* value_of(const RunResult& run, const std::string& name) {
-  for (const OtherCondition& other : run.run.others) {
-    if (other.name == name && !other.value.empty()) return &other.value;
-  }
-  return nullptr;
-}
-
 std::optional<double> number_in(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc{} || last != end) return std::nullopt;
   return value;
+}
+
+namespace {
+
+const std::string* value_of(const RunResult& run, const std::string& name) {
+  for (const OtherCondition& other : run.run.others) {
+    if (other.name == name && !other.value.empty()) return &other.value;
+  }
+  return nullptr;
 }
 
 void rank_by(const std::string& name, std::span<RunResult> runs) {

@@ -4,25 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
+
+#include "csv_cells.hpp"
 
 namespace tribofit {
 namespace {
-
-/// A cell of a CSV file; quoted where it must be, line breaks become blanks.
-std::string cell(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::replace(text.begin(), text.end(), '\r', ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string cell(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : "";
-}
 
 constexpr std::array<const char*, 8> kFirst = {"run",       "file",      "status", "message",
                                                "radius_mm", "speed_rpm", "load_N", "repeat"};

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/campaign/pool.hpp"
+
+namespace tribofit {
+
+/// Which parameters of a law the runs of a campaign have in common. One that is not named is free in every run.
+struct Sharing {
+  /// One value for all runs, or, with a condition ("radius", "speed", "load" or a further column), one for each of its
+  /// values.
+  struct Common {
+    std::string parameter, condition;
+  };
+  std::vector<Common> common;
+};
+
+/// Reads "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
+Sharing::Common share_from(const std::string& text);
+Sharing::Common vary_from(const std::string& text);
+
+/// A campaign in which some parameters are common to runs.
+struct SharedFit {
+  struct Parameter {
+    std::string name, condition;      ///< condition empty: one value for all runs
+    std::vector<std::string> levels;  ///< values of the condition, as shown; one empty text where there is none
+    std::vector<PooledValue> values;  ///< one a level
+  };
+  /// Parameters of one run, given what is common: those that are free move with the common ones, as far as the run's
+  /// own data tie them together.
+  struct OfRun {
+    std::size_t run = 0;                   ///< index of the results given
+    std::vector<double> value, std_error;  ///< in the order and units of the law's parameters
+  };
+
+  std::string law;
+  std::vector<std::string> names, units;  ///< of all parameters of the law
+  std::vector<Parameter> common;
+  std::vector<OfRun> runs;
+  std::vector<std::string> notes;  ///< runs or parameters that could take no part, and why
+};
+
+/// Joint fit of the runs of a campaign, one for each law, from the joint fits of the single runs and their covariances.
+///
+/// Run i states y_i = (s_i, f_i) with covariance V_i. For the common parameters s_i = level + u_i + e_i with u_i the
+/// scatter between runs; a free parameter has no such prior, so the runs' marginal for s_i alone tells what is common
+/// (generalised least squares with the free parameters profiled out), level by level as in pool(). Then
+/// f_i = y_f + V_fs V_ss^-1 (s^_i - y_s), with s^_i the best prediction of the run's own value. This is the two-stage
+/// form of a mixed model (L. B. Sheiner, S. L. Beal; M. Davidian, D. M. Giltinan, Nonlinear Models for Repeated
+/// Measurement Data, 1995, ch. 5): exact where the runs' likelihoods are normal. Throws InputError for a parameter no
+/// law has and for a condition the runs do not state, with the nearest known name.
+std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing);
+
+}  // namespace tribofit

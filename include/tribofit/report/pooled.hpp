@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/campaign/pool.hpp"
+#include "tribofit/campaign/sharing.hpp"
+#include "tribofit/campaign/trends.hpp"
+#include "tribofit/report/terminal.hpp"
+
+namespace tribofit {
+
+/// What the runs of a campaign say together.
+struct Pooled {
+  std::vector<PooledGroup> groups;
+  std::vector<SharedFit> shared;
+  Trends trends;
+};
+
+/// Pools the runs. Throws InputError for a sharing that the runs do not allow.
+Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing = {});
+
+/// Writes into the folder of the results, each file whole or not at all:
+/// - pooled.csv: a row for every group of repeats, law, protocol and parameter, and for every measure (law empty)
+/// - shared.csv, where parameters are shared: a row for every common value, then one for every run and parameter
+/// - trends.csv: a row for every law, parameter and condition
+/// - pooled.json: {"tool", "groups", "shared", "trends", "confounded", "warnings"}
+/// Units stand in a column "unit", those of conditions in the names of their columns. Throws InputError.
+void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled);
+
+/// The same for people: repeats as mean and interval, what is shared, trends that are no chance, what goes together.
+std::string pooled_table(const Pooled& pooled, const TerminalOptions& options = {});
+
+}  // namespace tribofit

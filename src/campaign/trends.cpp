@@ -1,0 +1,184 @@
+#include "tribofit/campaign/trends.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "condition_columns.hpp"
+#include "meta_regression.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr std::size_t kFewestValues = 3;
+
+std::size_t count_values(const std::vector<std::optional<double>>& numbers) {
+  std::set<double> values;
+  for (const auto& number : numbers) {
+    if (number) values.insert(*number);
+  }
+  return values.size();
+}
+
+/// omega r, by which the surfaces pass one another while the block sticks.
+ConditionColumn sliding_speed(const std::vector<ConditionColumn>& columns, std::size_t runs) {
+  ConditionColumn out{"sliding speed", "mm/s", {}, std::vector<std::optional<double>>(runs)};
+  const auto find = [&](const char* name) {
+    return std::find_if(columns.begin(), columns.end(), [&](const ConditionColumn& c) { return c.name == name; });
+  };
+  const auto radius = find("radius"), speed = find("speed");
+  if (radius == columns.end() || speed == columns.end()) return out;
+  for (std::size_t r = 0; r < runs; ++r) {
+    if (radius->number[r] && speed->number[r]) {
+      out.number[r] = *radius->number[r] * *speed->number[r] * 2 * std::numbers::pi / 60;
+    }
+  }
+  return out;
+}
+
+/// Conditions that are numbers and take at least two values.
+std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
+  std::vector<ConditionColumn> all = condition_columns(runs);
+  all.push_back(sliding_speed(all, runs.size()));
+  ConditionColumn order{"order", "", {}, {}};
+  for (const RunResult& run : runs) order.number.push_back(run.order);
+  all.push_back(std::move(order));
+  std::erase_if(all, [](const ConditionColumn& column) { return count_values(column.number) < 2; });
+  return all;
+}
+
+double correlation(const ConditionColumn& a, const ConditionColumn& b) {
+  double n = 0, mean_a = 0, mean_b = 0;
+  for (std::size_t r = 0; r < a.number.size(); ++r) {
+    if (!a.number[r] || !b.number[r]) continue;
+    n += 1;
+    mean_a += *a.number[r];
+    mean_b += *b.number[r];
+  }
+  mean_a /= n;
+  mean_b /= n;
+  double aa = 0, bb = 0, ab = 0;
+  for (std::size_t r = 0; r < a.number.size(); ++r) {
+    if (!a.number[r] || !b.number[r]) continue;
+    aa += std::pow(*a.number[r] - mean_a, 2);
+    bb += std::pow(*b.number[r] - mean_b, 2);
+    ab += (*a.number[r] - mean_a) * (*b.number[r] - mean_b);
+  }
+  return n > 2 && aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& like, std::size_t parameter,
+                              const ConditionColumn& column) {
+  std::vector<double> x, y, variance;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ResultFit* fit = runs[r].fit(like.law, like.protocol);
+    if (fit == nullptr || parameter >= fit->parameters.size() || !column.number[r]) continue;
+    const ResultParameter& p = fit->parameters[parameter];
+    if (p.name != like.parameters[parameter].name || !std::isfinite(p.std_error) || !(p.std_error > 0) || p.at_bound) {
+      continue;
+    }
+    x.push_back(*column.number[r]);
+    y.push_back(p.value);
+    variance.push_back(p.std_error * p.std_error);
+  }
+  if (std::set<double>(x.begin(), x.end()).size() < kFewestValues || x.size() < 4) return std::nullopt;
+  const auto n = static_cast<Index>(x.size());
+  const Eigen::Map<const VectorXd> at(x.data(), n), value(y.data(), n), errors(variance.data(), n);
+  Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
+  const double middle = at.mean(), scale = std::sqrt((at.array() - middle).square().mean());
+  design.col(1) = (at.array() - middle) / scale;
+  const MetaRegression line = meta_regression(value, errors, design);
+  Trend out;
+  out.law = like.law;
+  const ResultParameter& p = like.parameters[parameter];
+  out.parameter = p.effect.empty() ? p.name : p.effect + "." + p.name;
+  out.unit = p.unit;
+  out.condition = column.name;
+  out.condition_unit = column.unit;
+  out.runs = x.size();
+  out.slope = line.coefficients(1) / scale;
+  out.std_error = std::sqrt(line.covariance(1, 1)) / scale;
+  const double half = t_quantile_95(line.degrees_of_freedom) * out.std_error;
+  out.lower95 = out.slope - half;
+  out.upper95 = out.slope + half;
+  out.p_value = out.std_error > 0 ? t_p_value(out.slope / out.std_error, line.degrees_of_freedom) : 1;
+  return out;
+}
+
+/// Holm's step-down correction.
+void correct(std::vector<Trend>& trends) {
+  std::vector<std::size_t> by_p(trends.size());
+  std::iota(by_p.begin(), by_p.end(), std::size_t(0));
+  std::stable_sort(by_p.begin(), by_p.end(),
+                   [&](std::size_t a, std::size_t b) { return trends[a].p_value < trends[b].p_value; });
+  double largest = 0;
+  for (std::size_t k = 0; k < by_p.size(); ++k) {
+    largest = std::max(largest, trends[by_p[k]].p_value * static_cast<double>(by_p.size() - k));
+    trends[by_p[k]].p_corrected = std::min(1.0, largest);
+  }
+}
+
+std::string sentence(const Confounded& pair) {
+  const bool order = pair.b == "order";
+  const std::string both = fmt::format("{} and {} change together (correlation {:.2f})", pair.a,
+                                       order ? "the order of the runs" : pair.b, pair.correlation);
+  if (order)
+    return both + ": wear or running-in may pass for a trend over " + pair.a + "; make the runs in random order";
+  if (pair.b == "sliding speed") {
+    return both + ": a trend over one may be one over the other; run the same sliding speed at two radii";
+  }
+  return both + ": a trend over one may be one over the other; vary one while the other stays";
+}
+
+}  // namespace
+
+Trends find_trends(std::span<const RunResult> runs) {
+  constexpr double kTogether = 0.9;
+  Trends out;
+  const std::vector<ConditionColumn> columns = numbers_of(runs);
+  std::vector<const ResultFit*> laws;
+  for (const RunResult& run : runs) {
+    for (const ResultFit& fit : run.fits) {
+      const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
+      if (fit.protocol == "joint" && !fit.parameters.empty() && std::none_of(laws.begin(), laws.end(), same)) {
+        laws.push_back(&fit);
+      }
+    }
+  }
+  for (const ResultFit* law : laws) {
+    for (std::size_t p = 0; p < law->parameters.size(); ++p) {
+      for (const ConditionColumn& column : columns) {
+        if (auto trend = trend_of(runs, *law, p, column)) out.trends.push_back(std::move(*trend));
+      }
+    }
+  }
+  correct(out.trends);
+  for (std::size_t a = 0; a < columns.size(); ++a) {
+    for (std::size_t b = a + 1; b < columns.size(); ++b) {
+      const double r = correlation(columns[a], columns[b]);
+      if (std::abs(r) < kTogether) continue;
+      out.confounded.push_back({columns[a].name, columns[b].name, r});
+      out.warnings.push_back(sentence(out.confounded.back()));
+    }
+  }
+  const bool ordered =
+      std::any_of(runs.begin(), runs.end(), [](const RunResult& run) { return run.order.has_value(); });
+  if (!ordered && !out.trends.empty()) {
+    out.warnings.push_back(
+        "the order of the runs is not stated: wear may pass for a trend; add a column 'order' or 'date' to the "
+        "manifest");
+  }
+  return out;
+}
+
+}  // namespace tribofit
