@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "content_hash.hpp"
+#include "figures_json.hpp"
 #include "order.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -230,6 +231,17 @@ std::optional<RunResult> ResultReader::read(std::size_t k) const {
     result.position = k;
     return result;
   } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
+    return std::nullopt;
+  }
+}
+
+std::optional<RunFigures> ResultReader::figures(std::size_t k) const {
+  const Listed& run = runs_.at(k);
+  try {
+    const auto json = object_in(result_path(folder_, run.name));
+    if (!json || text(json->at("run"), "settings") != run.settings || !json->contains("figures")) return std::nullopt;
+    return figures_from(json->at("figures"));
+  } catch (const Json::exception&) {
     return std::nullopt;
   }
 }

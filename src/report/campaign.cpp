@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "campaign/figures_json.hpp"
 #include "json_parts.hpp"
 #include "summary_tables.hpp"
 #include "tribofit/report/whole_file.hpp"
@@ -115,7 +116,11 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
             {"warnings", {run.message}}};
   }
   json["run"] = record_json(run);
-  return sealed(text_of(json));
+  std::string text = text_of(json);
+  if (result != nullptr && result->analysed) {  // many numbers: on one line
+    text.insert(text.size() - 3, ",\n  \"figures\": " + figures_text(figures_of(*result)));
+  }
+  return sealed(text);
 }
 
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
@@ -133,7 +138,8 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
                          {"problems", campaign.problems}}));
 }
 
-CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options) {
+CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options,
+                              const std::string& comparison) {
   const std::filesystem::path folder(results.folder());
   WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
   const auto line = [](const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); };
@@ -167,7 +173,9 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
         ++summary.missing;
         summary.complaints.push_back(run.file + ": there is no result of it yet");
       });
-  json.write("\n],\n\"problems\": " + line(results.problems()) + "}\n");
+  json.write("\n],\n\"problems\": " + line(results.problems()));
+  if (!comparison.empty()) json.write(",\n\"comparison\": " + comparison);
+  json.write("}\n");
   json.finish();
   csv.commit();
   json.commit();

@@ -34,11 +34,11 @@ inline void make_runs(const Workshop& shop, int count) {
   shop.write("runs/manifest.csv", manifest);
 }
 
-/// Every file of a folder with its bytes.
+/// Every file of a folder and the folders in it with its bytes.
 inline std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    files[entry.path().filename().string()] = contents(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_directory()) files[entry.path().lexically_relative(folder).string()] = contents(entry.path());
   }
   return files;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/campaign/figures.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/manifest.hpp"
 
@@ -131,6 +132,8 @@ class ResultReader {
   std::size_t size() const { return runs_.size(); }  ///< runs of the campaign
   /// The result of the k-th run, without its order in time; nothing where it is missing.
   std::optional<RunResult> read(std::size_t k) const;
+  /// The figures kept with it; nothing where it is missing or could not be analysed.
+  std::optional<RunFigures> figures(std::size_t k) const;
   MissingRun missing(std::size_t k) const;
 
  private:

@@ -11,7 +11,8 @@
 namespace tribofit {
 
 /// The file of one run: the object of to_json(), with "run": what the campaign says of it
-/// {"name", "file", "key", "settings", "status", "message", "stated", "repeat", "others"}, sealed (see sealed()).
+/// {"name", "file", "key", "settings", "status", "message", "stated", "repeat", "others"}, and
+/// "figures": what figures_of() takes from it, sealed (see sealed()).
 /// `result` is null where the run could not be read; its "fits" are empty then.
 std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options = {});
 
@@ -30,7 +31,9 @@ struct CampaignSummary {
 /// run in the order of the campaign. Units stand in the names of the columns and keys. Runs without a result have the
 /// status "missing". Nothing in them depends on when, where or how fast the runs were fitted.
 /// summary.json is {"tool", "runs": [...], "problems": [...]}, a line a run.
+/// `comparison`, the object of comparison_json(), is added under that key where it is given.
 /// Throws InputError. Cost: linear in runs; memory hardly grows with them.
-CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {});
+CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {},
+                              const std::string& comparison = {});
 
 }  // namespace tribofit

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "csv_cells.hpp"
+#include "numbers.hpp"
+#include "tribofit/campaign/run_result.hpp"
+
+namespace tribofit {
+
+/// The columns of conditions in tables of a campaign: radius_mm, speed_rpm, load_N and those that any run states.
+class ConditionCells {
+ public:
+  explicit ConditionCells(std::span<const RunResult> runs) {
+    for (const RunResult& run : runs) {
+      for (const OtherCondition& other : run.run.others) {
+        if (std::find(names_.begin(), names_.end(), other.name) == names_.end()) names_.push_back(other.name);
+      }
+    }
+  }
+
+  std::string header() const {
+    std::string text = "radius_mm,speed_rpm,load_N";
+    for (const std::string& name : names_) text += "," + cell(name);
+    return text;
+  }
+
+  std::string of(const Conditions& conditions, const std::vector<OtherCondition>& others) const {
+    std::string text = cell(conditions.radius.value / kMillimetre) + "," + cell(conditions.speed.value / kRpm) + "," +
+                       cell(conditions.load.value);
+    for (const std::string& name : names_) {
+      const auto found =
+          std::find_if(others.begin(), others.end(), [&](const OtherCondition& other) { return other.name == name; });
+      text += "," + (found == others.end() ? std::string() : cell(found->value));
+    }
+    return text;
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+}  // namespace tribofit

@@ -1,0 +1,169 @@
+#include "tribofit/report/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "conditions_cells.hpp"
+#include "csv_cells.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/report/whole_file.hpp"
+
+namespace tribofit {
+namespace {
+
+/// The files of the folder, committed together.
+class FigureFiles {
+ public:
+  explicit FigureFiles(const std::string& results) : folder_(std::filesystem::path(results) / "figures") {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) {
+      throw InputError("the folder cannot be made: " + error.message(), "make room for it, or name another folder",
+                       {folder_.string(), 0, ""});
+    }
+    remove_abandoned_files(folder_.string());
+  }
+  WholeFile& add(const std::string& name, const std::string& header) {
+    WholeFile& file = files_.emplace_back((folder_ / name).string());
+    file.write(header + "\n");
+    return file;
+  }
+  void commit() {
+    for (WholeFile& file : files_) file.finish();
+    for (WholeFile& file : files_) file.commit();
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::deque<WholeFile> files_;
+};
+
+void write_line(WholeFile& file, const std::string& front, std::initializer_list<double> values) {
+  std::string line = front;
+  for (const double value : values) line += std::isfinite(value) ? fmt::format(",{:.10g}", value) : ",";
+  file.write(line + "\n");
+}
+
+const PooledValue* find(const std::vector<PooledValue>& values, std::string_view name) {
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
+  return found == values.end() ? nullptr : &*found;
+}
+
+/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
+  std::vector<double> drops;
+  for (const std::size_t k : group.runs) {
+    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
+    if (fit != nullptr && fit->parameters.size() > 1) {
+      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
+    }
+  }
+  ResultMeasure out;
+  if (drops.empty()) return out;
+  const double n = static_cast<double>(drops.size());
+  double sum = 0, squares = 0;
+  for (const double drop : drops) sum += drop;
+  out.value = sum / n;
+  for (const double drop : drops) squares += (drop - out.value) * (drop - out.value);
+  if (drops.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
+  return out;
+}
+
+void write_groups(FigureFiles& files, const ConditionCells& conditions, std::span<const RunResult> runs,
+                  std::span<const PooledGroup> groups) {
+  WholeFile& rms = files.add("05-rms-velocity.csv",
+                             "runs," + conditions.header() + ",rms_velocity_mm_s,rms_velocity_std_error_mm_s");
+  WholeFile& levels =
+      files.add("09-static-kinetic.csv", "runs," + conditions.header() +
+                                             ",law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,"
+                                             "mu_s_minus_mu_k,mu_s_minus_mu_k_std_error");
+  for (const PooledGroup& group : groups) {
+    const std::string front = std::to_string(group.runs.size()) + "," + conditions.of(group.conditions, group.others);
+    if (const PooledValue* v = find(group.measures, "rms_velocity")) write_line(rms, front, {v->mean, v->mean_error});
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      const PooledValue *mu_s = find(fit.parameters, "mu_s"), *mu_k = find(fit.parameters, "mu_k");
+      if (mu_s == nullptr || mu_k == nullptr) continue;
+      const ResultMeasure drop = drop_of(runs, group, fit);
+      write_line(levels, front + "," + fit.law + "," + fit.protocol + "," + mu_s->unit,
+                 {mu_s->mean, mu_s->mean_error, mu_k->mean, mu_k->mean_error, drop.value, drop.std_error});
+    }
+  }
+}
+
+/// The files with rows of single runs.
+class RunFiles {
+ public:
+  RunFiles(FigureFiles& files, const std::string& conditions)
+      : cycles_(files.add("06-08-three-cycles.csv", "run," + conditions + ",time_s,v_r_mm_s,friction,unit")),
+        spectrum_(files.add("07-spectrum.csv", "run," + conditions + ",frequency_hz,amplitude_mm_s")),
+        harmonics_(files.add("07-harmonics.csv", "run," + conditions + ",harmonic,frequency_hz,amplitude_mm_s")),
+        bins_(files.add("10-12-over-velocity.csv",
+                        "run," + conditions +
+                            ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
+                            "relative_error_of_mean,mean_relative_error,largest_relative_error")),
+        errors_(files.add("12-relative-error.csv",
+                          "run," + conditions +
+                              ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
+                              "mean_relative_error,largest_relative_error")) {}
+
+  void write(const RunFigures& f, const std::string& front, const std::string& unit) {
+    for (std::size_t k = 0; k < f.time.size(); ++k) {
+      cycles_.write(front + "," + cell(f.time[k]) + "," + cell(f.velocity[k]) + "," + cell(f.friction[k]) + "," + unit +
+                    "\n");
+    }
+    for (std::size_t k = 0; k < f.spectrum.size(); ++k) {
+      write_line(spectrum_, front, {static_cast<double>(k) * f.spectrum_step, f.spectrum[k]});
+    }
+    for (std::size_t k = 0; k < f.harmonics.size(); ++k) {
+      write_line(harmonics_, front, {static_cast<double>(k + 1), f.harmonics[k].frequency, f.harmonics[k].amplitude});
+    }
+    for (const ErrorCurve& curve : f.errors)
+      write_curve(f, curve, front + "," + curve.law + "," + curve.protocol, unit);
+  }
+
+ private:
+  void write_curve(const RunFigures& f, const ErrorCurve& curve, const std::string& front, const std::string& unit) {
+    double samples = 0;
+    for (std::size_t k = 0; k < f.bin_samples.size(); ++k) {
+      const double from = static_cast<double>(k) * f.bin_width, in_bin = static_cast<double>(f.bin_samples[k]);
+      samples += in_bin;
+      const double of_mean = std::abs((f.bin_friction[k] - curve.fitted[k]) / f.bin_friction[k]);
+      write_line(bins_, front + "," + unit,
+                 {from, from + f.bin_width, in_bin, f.bin_friction[k], curve.fitted[k], of_mean,
+                  curve.bin_mean_relative[k], curve.bin_max_relative[k]});
+    }
+    write_line(errors_, front,
+               {samples, curve.below_limit, curve.bins_below_limit, curve.largest_of_bins, curve.mean_relative,
+                curve.max_relative});
+  }
+
+  WholeFile &cycles_, &spectrum_, &harmonics_, &bins_, &errors_;
+};
+
+}  // namespace
+
+void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
+  FigureFiles files(results.folder());
+  const ConditionCells conditions(runs);
+  write_groups(files, conditions, runs, groups);
+  RunFiles of_runs(files, conditions.header());
+  for (const RunResult& run : runs) {
+    const auto figures = results.figures(run.position);
+    if (!figures) continue;
+    of_runs.write(*figures, cell(run.run.name) + "," + conditions.of(run.conditions, run.run.others),
+                  run.friction_unit);
+  }
+  files.commit();
+}
+
+}  // namespace tribofit
