@@ -21,10 +21,10 @@
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
+#include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
-#include "tribofit/report/pooled.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
@@ -108,6 +108,8 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
     throw CLI::ValidationError("--out is the folder of the traces; name another");
   }
+  if (!s.compare.empty() && !s.shard.empty()) throw CLI::ValidationError("--compare goes with `identify merge`");
+  check_comparison(s, batch.results);
   refuse_overwriting_inputs(campaign, batch);
 }
 
@@ -198,26 +200,7 @@ int status_of(const Campaign& campaign, const BatchOutcome& outcome) {
   return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? kFailed : kDone;
 }
 
-/// Throws CLI::ValidationError.
-Sharing sharing_from(const Settings& s) {
-  Sharing sharing;
-  try {
-    for (const std::string& text : s.share) sharing.common.push_back(share_from(text));
-    for (const std::string& text : s.vary) sharing.common.push_back(vary_from(text));
-  } catch (const InputError& error) {
-    throw CLI::ValidationError(error.what());
-  }
-  return sharing;
-}
-
 }  // namespace
-
-std::string pool_results(const Settings& s, const std::string& results) {
-  const std::vector<RunResult> runs = read_results(results);
-  const Pooled pooled = pool_campaign(runs, sharing_from(s));
-  write_pooled(results, runs, pooled);
-  return pooled_table(pooled, terminal_options(s, {}));
-}
 
 std::string as_folder(std::string name) {
   return name.ends_with('/') ? name : name + "/";
@@ -249,13 +232,12 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     outcome = fit_runs(campaign, batch);
     complain_of(campaign, outcome);
     if (s.shard.empty()) {
-      const CampaignSummary summary = write_summary(ResultReader(batch.results), terminal_options(s, {}));
-      const std::string together = pool_results(s, batch.results);
-      if (!s.quiet) print(summary.table + together);
+      const CampaignSummary summary = summarise(s, ResultReader(batch.results));
+      if (!s.quiet) print(summary.table);
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     complain(error.what());
-    return kFailed;
+    return !s.compare.empty() && error.where().file == s.compare ? kBadInput : kFailed;
   }
   if (!s.quiet) {
     for (const std::string& note : campaign.notes) print(note + "\n");

@@ -13,8 +13,5 @@ bool is_batch(const Settings& settings, const tribofit::Campaign& campaign);
 int run_as_batch(const Settings& settings, const tribofit::Campaign& campaign, const tribofit::IdentifyOptions& options,
                  const std::vector<std::string>& arguments);
 
-/// Pools the results that lie in a folder, writes what they say together beside them and returns it as text.
-std::string pool_results(const Settings& settings, const std::string& results);
-
 /// Puts '/' behind a name, for showing that it is a folder.
 std::string as_folder(std::string name);

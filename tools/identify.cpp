@@ -28,6 +28,7 @@ void check_usage(const Settings& s, const std::vector<Input>& inputs) {
   if (!s.share.empty() || !s.vary.empty()) {
     throw CLI::ValidationError("--share and --vary go with a folder of runs, or with --out");
   }
+  if (!s.compare.empty()) throw CLI::ValidationError("--compare goes with a folder of runs, or with --out");
   if (inputs.size() > 1) {
     const auto alone = [](bool given, const char* name) {
       if (given) throw CLI::ValidationError(std::string(name) + " goes with one trace at a time");
@@ -97,6 +98,7 @@ void add_batch_options(CLI::App& app, Settings& s) {
   app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` ends it")
       ->group("Batch");
   app.add_flag("--again", s.again, "Fit what has a result already, too")->group("Batch");
+  add_compare_option(app, s);
 }
 
 void add_fit_options(CLI::App& app, Settings& s) {

@@ -6,17 +6,17 @@
 #include "batch.hpp"
 #include "console.hpp"
 #include "options.hpp"
+#include "summary.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
-#include "tribofit/report/pooled.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1;
+constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
 
 constexpr const char* kFooter =
     "The shards of a campaign need only see the same folders:\n"
@@ -27,14 +27,14 @@ constexpr const char* kFooter =
     "status is 1; doing a shard again does only those.";
 
 int merge(const Settings& s, const std::string& folder) {
+  check_comparison(s, folder);
   const ResultReader results(folder);
   CampaignSummary summary;
   try {
-    summary = write_summary(results, terminal_options(s, {}));
-    summary.table += pool_results(s, folder);
+    summary = summarise(s, results);
   } catch (const InputError& error) {  // it cannot be written
     complain(error.what());
-    return kFailed;
+    return !s.compare.empty() && error.where().file == s.compare ? kBadInput : kFailed;
   }
   for (const std::string& problem : results.problems()) complain(problem);
   for (const std::string& complaint : summary.complaints) complain(complaint);
@@ -60,6 +60,7 @@ void add_merge(CLI::App& app, int& status) {
   verb->footer(kFooter);
   verb->add_option("RESULTS", *folder, "Folder of results, as given to --out")->required();
   add_pooling_options(*verb, *settings);
+  add_compare_option(*verb, *settings);
   verb->add_flag("--quiet", settings->quiet, "Do not print the table")->group("Output");
   verb->callback([settings, folder, verb, &status] {
     refuse_empty_values(*verb);

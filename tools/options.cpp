@@ -82,6 +82,12 @@ void add_pooling_options(CLI::App& app, Settings& s) {
   add("--vary", s.vary, "Parameter with one value for each value of a condition: --vary mu_s:radius (repeatable)");
 }
 
+void add_compare_option(CLI::App& app, Settings& s) {
+  app.add_option("--compare", s.compare,
+                 "Put pooled values beside published or earlier ones: a table such as data/published/table4.csv")
+      ->group("Batch");
+}
+
 std::vector<std::string> own_options(const CLI::App& app) {
   std::vector<std::string> arguments;
   for (const CLI::Option* option : app.get_options()) {
@@ -90,6 +96,7 @@ std::vector<std::string> own_options(const CLI::App& app) {
     if (name == "--json" || name == "--csv" || name == "--quiet") continue;
     if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
     if (name == "--share" || name == "--vary") continue;  // of what is said of all runs together
+    if (name == "--compare") continue;
     if (option->get_items_expected_max() == 0) {
       const bool negated = option->results().front() == "false";
       arguments.push_back(negated ? "--no-" + name.substr(2) : name);

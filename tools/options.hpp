@@ -20,6 +20,8 @@ tribofit::Effect effect_named(const std::string& name);
 /// Wrong usage: two effects are the same, or cannot act together.
 void refuse_clashes(const std::vector<tribofit::Effect>& effects);
 
+void add_compare_option(CLI::App& app, Settings& settings);
+
 /// The options as typed that shape the analysis, for the next command.
 std::vector<std::string> own_options(const CLI::App& app);
 

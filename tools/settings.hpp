@@ -23,6 +23,7 @@ struct Settings {
 
   std::string json, csv;
   std::string out, shard, pattern;  // a batch
+  std::string compare;              // table of earlier values
   bool again = false;
   std::vector<std::string> share, vary;  // parameters common to runs
   int threads = 0;

@@ -1,0 +1,208 @@
+#include "tribofit/campaign/earlier.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "earlier_columns.hpp"
+#include "ingest/dialect.hpp"
+#include "ingest/encoding.hpp"
+#include "ingest/input_file.hpp"
+#include "ingest/spelling.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr const char* kExample = "as in radius_mm,mu_s,mu_k,alpha_s_per_mm";
+
+class Reader {
+ public:
+  Reader(const std::string& path, std::span<const PooledGroup> groups) : columns_(path, groups) { table_.path = path; }
+
+  EarlierTable read() {
+    const std::string text = text_of(InputFile(table_.path));
+    std::size_t number = 0;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      const std::string_view line = std::string_view(text).substr(at, end - at);
+      at = end + 1;
+      ++number;
+      if (line.find_first_not_of(",;\t \r\"") == std::string_view::npos || trimmed(line).front() == '#') continue;
+      if (columns_.empty()) {
+        read_header(line, number);
+      } else {
+        read_row(line, number);
+      }
+    }
+    if (columns_.empty()) refuse("has no header", std::string("begin it with the names of the columns, ") + kExample);
+    if (table_.values.empty()) refuse("holds no values", "fill in a row for each of the conditions");
+    return std::move(table_);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string problem, std::string advice, std::size_t line = 0,
+                           std::string column = {}) const {
+    throw InputError(std::move(problem), std::move(advice), {table_.path, line, std::move(column)});
+  }
+
+  std::string text_of(const InputFile& file) const {
+    constexpr std::uint64_t kLargest = 1 << 26;
+    if (file.size() > kLargest) refuse("is too large for a table of values", "one row for each condition is meant");
+    std::string bytes(static_cast<std::size_t>(file.size()), '\0');
+    bytes.resize(file.read(0, bytes));
+    if (bytes.empty()) refuse("is empty", std::string("begin it with the names of the columns, ") + kExample);
+    refuse_unless_text(bytes, table_.path);
+    return to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
+  }
+
+  void read_header(std::string_view line, std::size_t number) {
+    for (const char candidate : {',', ';', '\t'}) {
+      if (std::count(line.begin(), line.end(), candidate) > std::count(line.begin(), line.end(), separator_)) {
+        separator_ = candidate;
+      }
+    }
+    columns_.read(split_cells(line, separator_), number);
+    table_.notes = columns_.notes();
+  }
+
+  void read_row(std::string_view line, std::size_t number) {
+    std::vector<std::string> cells = split_cells(line, separator_);
+    if (cells.size() > columns_.size()) {
+      refuse(fmt::format("the row has {} cells where the header has {} columns", cells.size(), columns_.size()),
+             "remove the extra cells", number);
+    }
+    cells.resize(columns_.size());
+    EarlierValue row;
+    row.line = number;
+    read_conditions(cells, row);
+    const std::size_t before = table_.values.size();
+    if (columns_.is_long()) {
+      read_long(cells, row);
+    } else {
+      read_wide(cells, row);
+    }
+    if (table_.values.size() > before && !states_conditions(row)) {
+      refuse("the row states no conditions", "fill in the radius, the speed or another condition", number);
+    }
+  }
+
+  static bool states_conditions(const EarlierValue& row) {
+    return row.conditions.radius.known() || row.conditions.speed.known() || row.conditions.load.known() ||
+           !row.others.empty();
+  }
+
+  void read_conditions(const std::vector<std::string>& cells, EarlierValue& row) const {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const EarlierColumn& column = columns_[k];
+      if (cells[k].empty()) continue;
+      const std::string& text = cells[k];
+      using Kind = EarlierColumn::Kind;
+      if (column.kind == Kind::radius) row.conditions.radius = condition(text, column, Quantity::length, row.line);
+      if (column.kind == Kind::speed) {
+        row.conditions.speed = condition(text, column, Quantity::angular_velocity, row.line);
+      }
+      if (column.kind == Kind::load) row.conditions.load = condition(text, column, Quantity::force, row.line);
+      if (column.kind == Kind::other) row.others.push_back({column.name, text});
+      if (column.kind == Kind::law) row.law = text;
+      if (column.kind == Kind::protocol) row.protocol = text;
+    }
+  }
+
+  Condition condition(const std::string& text, const EarlierColumn& column, Quantity quantity, std::size_t line) const {
+    const std::string plain = separator_ == ',' ? text : replaced(text, ",", ".");
+    const bool bare = plain.find_first_not_of("+-.0123456789eE ") == std::string::npos;
+    if (bare && column.unit.empty() && quantity != Quantity::force) {
+      refuse(fmt::format("'{}' has no unit", text),
+             fmt::format("write it as {}, or the unit into the name of the column", example_of(quantity)), line,
+             column.title);
+    }
+    double value = 0;
+    try {
+      value = parse_quantity(plain, quantity, column.title, column.unit);
+    } catch (const InputError& error) {
+      refuse(error.problem().substr(column.title.size() + 2), error.advice(), line, column.title);
+    }
+    if (!(value > 0)) refuse(fmt::format("'{}' is not greater than zero", text), "correct it", line, column.title);
+    return {value, "table"};
+  }
+
+  double number(const std::string& text, std::size_t line, const std::string& column) const {
+    const std::string plain = separator_ == ',' ? text : replaced(text, ",", ".");
+    const double value = is_number(plain, '.') ? std::stod(plain) : std::nan("");
+    if (std::isfinite(value)) return value;
+    refuse(fmt::format("'{}' is not a number", text), "write a number, or leave the cell empty", line, column);
+  }
+
+  double std_error(const std::string& text, std::size_t line, const std::string& column) const {
+    const double value = number(text, line, column);
+    if (value < 0) refuse(fmt::format("'{}' is less than zero", text), "a standard error is positive", line, column);
+    return value;
+  }
+
+  void read_wide(const std::vector<std::string>& cells, const EarlierValue& row) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const EarlierColumn& column = columns_[k];
+      if (column.kind != EarlierColumn::Kind::value || cells[k].empty()) continue;
+      EarlierValue value = row;
+      value.name = column.name;
+      value.unit = column.own_unit;
+      if (!column.law.empty()) value.law = column.law;
+      if (!column.protocol.empty()) value.protocol = column.protocol;
+      value.column = column.title;
+      value.value = column.factor * number(cells[k], row.line, column.title);
+      if (const auto error = columns_.error_of(k); error && !cells[*error].empty()) {
+        value.std_error = columns_[*error].factor * std_error(cells[*error], row.line, columns_[*error].title);
+      }
+      table_.values.push_back(std::move(value));
+    }
+  }
+
+  void read_long(const std::vector<std::string>& cells, EarlierValue value) {
+    const LongColumns& at = columns_.long_columns();
+    const std::string& name = cells[at.name];
+    if (name.empty() || cells[at.value].empty()) return;
+    const auto known = columns_.find(name);
+    if (!known) {
+      if (unknown_.insert(name).second) {
+        table_.notes.push_back(fmt::format("line {}: '{}' is no parameter or measure of these runs", value.line, name));
+      }
+      return;
+    }
+    value.name = known->name;
+    value.unit = known->unit;
+    value.column = columns_[at.value].title;
+    const std::string unit = at.unit ? cells[*at.unit] : "";
+    const double factor = columns_.factor_to(*known, unit, value.line, at.unit ? columns_[*at.unit].title : name);
+    value.value = factor * number(cells[at.value], value.line, value.column);
+    if (at.std_error && !cells[*at.std_error].empty()) {
+      value.std_error = factor * std_error(cells[*at.std_error], value.line, columns_[*at.std_error].title);
+    }
+    table_.values.push_back(std::move(value));
+  }
+
+  EarlierTable table_;
+  EarlierColumns columns_;
+  char separator_ = ',';
+  std::set<std::string> unknown_;  // names in rows
+};
+
+}  // namespace
+
+std::string full_name(const PooledValue& value) {
+  return value.effect.empty() ? value.name : value.effect + "." + value.name;
+}
+
+EarlierTable read_earlier(const std::string& path, std::span<const PooledGroup> groups) {
+  return Reader(path, groups).read();
+}
+
+}  // namespace tribofit

@@ -1,0 +1,170 @@
+#include "tribofit/campaign/statements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit {
+namespace {
+
+/// ln(held-out RMSE of `second` over that of `first`), joint protocol; nothing where either is not known.
+std::optional<double> advantage(const RunResult& run, const std::string& first, const std::string& second) {
+  const ResultFit *a = run.fit(first, "joint"), *b = run.fit(second, "joint");
+  if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;
+  return std::log(b->held_out_rmse / a->held_out_rmse);
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Variance of the sum of the values of runs under one condition, and the square of it over its degrees of freedom.
+struct Spread {
+  double variance = 0, over_freedom = 0;
+};
+
+Spread spread_of(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size()), mean = mean_of(values);
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double variance = n * squares / (n - 1);
+  return {variance, variance * variance / (n - 1)};
+}
+
+/// Two-sided p-value of the mean over all runs against the scatter of repeats: the conditions are those that were
+/// chosen, and the advantage may differ between them (Welch and Satterthwaite). Conditions of which there is one run
+/// only are taken as repeats of each other, or of all where there is one.
+double p_value_of(const std::vector<std::vector<double>>& conditions, const std::vector<double>& all) {
+  std::vector<std::vector<double>> strata;
+  std::vector<double> single;
+  for (const std::vector<double>& values : conditions) {
+    if (values.size() > 1) strata.push_back(values);
+    if (values.size() == 1) single.push_back(values.front());
+  }
+  if (single.size() > 1) strata.push_back(single);
+  if (single.size() == 1) strata = {all};
+  Spread total;
+  for (const std::vector<double>& values : strata) {
+    const Spread spread = spread_of(values);
+    total.variance += spread.variance;
+    total.over_freedom += spread.over_freedom;
+  }
+  const double sum = mean_of(all) * static_cast<double>(all.size());
+  if (!(total.variance > 0)) return sum == 0 ? 1 : 0;
+  return t_p_value(sum / std::sqrt(total.variance), total.variance * total.variance / total.over_freedom);
+}
+
+LawPreference preference_of(const std::vector<std::vector<double>>& conditions, const std::string& first,
+                            const std::string& second) {
+  std::vector<double> advantages;
+  for (const auto& values : conditions) advantages.insert(advantages.end(), values.begin(), values.end());
+  LawPreference out;
+  out.runs = advantages.size();
+  out.p_value = std::numeric_limits<double>::quiet_NaN();
+  if (advantages.empty()) return out;
+  const double mean = mean_of(advantages);
+  const bool first_better = mean >= 0;
+  out.better = first_better ? first : second;
+  out.other = first_better ? second : first;
+  out.better_in = static_cast<std::size_t>(
+      std::count_if(advantages.begin(), advantages.end(), [&](double a) { return first_better ? a > 0 : a < 0; }));
+  out.ratio = std::exp(std::abs(mean));
+  if (out.runs > 1) out.p_value = p_value_of(conditions, advantages);
+  return out;
+}
+
+/// The two laws that most runs were fitted with by the joint protocol, in the order of the fits.
+std::vector<std::string> two_laws(std::span<const PooledGroup> groups) {
+  std::vector<std::string> laws;
+  for (const PooledGroup& group : groups) {
+    for (const auto& fit : group.fits) {
+      const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
+      if (fit.protocol == "joint" && fit.law != "coulomb" && !known) laws.push_back(fit.law);
+    }
+  }
+  return laws;
+}
+
+void add_preferences(std::span<const RunResult> runs, std::span<const PooledGroup> groups, Statements& out) {
+  const std::vector<std::string> laws = two_laws(groups);
+  if (laws.size() != 2) return;
+  std::vector<std::vector<double>> all;
+  for (const PooledGroup& group : groups) {
+    std::vector<double> own;
+    for (const std::size_t k : group.runs) {
+      if (const auto a = advantage(runs[k], laws[0], laws[1])) own.push_back(*a);
+    }
+    out.preference.push_back(preference_of({own}, laws[0], laws[1]));
+    all.push_back(std::move(own));
+  }
+  out.overall = preference_of(all, laws[0], laws[1]);
+}
+
+/// Sums over the runs of a group.
+struct ErrorSums {
+  ErrorStatement statement;
+  double samples = 0, below = 0, relative = 0, bins = 0, bins_below = 0;
+};
+
+void add_run(const RunFigures& figures, std::size_t group, std::vector<ErrorSums>& sums) {
+  const double samples =
+      static_cast<double>(std::accumulate(figures.bin_samples.begin(), figures.bin_samples.end(), std::size_t{0}));
+  const double bins = static_cast<double>(
+      std::count_if(figures.bin_samples.begin(), figures.bin_samples.end(), [](std::size_t n) { return n > 0; }));
+  for (const ErrorCurve& curve : figures.errors) {
+    auto found = std::find_if(sums.begin(), sums.end(), [&](const ErrorSums& s) {
+      return s.statement.law == curve.law && s.statement.protocol == curve.protocol;
+    });
+    if (found == sums.end()) {
+      sums.emplace_back();
+      found = sums.end() - 1;
+      found->statement.group = group;
+      found->statement.law = curve.law;
+      found->statement.protocol = curve.protocol;
+    }
+    ++found->statement.runs;
+    found->samples += samples;
+    found->below += samples * curve.below_limit;
+    found->relative += samples * curve.mean_relative;
+    found->bins += bins;
+    found->bins_below += bins * curve.bins_below_limit;
+    found->statement.largest_of_bins = std::max(found->statement.largest_of_bins, curve.largest_of_bins);
+    found->statement.max_relative = std::max(found->statement.max_relative, curve.max_relative);
+  }
+}
+
+}  // namespace
+
+Statements statements_of(const ResultReader& results, std::span<const RunResult> runs,
+                         std::span<const PooledGroup> groups) {
+  Statements out;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<ErrorSums> sums;
+    for (const std::size_t k : groups[g].runs) {
+      if (const auto figures = results.figures(runs[k].position)) add_run(*figures, g, sums);
+    }
+    for (ErrorSums& s : sums) {
+      s.statement.below_limit = s.below / s.samples;
+      s.statement.mean_relative = s.relative / s.samples;
+      s.statement.bins_below_limit = s.bins_below / s.bins;
+      out.errors.push_back(std::move(s.statement));
+    }
+  }
+  add_preferences(runs, groups, out);
+  return out;
+}
+
+double scaled_load(double full_load, double sample_area, double blocks, double block_area) {
+  return full_load * sample_area / (blocks * block_area);
+}
+
+double pad_area_for(double sample_load, double full_load, double sample_area) {
+  return full_load * sample_area / sample_load;
+}
+
+}  // namespace tribofit
