@@ -4,7 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
+
+#include "fit/errors.hpp"
+#include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit {
 namespace {
@@ -35,33 +39,41 @@ double fastest_slip(const Identification& result) {
   return fastest;
 }
 
-std::size_t bin_of(double velocity, double fastest) {
-  const double place = std::abs(velocity) / fastest * static_cast<double>(kBins);
-  return std::min(static_cast<std::size_t>(place), kBins - 1);
+std::size_t bin_of(double velocity, double bins_per_velocity) {
+  return std::min(static_cast<std::size_t>(std::abs(velocity) * bins_per_velocity), kBins - 1);
 }
 
 /// The error curve of one fit; the bins serve what all fits share.
-ErrorCurve error_curve(const Fit& fit, const Motion& motion, const Segmentation& segmentation, double fastest,
+ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& observations, double fastest,
                        std::vector<Bin>& bins) {
   bins.assign(kBins, {});
   std::size_t samples = 0, below = 0;
   double sum = 0, largest = 0;
-  const std::vector<double> model = predict(fit, motion, segmentation);
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const double mu = motion.friction[i], v = motion.relative_velocity[i];
-    if (!std::isfinite(model[i]) || mu == 0) continue;
-    const double e = std::abs((mu - model[i]) / mu);
-    Bin& bin = bins[bin_of(v, fastest)];
-    ++bin.samples;
-    const double direction = v < 0 ? -1 : 1;
-    bin.friction += direction * mu;
-    bin.fitted += direction * model[i];
-    bin.relative += e;
-    bin.largest = std::max(bin.largest, e);
-    ++samples;
-    below += e < published_error_limit ? 1 : 0;
-    sum += e;
-    largest = std::max(largest, e);
+  const std::vector<double> p = fit.values();
+  const double bins_per_velocity = static_cast<double>(kBins) / fastest;
+  const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
+  std::vector<double> model;  // of one slip at a time: a channel of the whole record would cost its pages
+  for (const Observations::Range& range : observations.slips) {
+    const Slip slip = record.slip(range);
+    model.resize(slip.size());
+    evaluate<double>(fit.model, p.data(), slip, slip.velocity, model);
+    const std::span<const double> measured = record.friction(range);
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      const double mu = measured[i], v = slip.velocity[i];
+      if (mu == 0) continue;
+      const double e = std::abs((mu - model[i]) / mu);
+      Bin& bin = bins[bin_of(v, bins_per_velocity)];
+      ++bin.samples;
+      const double direction = v < 0 ? -1 : 1;
+      bin.friction += direction * mu;
+      bin.fitted += direction * model[i];
+      bin.relative += e;
+      bin.largest = std::max(bin.largest, e);
+      ++samples;
+      below += e < published_error_limit ? 1 : 0;
+      sum += e;
+      largest = std::max(largest, e);
+    }
   }
   ErrorCurve curve;
   curve.law = to_string(fit.model.law());
@@ -91,9 +103,16 @@ void add_errors(const Identification& result, RunFigures& figures) {
   const double fastest = fastest_slip(result);
   if (!(fastest > 0)) return;
   std::vector<Bin> bins;
+  const Record one = {&result.motion, &result.segmentation};
+  std::optional<Observations> observations;  // the same for fits with the same effects
+  std::vector<std::string> effects;
   for (const Fit& fit : result.fits) {
     if (fit.parameters.empty()) continue;
-    figures.errors.push_back(error_curve(fit, result.motion, result.segmentation, fastest, bins));
+    if (!observations || effects != fit.model.effect_keys()) {
+      effects = fit.model.effect_keys();
+      observations = observe(result.motion, result.segmentation, fit.model.needs());
+    }
+    figures.errors.push_back(error_curve(fit, one, *observations, fastest, bins));
     add_bins(bins, figures.errors.back());
   }
   if (figures.errors.empty()) return;

@@ -102,6 +102,22 @@ TEST(Earlier, ReadsARowAValue) {
   EXPECT_THAT(table.notes, ElementsAre(HasSubstr("nonsense")));
 }
 
+/// The table that a campaign writes of its own pooled values.
+TEST(Earlier, ReadsThePooledValuesOfAnEarlierCampaign) {
+  const EarlierTable table = table_of(
+      "radius_mm,speed_rpm,load_N,lot,law,protocol,name,unit,runs,mean,mean_std_error,value,std_error,ci95_lower,"
+      "ci95_upper,statistical,between_runs,systematic\n"
+      "9,4,50,A,exponential,joint,mu_s,1,4,0.52,0.1,0.521,0.0004,0.52,0.522,0.0003,0.0002,0\n"
+      "9,4,50,A,,,rms_velocity,mm/s,4,15,0.1,15,0.1,14,16,,,0\n9,4,50,A,,,frequency,Hz,4,3,0.1,3.7,0.1,3,4,,,0\n");
+  ASSERT_EQ(table.values.size(), 2u);  // the groups made by hand have no rms_velocity
+  EXPECT_EQ(table.values[0].value, 0.521);
+  EXPECT_EQ(table.values[0].std_error, 0.0004);
+  EXPECT_EQ(table.values[1].name, "frequency");
+  const EarlierComparison c = compare_with(table, made_groups());
+  ASSERT_EQ(c.values.size(), 2u);
+  EXPECT_EQ(c.values[0].law + c.values[0].protocol, "exponentialjoint");
+}
+
 TEST(Compare, DifferencesInPercentAndStandardErrors) {
   const EarlierComparison c = comparison_of("radius_mm,alpha_s_per_mm,alpha_std_error_s_per_mm\n9,0.052,0.0012\n");
   ASSERT_EQ(c.values.size(), 2u);  // joint and published

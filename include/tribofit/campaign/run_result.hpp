@@ -132,7 +132,7 @@ class ResultReader {
   std::size_t size() const { return runs_.size(); }  ///< runs of the campaign
   /// The result of the k-th run, without its order in time; nothing where it is missing.
   std::optional<RunResult> read(std::size_t k) const;
-  /// The figures kept with it; nothing where it is missing or could not be analysed.
+  /// The figures kept with the result that read() returns; nothing where it could not be analysed.
   std::optional<RunFigures> figures(std::size_t k) const;
   MissingRun missing(std::size_t k) const;
 
