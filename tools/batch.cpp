@@ -108,7 +108,9 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
     throw CLI::ValidationError("--out is the folder of the traces; name another");
   }
-  if (!s.compare.empty() && !s.shard.empty()) throw CLI::ValidationError("--compare goes with `identify merge`");
+  if (!s.shard.empty() && !(s.compare.empty() && s.share.empty() && s.vary.empty())) {
+    throw CLI::ValidationError("--compare, --share and --vary go with `identify merge`");
+  }
   check_comparison(s, batch.results);
   refuse_overwriting_inputs(campaign, batch);
 }
@@ -225,6 +227,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
   sharing_from(s);  // refused before anything is fitted
   give_memory_back();
   BatchOutcome outcome;
+  int refused = kDone;
   try {
     claim_results(campaign, batch);
     remove_abandoned_files(batch.results);
@@ -232,12 +235,13 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     outcome = fit_runs(campaign, batch);
     complain_of(campaign, outcome);
     if (s.shard.empty()) {
-      const CampaignSummary summary = summarise(s, ResultReader(batch.results));
-      if (!s.quiet) print(summary.table);
+      const Summarised all = summarise(s, ResultReader(batch.results));
+      if (!s.quiet) print(all.summary.table);
+      refused = complain_of(all);
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     complain(error.what());
-    return !s.compare.empty() && error.where().file == s.compare ? kBadInput : kFailed;
+    return kFailed;
   }
   if (!s.quiet) {
     for (const std::string& note : campaign.notes) print(note + "\n");
@@ -250,5 +254,5 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
                                                                  : as_folder(campaign.folder)))
               : fmt::format("\nNext, when every shard is done:\n  identify merge {}\n", shell_quoted(folder)));
   }
-  return status_of(campaign, outcome);
+  return std::max(status_of(campaign, outcome), refused);
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -16,7 +17,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
+constexpr int kDone = 0, kFailed = 1;
 
 constexpr const char* kFooter =
     "The shards of a campaign need only see the same folders:\n"
@@ -29,13 +30,14 @@ constexpr const char* kFooter =
 int merge(const Settings& s, const std::string& folder) {
   check_comparison(s, folder);
   const ResultReader results(folder);
-  CampaignSummary summary;
+  Summarised all;
   try {
-    summary = summarise(s, results);
+    all = summarise(s, results);
   } catch (const InputError& error) {  // it cannot be written
     complain(error.what());
-    return !s.compare.empty() && error.where().file == s.compare ? kBadInput : kFailed;
+    return kFailed;
   }
+  const CampaignSummary& summary = all.summary;
   for (const std::string& problem : results.problems()) complain(problem);
   for (const std::string& complaint : summary.complaints) complain(complaint);
   if (!s.quiet) {
@@ -48,7 +50,7 @@ int merge(const Settings& s, const std::string& folder) {
               : "\nNext, to see what can be done with a trace:\n  identify --help\n");
   }
   const bool whole = summary.failed == 0 && summary.missing == 0 && results.problems().empty();
-  return whole ? kDone : kFailed;
+  return std::max(whole ? kDone : kFailed, complain_of(all));
 }
 
 }  // namespace

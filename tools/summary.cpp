@@ -1,10 +1,12 @@
 #include "summary.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <system_error>
 
+#include "console.hpp"
 #include "inputs.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/comparison.hpp"
@@ -20,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kComparison = "comparison.csv";
+constexpr int kFailed = 1, kUsage = 2, kBadInput = 3;
 
 std::optional<ComparisonReport> comparison_of(const Settings& s, const ResultReader& results,
                                               std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
@@ -37,6 +40,12 @@ Sharing sharing_from(const Settings& s) {
   } catch (const InputError& error) {
     throw CLI::ValidationError(error.what());
   }
+  for (std::size_t a = 0; a < sharing.common.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (sharing.common[a].parameter != sharing.common[b].parameter) continue;
+      throw CLI::ValidationError("'" + sharing.common[a].parameter + "' is named twice in --share and --vary");
+    }
+  }
   return sharing;
 }
 
@@ -52,11 +61,24 @@ void check_comparison(const Settings& s, const std::string& results) {
   }
 }
 
-CampaignSummary summarise(const Settings& s, const ResultReader& results) {
+Summarised summarise(const Settings& s, const ResultReader& results) {
+  Summarised out;
   const std::vector<RunResult> runs = read_results(results.folder());
-  const Pooled pooled = pool_campaign(runs, sharing_from(s));
+  Pooled pooled = pool_campaign(runs);
   const std::vector<PooledGroup>& groups = pooled.groups;
-  const auto comparison = comparison_of(s, results, runs, groups);
+  // What is asked beyond the summary may not be possible; the summary is.
+  const Sharing sharing = sharing_from(s);
+  try {
+    if (!sharing.common.empty()) pooled.shared = fit_shared(runs, sharing);
+  } catch (const InputError& error) {
+    out.refused.push_back({groups.empty() ? kFailed : kUsage, error.what()});
+  }
+  std::optional<ComparisonReport> comparison;
+  try {
+    comparison = comparison_of(s, results, runs, groups);
+  } catch (const InputError& error) {
+    out.refused.push_back({kBadInput, error.what()});
+  }
   write_pooled(results.folder(), runs, pooled);
   write_figures(results, runs, groups);
   const fs::path table = fs::path(results.folder()) / kComparison;
@@ -69,8 +91,17 @@ CampaignSummary summarise(const Settings& s, const ResultReader& results) {
     fs::remove(table, ignored);  // of an earlier summary; it would not fit this one
   }
   const TerminalOptions options = terminal_options(s, {});
-  CampaignSummary summary = write_summary(results, options, json);
-  summary.table += pooled_table(pooled, options);
-  if (comparison) summary.table += render_comparison(*comparison, groups, options);
-  return summary;
+  out.summary = write_summary(results, options, json);
+  out.summary.table += pooled_table(pooled, options);
+  if (comparison) out.summary.table += render_comparison(*comparison, groups, options);
+  return out;
+}
+
+int complain_of(const Summarised& all) {
+  int status = 0;
+  for (const Summarised::Refusal& refusal : all.refused) {
+    complain(refusal.why);
+    status = std::max(status, refusal.status);
+  }
+  return status;
 }

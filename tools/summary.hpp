@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "settings.hpp"
 #include "tribofit/campaign/run_result.hpp"
@@ -14,7 +15,21 @@ void check_comparison(const Settings& settings, const std::string& results);
 /// What --share and --vary say. Throws CLI::ValidationError.
 tribofit::Sharing sharing_from(const Settings& settings);
 
+/// A campaign's summary, and what was asked beyond it and could not be done.
+struct Summarised {
+  struct Refusal {
+    int status = 0;  ///< for the exit
+    std::string why;
+  };
+  tribofit::CampaignSummary summary;
+  std::vector<Refusal> refused;
+};
+
 /// Writes all that is made of the results of a campaign: summary, what the runs say together, figures and, where a
 /// table of earlier values is named, the comparison with it. All of it for people is in the table that is returned.
-/// Throws tribofit::InputError.
-tribofit::CampaignSummary summarise(const Settings& settings, const tribofit::ResultReader& results);
+/// A sharing or a comparison that cannot be done is named; the rest is written all the same.
+/// Throws tribofit::InputError where nothing can be written.
+Summarised summarise(const Settings& settings, const tribofit::ResultReader& results);
+
+/// Says what could not be done; the exit status for it, 0 where there is nothing.
+int complain_of(const Summarised& all);

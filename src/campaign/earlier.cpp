@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "earlier_columns.hpp"
@@ -137,8 +139,13 @@ class Reader {
 
   double number(const std::string& text, std::size_t line, const std::string& column) const {
     const std::string plain = separator_ == ',' ? text : replaced(text, ",", ".");
-    const double value = is_number(plain, '.') ? std::stod(plain) : std::nan("");
-    if (std::isfinite(value)) return value;
+    const std::size_t begin = plain.starts_with('+') ? 1 : 0;
+    double value = 0;
+    const auto [end, error] = std::from_chars(plain.data() + begin, plain.data() + plain.size(), value);
+    if (is_number(plain, '.') && error == std::errc{} && std::isfinite(value)) return value;
+    if (error == std::errc::result_out_of_range) {
+      refuse(fmt::format("'{}' is beyond what a number can hold", text), "correct it", line, column);
+    }
     refuse(fmt::format("'{}' is not a number", text), "write a number, or leave the cell empty", line, column);
   }
 

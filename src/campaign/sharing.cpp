@@ -196,10 +196,10 @@ void note_scatter(const SharedFit::Parameter& common, std::vector<std::string>& 
     if (!(value.between > kMany * own)) continue;
     const std::string where = common.condition.empty() ? "" : " at " + common.condition + " " + common.levels[l];
     notes.push_back(
-        fmt::format("{}{} differs from run to run by {:.2g} {}, many times what the errors of the runs allow: they "
+        fmt::format("{}{} differs from run to run by {:.2g}{}, many times what the errors of the runs allow: they "
                     "hardly have it in "
                     "common; --vary {}:CONDITION gives one value for each value of a condition",
-                    common.name, where, value.between, value.unit == "1" ? "" : value.unit, common.name));
+                    common.name, where, value.between, value.unit == "1" ? "" : " " + value.unit, common.name));
   }
 }
 
@@ -230,6 +230,7 @@ std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing
       laws.push_back(&fit);
     }
   }
+  if (laws.empty()) throw InputError("no run was fitted, so that there is nothing to share", "see why in the summary");
   std::vector<std::string> known;
   for (const ResultFit* law : laws) {
     for (const ResultParameter& p : law->parameters) {

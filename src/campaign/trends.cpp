@@ -57,28 +57,38 @@ std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
   return all;
 }
 
+/// Of the sizes of the numbers of a column.
+double largest(const ConditionColumn& column) {
+  double most = 0;
+  for (const auto& number : column.number) most = std::max(most, number ? std::abs(*number) : 0);
+  return most > 0 ? most : 1;
+}
+
 double correlation(const ConditionColumn& a, const ConditionColumn& b) {
+  const double unit_a = largest(a), unit_b = largest(b);  // squares of the numbers themselves might overflow
   double n = 0, mean_a = 0, mean_b = 0;
   for (std::size_t r = 0; r < a.number.size(); ++r) {
     if (!a.number[r] || !b.number[r]) continue;
     n += 1;
-    mean_a += *a.number[r];
-    mean_b += *b.number[r];
+    mean_a += *a.number[r] / unit_a;
+    mean_b += *b.number[r] / unit_b;
   }
   mean_a /= n;
   mean_b /= n;
   double aa = 0, bb = 0, ab = 0;
   for (std::size_t r = 0; r < a.number.size(); ++r) {
     if (!a.number[r] || !b.number[r]) continue;
-    aa += std::pow(*a.number[r] - mean_a, 2);
-    bb += std::pow(*b.number[r] - mean_b, 2);
-    ab += (*a.number[r] - mean_a) * (*b.number[r] - mean_b);
+    const double off_a = *a.number[r] / unit_a - mean_a, off_b = *b.number[r] / unit_b - mean_b;
+    aa += off_a * off_a;
+    bb += off_b * off_b;
+    ab += off_a * off_b;
   }
-  return n > 2 && aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+  return n > 2 && aa > 0 && bb > 0 ? ab / (std::sqrt(aa) * std::sqrt(bb)) : 0;
 }
 
 std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& like, std::size_t parameter,
                               const ConditionColumn& column) {
+  const double unit = largest(column);
   std::vector<double> x, y, variance;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const ResultFit* fit = runs[r].fit(like.law, like.protocol);
@@ -87,7 +97,7 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
     if (p.name != like.parameters[parameter].name || !std::isfinite(p.std_error) || !(p.std_error > 0) || p.at_bound) {
       continue;
     }
-    x.push_back(*column.number[r]);
+    x.push_back(*column.number[r] / unit);
     y.push_back(p.value);
     variance.push_back(p.std_error * p.std_error);
   }
@@ -106,12 +116,13 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
   out.condition = column.name;
   out.condition_unit = column.unit;
   out.runs = x.size();
-  out.slope = line.coefficients(1) / scale;
-  out.std_error = std::sqrt(line.covariance(1, 1)) / scale;
+  out.slope = line.coefficients(1) / scale / unit;
+  const double error = std::sqrt(line.covariance(1, 1));
+  out.std_error = error / scale / unit;
   const double half = t_quantile_95(line.degrees_of_freedom) * out.std_error;
   out.lower95 = out.slope - half;
   out.upper95 = out.slope + half;
-  out.p_value = out.std_error > 0 ? t_p_value(out.slope / out.std_error, line.degrees_of_freedom) : 1;
+  out.p_value = error > 0 ? t_p_value(line.coefficients(1) / error, line.degrees_of_freedom) : 1;
   return out;
 }
 

@@ -158,6 +158,22 @@ TEST_F(Batch, ResultsOfOtherTracesAndForeignFilesAreNotOverwritten) {
   EXPECT_EQ(shop_.identify("--radius 15mm mine/summary.csv --out mine").status, 2);
 }
 
+TEST_F(Batch, WhatIsAskedBeyondTheSummaryDoesNotTakeItAway) {
+  shop_.write("earlier.csv", "radius_mm,mu_s\n15,1e400\n");
+  const Outcome share = shop_.identify("runs --out a --share alhpa --quiet");
+  EXPECT_EQ(share.status, 2);
+  EXPECT_THAT(share.err, HasSubstr("did you mean alpha?"));
+  const Outcome compare = shop_.identify("runs --out b --compare earlier.csv --quiet");
+  EXPECT_EQ(compare.status, 3);
+  EXPECT_THAT(compare.err, HasSubstr("earlier.csv:2: column mu_s: '1e400' is beyond what a number can hold"));
+  for (const char* folder : {"a", "b"}) {
+    EXPECT_EQ(json_in(shop_ / folder / "summary.json")["runs"].size(), 5u);
+    EXPECT_FALSE(contents(shop_ / folder / "pooled.csv").empty());
+  }
+  EXPECT_EQ(shop_.identify("runs --share alpha --vary alpha:radius").status, 2);
+  EXPECT_EQ(shop_.identify("runs --shard 1/2 --share alpha").status, 2);
+}
+
 TEST_F(Batch, WhatGoesWithOneTraceOnlyIsWrongUsage) {
   for (const char* option : {"--json r.json", "--csv out", "--with b.csv", "--continue b.csv", "--shard 0/2",
                              "--shard 3/2", "--shard 1", "--shard 1/2x", "--out ''"}) {

@@ -1,6 +1,7 @@
 /// Coverage and power of what is said of several runs, on results drawn from known truth.
 #include "tribofit/campaign/pool.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -263,4 +264,21 @@ TEST(SharedFit, SaysWhereRunsHardlyShare) {
   const std::vector<SharedFit> fits = fit_shared(runs, {{share_from("alpha")}});
   ASSERT_EQ(fits[0].notes.size(), 1u);
   EXPECT_NE(fits[0].notes[0].find("--vary alpha:CONDITION"), std::string::npos);
+}
+
+TEST(Trends, DoNotDependOnTheScaleOfTheCondition) {
+  for (const double scale : {1.0, 1e-200, 1e200}) {
+    Laboratory laboratory(43);
+    std::vector<RunResult> runs;
+    for (int k = 1; k <= 8; ++k) {
+      runs.push_back(laboratory.run({0.5 + 1e-3 * k, 0.35, 0.05}, 15));
+      runs.back().run.others = {{"lot", fmt::format("{}", scale * k)}};
+    }
+    for (const Trend& t : find_trends(runs).trends) {
+      if (t.parameter == "mu_s" && t.condition == "lot") {
+        EXPECT_LT(t.p_value, 1e-4) << scale;
+        EXPECT_NEAR(t.slope * scale, 1e-3, 5e-4) << scale;
+      }
+    }
+  }
 }

@@ -91,8 +91,8 @@ TEST(KilledBatch, EndsAsIfNothingHadHappened) {
     std::size_t now = 0;
     for (const auto& [name, bytes] : files_in(shop / "res")) {
       if (name.starts_with("r1")) ++now;
-      if (name.starts_with(".")) continue;
-      EXPECT_EQ(bytes, whole.at(name)) << name;  // never half a file
+      if (name.starts_with(".") || name.find("/.") != std::string::npos) continue;  // unfinished
+      EXPECT_EQ(bytes, whole.at(name)) << name;                                     // never half a file
     }
     EXPECT_GE(now, results);  // nothing lost
     results = now;
