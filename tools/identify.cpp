@@ -109,6 +109,14 @@ void add_fit_options(CLI::App& app, Settings& s) {
   app.add_flag("--profile", s.profile, "Profile likelihood intervals as well")->group("Law and fit");
 }
 
+NamePattern pattern_from(const std::string& text) {
+  try {
+    return NamePattern(text);
+  } catch (const InputError& error) {
+    throw CLI::ValidationError(error.what());
+  }
+}
+
 }  // namespace
 
 void add_identify(CLI::App& app, int& status) {
@@ -134,7 +142,7 @@ void add_identify(CLI::App& app, int& status) {
     const IdentifyOptions options = options_from(s);
     FindOptions find;
     find.errors = ManifestErrors::collect;
-    if (!s.pattern.empty()) find.pattern.emplace(s.pattern);
+    if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
     const Campaign campaign = find_runs(s.traces, options.read, find);
     if (is_batch(s, campaign)) {
       status = run_as_batch(s, campaign, options, arguments);

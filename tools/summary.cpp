@@ -55,7 +55,7 @@ void check_comparison(const Settings& s, const std::string& results) {
     if (!same_file(s.compare, (fs::path(results) / name).string())) continue;
     throw CLI::ValidationError("--compare names a file that these results overwrite; copy it elsewhere");
   }
-  if (std::error_code ignored; fs::is_directory(s.compare, ignored) || !std::ifstream(s.compare)) {
+  if (std::error_code ignored; !fs::is_regular_file(s.compare, ignored) || !std::ifstream(s.compare)) {
     throw InputError("--compare: the file cannot be read", "name a table as data/published/table4.csv",
                      {s.compare, 0, ""});
   }
