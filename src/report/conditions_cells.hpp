@@ -7,6 +7,7 @@
 
 #include "csv_cells.hpp"
 #include "numbers.hpp"
+#include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/run_result.hpp"
 
 namespace tribofit {
@@ -15,11 +16,10 @@ namespace tribofit {
 class ConditionCells {
  public:
   explicit ConditionCells(std::span<const RunResult> runs) {
-    for (const RunResult& run : runs) {
-      for (const OtherCondition& other : run.run.others) {
-        if (std::find(names_.begin(), names_.end(), other.name) == names_.end()) names_.push_back(other.name);
-      }
-    }
+    for (const RunResult& run : runs) add(run.run.others);
+  }
+  explicit ConditionCells(std::span<const PooledGroup> groups) {
+    for (const PooledGroup& group : groups) add(group.others);
   }
 
   std::string header() const {
@@ -40,6 +40,12 @@ class ConditionCells {
   }
 
  private:
+  void add(const std::vector<OtherCondition>& others) {
+    for (const OtherCondition& other : others) {
+      if (std::find(names_.begin(), names_.end(), other.name) == names_.end()) names_.push_back(other.name);
+    }
+  }
+
   std::vector<std::string> names_;
 };
 

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "conditions_cells.hpp"
 #include "csv_cells.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "style.hpp"
+#include "tribofit/campaign/earlier.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 
@@ -17,28 +19,6 @@ namespace tribofit {
 namespace {
 
 constexpr double kChance = 0.05;  ///< corrected p-value above which a trend is not spoken of
-
-/// Further conditions of all groups, in order of appearance.
-std::vector<std::string> names_of_others(std::span<const PooledGroup> groups) {
-  std::vector<std::string> names;
-  for (const PooledGroup& group : groups) {
-    for (const OtherCondition& other : group.others) {
-      if (std::find(names.begin(), names.end(), other.name) == names.end()) names.push_back(other.name);
-    }
-  }
-  return names;
-}
-
-std::string value_of(const PooledGroup& group, const std::string& name) {
-  for (const OtherCondition& other : group.others) {
-    if (other.name == name) return other.value;
-  }
-  return "";
-}
-
-std::string full_name(const PooledValue& value) {
-  return value.effect.empty() ? value.name : value.effect + "." + value.name;
-}
 
 constexpr const char* kValueColumns =
     "unit,runs,mean,mean_std_error,value,std_error,ci95_lower,ci95_upper,statistical,between_runs,systematic";
@@ -53,15 +33,10 @@ std::string cells(const PooledValue& value) {
 }
 
 std::string pooled_csv(const Pooled& pooled) {
-  const std::vector<std::string> others = names_of_others(pooled.groups);
-  std::string text = "radius_mm,speed_rpm,load_N";
-  for (const std::string& name : others) text += "," + cell(name);
-  text += ",law,protocol,name," + std::string(kValueColumns) + "\n";
+  const ConditionCells columns{std::span<const PooledGroup>(pooled.groups)};
+  std::string text = columns.header() + ",law,protocol,name," + kValueColumns + "\n";
   for (const PooledGroup& group : pooled.groups) {
-    const Conditions& c = group.conditions;
-    std::string conditions =
-        cell(c.radius.value / kMillimetre) + "," + cell(c.speed.value / kRpm) + "," + cell(c.load.value);
-    for (const std::string& name : others) conditions += "," + cell(value_of(group, name));
+    const std::string conditions = columns.of(group.conditions, group.others);
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& value : fit.parameters) {
         text +=
@@ -262,10 +237,8 @@ std::string trends_text(const Trends& trends, const Style& style) {
       return pair.b == t.condition && std::abs(pair.correlation) > 0.999;
     });
     if (t.p_corrected > kChance || said) continue;
-    const std::string unit =
-        (t.unit == "1" ? "" : " " + t.unit) + (t.condition != "order" && t.condition_unit.empty() ? ""
-                                               : t.condition == "order"                           ? " per run"
-                                                                        : " per " + t.condition_unit);
+    const std::string per = t.condition == "order" ? "run" : t.condition_unit;
+    const std::string unit = (t.unit == "1" ? "" : " " + t.unit) + (per.empty() ? "" : " per " + per);
     text += "  " +
             wrapped(fmt::format("{} ({} law) {} with {}: {}{} (p = {:.2g}, corrected for {} trends)", t.parameter,
                                 t.law, t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error),
