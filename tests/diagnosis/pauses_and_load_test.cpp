@@ -100,6 +100,22 @@ TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
   EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.01);
 }
 
+TEST(ChangePoint, IsFoundWithIntervalsThatHoldIt) {
+  for (const double when : {9.37, 14.05, 21.62}) {
+    const Made made = make({make_effect("step")}, {0.02, when}, steady(), 0.004);
+    const FrictionModel model(BaseLaw::exponential, {make_effect("step")});
+    const Fit fit =
+        fit_model(model, made.motion, made.segmentation, observe(made.motion, made.segmentation, model.needs(), 1000));
+    ASSERT_EQ(fit.parameters.size(), 5u);
+    const FitParameter &delta = fit.parameters[3], &time = fit.parameters[4];
+    EXPECT_NEAR(delta.value, 0.02, 5e-4) << when;
+    EXPECT_LT(delta.upper95 - delta.lower95, 0.002) << "not its bounds";
+    EXPECT_LE(time.lower95, when);
+    EXPECT_GE(time.upper95, when);
+    EXPECT_LT(time.upper95 - time.lower95, 0.5) << "two cycles";
+  }
+}
+
 TEST(Pauses, BreakAwayAfterAPauseIsReadFromTheStretchThatPulls) {
   const Made made = make({}, {}, with_pauses(), 0);
   int after_pause = 0;
