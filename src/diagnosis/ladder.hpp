@@ -6,27 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "judging.hpp"
 #include "probes.hpp"
 #include "trial.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace tribofit::diagnosis {
-
-/// A candidate judged beside the model so far.
-struct Judged {
-  std::size_t candidate = 0;
-  Trial trial;
-  double fall = 0;  ///< of the whitened squares on held-out cycles
-  /// That fall over the squares that sensor noise leaves, or the fall of the plain squares over those that noise and
-  /// scatter leave: the larger.
-  double size = 0;
-  double p_value = 1;  ///< corrected for the number of candidates and of places looked at
-  double design_effect = 1;
-  bool hopeless = false;  ///< far behind the best already at low resolution, and judged there only
-  bool plausible = true;  ///< no telling parameter on its bound
-  bool passes = false;
-  bool by_level = false;  ///< it passes by the levels of break-away alone
-};
 
 struct LadderStep {
   std::optional<std::size_t> added;     ///< candidate; none for the base law
@@ -46,14 +31,6 @@ struct Ladder {
   std::vector<Judged> last;            ///< candidates judged beside the last rung: none of them passes
   bool finished = false;               ///< nothing more passes
   const Trial& top() const { return steps.back().trial; }
-};
-
-/// What must be passed for a name.
-struct Limits {
-  double p_value = 0.01;
-  double least_size = 0.02;   ///< of the squares that sensor noise leaves
-  double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
-  double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is no chance
 };
 
 /// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.

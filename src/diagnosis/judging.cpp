@@ -1,0 +1,319 @@
+#include "judging.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lines.hpp"
+#include "tribofit/fit/parallel.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// The data draw a parameter that is on its bound beyond it: a tenth of its range inside, the others following, the
+/// squares are larger than chance would make them.
+bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
+  constexpr double kInside = 0.1, kSigmas = 3;
+  const Parameter& q = trial.model.parameters()[k].parameter;
+  const double range = (q.upper - q.lower) * q.si, middle = 0.5 * (q.upper + q.lower) * q.si;
+  Linearised inside = trial.linear;
+  const double before = sum(squares_after(inside, gauss_newton_step(inside)));
+  const double step = kInside * range * (trial.p[k] > middle ? -1 : 1);
+  for (Eigen::MatrixXd& rows : inside.rows) rows.col(rows.cols() - 1) += rows.col(static_cast<Eigen::Index>(k)) * step;
+  return sum(squares_after(inside, gauss_newton_step(inside))) - before > kSigmas * kSigmas * least_squares;
+}
+
+/// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
+/// the effect says, where the data draw it there. noise: variance of a residual, correlation counted.
+bool is_plausible(const Bench& bench, const Trial& trial, const Candidate& candidate, double noise) {
+  const EffectInfo& info = candidate.info;
+  const std::size_t offset = trial.model.offset_of(info.key);
+  if (candidate.possible && !candidate.possible->holds(trial.p[offset])) return false;
+  for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+    const Parameter& q = info.parameters[k];
+    const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
+    const bool away = k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > 0.5 * (q.upper - q.lower) * q.si;
+    const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, noise);
+    if (telling && trial.at_bound[offset + k] && !flat) return false;
+    if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
+      return false;
+  }
+  return true;
+}
+
+/// A line is seen only at full resolution.
+bool is_narrow(const EffectInfo& info) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
+}
+
+/// The larger of the design effects of the free parameters of an effect, and how many of them there are.
+struct Added {
+  double design_effect = 1;
+  std::size_t free = 0;
+};
+
+Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, double noise) {
+  Added out;
+  for (std::size_t k = offset; k < offset + count; ++k) {
+    if (!linear.free[k]) continue;
+    ++out.free;
+    out.design_effect = std::max(out.design_effect, design_effect(linear, k, noise));
+  }
+  out.free = std::max<std::size_t>(1, out.free);
+  return out;
+}
+
+/// Degrees of freedom of what correlates between n cycles: see mean_error().
+double few_frequencies(double n) {
+  return std::max(3.0, 0.4 * std::pow(n, 2.0 / 3));
+}
+
+/// Whether an effect of the stick time explains what otherwise is scatter of break-away from cycle to cycle.
+///
+/// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
+/// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
+/// Here the squares themselves are compared, with the correlation between cycles as it is.
+bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info, double tests,
+                     const Limits& limits, double floor) {
+  // A break-away that is high by chance makes its own stick longer, and explains some of itself like that.
+  constexpr double kLeastSize = 0.15;
+  const double fall = poorer.plain_minimum - trial.plain_minimum;
+  if (poorer.plain_held_out - trial.plain_held_out <= kLeastSize * floor) return false;
+  const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
+  const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
+  return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < limits.p_value;
+}
+
+}  // namespace
+
+Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const Candidate& candidate,
+               double tests, const Limits& limits) {
+  const EffectInfo& info = candidate.info;
+  Judged out;
+  out.trial = std::move(richer);
+  const Trial& trial = out.trial;
+  if (!trial.usable) return out;
+  const double noise = noise_of(level, trial);
+  const Added added = added_by(trial.linear, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  out.design_effect = added.design_effect;
+  // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
+  // line stands among as many frequencies as it likes.
+  const auto cycles = static_cast<double>(trial.held_out.size());
+  const bool few = out.design_effect > 1.2 && !is_narrow(info);
+  const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
+  out.p_value = std::min(
+      1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
+  out.fall = poorer.held_out_squares - trial.held_out_squares;
+  const double floor = bench.floor_squares(trial.whitening);
+  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
+  out.plausible = is_plausible(bench, trial, candidate, noise * out.design_effect);
+  // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
+  // cycles that took no part, needs no such test.
+  const double above = poorer.held_out_squares - bench.noise_squares();
+  // Not in records that never stick: their few steps of speed go with time.
+  const auto& slips = level.observations.slips;
+  const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
+  const bool sticks = breaks >= 30;
+  const bool obvious = !is_narrow(info) && sticks && out.fall > limits.obvious_size * bench.noise_squares() &&
+                       out.fall > limits.obvious_part * above;
+  const bool seen = out.fall > 0 && (out.p_value < limits.p_value || obvious);
+  out.by_level = out.plausible && !seen && sticks && info.needs.stick_time &&
+                 passes_by_level(level, poorer, trial, info, tests, limits, floor);
+  out.passes = out.plausible && out.size > limits.least_size && (seen || out.by_level);
+  return out;
+}
+
+namespace {
+
+bool told_apart(const Bench& bench, const Judged& better, const Judged& worse) {
+  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
+  return difference > kToldApart * noise_of(bench.fine, better.trial) * better.design_effect &&
+         difference > kToldApartSize * bench.noise_squares();
+}
+
+/// Of the forms of one effect one has the name: the plain one, unless the data tell another from it.
+void keep_one_form(const Bench& bench, const std::vector<Candidate>& candidates, std::vector<Judged>& judged) {
+  for (Judged& form : judged) {
+    const EffectInfo& info = candidates[form.candidate].info;
+    if (info.option.empty() || !form.passes) continue;
+    const auto plain = std::find_if(judged.begin(), judged.end(), [&](const Judged& other) {
+      const EffectInfo& known = candidates[other.candidate].info;
+      return known.key == info.key && known.option.empty();
+    });
+    if (plain == judged.end() || !plain->passes) continue;
+    (told_apart(bench, form, *plain) ? *plain : form).passes = false;
+  }
+}
+
+}  // namespace
+
+Choice choose(const Bench& bench, std::vector<Judged>& judged, const std::vector<Candidate>& candidates) {
+  keep_one_form(bench, candidates, judged);
+  Choice choice;
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes) continue;
+    if (!best || judged[k].trial.held_out_squares < judged[*best].trial.held_out_squares) best = k;
+  }
+  if (!best) return choice;
+  choice.leader = best;
+  // The simplest of those that do as well leads.
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    const std::size_t now = judged[*choice.leader].trial.p.size(), other = judged[k].trial.p.size();
+    const bool lower = judged[k].trial.held_out_squares < judged[*choice.leader].trial.held_out_squares;
+    if (other < now || (other == now && lower)) choice.leader = k;
+  }
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (k == *choice.leader || !judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    choice.group.push_back(judged[k].candidate);
+  }
+  // What the declared uncertainty of an instrument leaves room for is no reason to name anything else.
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (!judged[k].passes || !candidates[judged[k].candidate].possible) continue;
+    if (told_apart(bench, judged[*best], judged[k])) continue;
+    choice.leader = k;
+    choice.group.clear();
+  }
+  return choice;
+}
+
+namespace {
+
+/// Every testable candidate beside the top of a ladder, judged first at low resolution and then, those that may lead
+/// or be in the leader's group, at full resolution.
+class Round {
+ public:
+  Round(const Bench& bench, const Trial& top, const Trial& coarse_top, const std::vector<Candidate>& candidates,
+        const Limits& limits);
+
+  void judge_coarsely();
+  /// Judges anew at full resolution what promises enough beside the best; false where nothing more does.
+  bool judge_promising();
+  std::vector<Judged> result() &&;
+
+ private:
+  const EffectInfo& info(std::size_t t) const { return candidates_[out_[t].candidate].info; }
+  void judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
+             const std::vector<double>& start);
+  void search(std::size_t t, const Level& level, const Trial& beside);
+  bool is_hopeless(std::size_t t, double best) const;
+
+  const Bench& bench_;
+  const Trial &top_, &coarse_top_;
+  const std::vector<Candidate>& candidates_;
+  const Limits& limits_;
+  // What is too small to be named, or small beside what is wrong for another reason, need not be fitted.
+  static constexpr double kLeastPart = 0.02;
+  double least_ = 0, least_plain_ = 0;
+  double next_ = 0;  ///< what may be added before a line
+  std::vector<Judged> out_;
+  std::vector<Opening> openings_;
+  std::vector<double> at_low_;  ///< held-out squares at low resolution
+  std::vector<bool> judged_finely_;
+};
+
+Round::Round(const Bench& bench, const Trial& top, const Trial& coarse_top, const std::vector<Candidate>& candidates,
+             const Limits& limits)
+    : bench_(bench), top_(top), coarse_top_(coarse_top), candidates_(candidates), limits_(limits) {
+  const auto enough = [&](double floor, double squares) {
+    return std::max(0.5 * limits.least_size * floor, kLeastPart * (squares - floor));
+  };
+  least_ = enough(bench.noise_squares(), coarse_top.squares);
+  least_plain_ = enough(bench.floor_squares(top.whitening), coarse_top.plain_squares);
+  const std::vector<std::string> present = top.model.effect_keys();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (!candidates[k].untestable.empty()) continue;
+    if (std::find(present.begin(), present.end(), candidates[k].info.key) != present.end()) continue;
+    if (!top.model.acts_with(candidates[k].effect)) continue;
+    out_.emplace_back().candidate = k;
+  }
+  openings_.resize(out_.size());
+  judged_finely_.assign(out_.size(), false);
+}
+
+void Round::judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
+                  const std::vector<double>& start) {
+  const std::size_t candidate = out_[t].candidate;
+  const double tests = openings_[t].places * static_cast<double>(candidates_.size());
+  out_[t] =
+      compare(bench_, level, beside, try_model(bench_, level, model, start), candidates_[candidate], tests, limits_);
+  out_[t].candidate = candidate;
+}
+
+void Round::search(std::size_t t, const Level& level, const Trial& beside) {
+  const FrictionModel model = with_effect(top_.model, candidates_[out_[t].candidate].effect);
+  judge(t, level, beside, model, nearest(level, model, beside.whitening, openings_[t].starts));
+}
+
+void Round::judge_coarsely() {
+  const std::vector<double> residual = residual_of(bench_, top_);
+  run_tasks(out_.size(), bench_.threads, [&](std::size_t t) {
+    const bool narrow = is_narrow(info(t));
+    const Level& level = narrow ? bench_.fine : bench_.coarse;
+    const Trial& beside = narrow ? top_ : coarse_top_;
+    const Candidate& candidate = candidates_[out_[t].candidate];
+    openings_[t] = opening_of(bench_, level, beside, candidate, residual, least_, least_plain_);
+    if (!narrow && !openings_[t].starts.empty()) search(t, level, beside);
+  });
+  for (const Judged& judged : out_) {
+    at_low_.push_back(judged.trial.held_out_squares);
+    if (judged.passes) next_ = std::max(next_, judged.fall);
+  }
+}
+
+bool Round::is_hopeless(std::size_t t, double best) const {
+  const Judged& judged = out_[t];
+  if (is_narrow(info(t))) {
+    // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
+    constexpr double kPutOff = 0.3;
+    return openings_[t].starts.empty() || openings_[t].promised < kPutOff * next_;
+  }
+  const double fallen = coarse_top_.held_out_squares - best;
+  const bool small = judged.size < 0.5 * limits_.least_size || (judged.p_value > 0.5 && !judged.passes) ||
+                     (judged.fall < least_ && judged.fall < kLeastPart * fallen);
+  const bool far = at_low_[t] - best > 0.08 * fallen + 0.05 * bench_.noise_squares();
+  return !judged.by_level && (far || judged.fall < 0 || small);
+}
+
+bool Round::judge_promising() {
+  double best = coarse_top_.held_out_squares;
+  for (std::size_t t = 0; t < out_.size(); ++t) {
+    if (out_[t].trial.usable && out_[t].plausible && !is_narrow(info(t))) best = std::min(best, at_low_[t]);
+  }
+  std::vector<std::size_t> promising;
+  for (std::size_t t = 0; t < out_.size(); ++t) {
+    if (judged_finely_[t] || (!out_[t].trial.usable && !is_narrow(info(t)))) continue;
+    out_[t].hopeless = is_hopeless(t, best);
+    if (!out_[t].hopeless) promising.push_back(t);
+  }
+  run_tasks(promising.size(), bench_.threads, [&](std::size_t k) {
+    const std::size_t t = promising[k];
+    if (is_narrow(info(t))) return search(t, bench_.fine, top_);
+    const Trial coarse = std::move(out_[t].trial);
+    judge(t, bench_.fine, top_, coarse.model, coarse.p);
+  });
+  for (const std::size_t t : promising) judged_finely_[t] = true;
+  return !promising.empty();
+}
+
+std::vector<Judged> Round::result() && {
+  for (Judged& judged : out_) judged.passes = judged.passes && !judged.hopeless;
+  return std::move(out_);
+}
+
+}  // namespace
+
+std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const Trial& coarse_top,
+                              const std::vector<Candidate>& candidates, const Limits& limits) {
+  Round round(bench, top, coarse_top, candidates, limits);
+  round.judge_coarsely();
+  // Which turn out implausible at full resolution stand before the others no longer, and those get their turn.
+  while (round.judge_promising()) {
+  }
+  return std::move(round).result();
+}
+
+}  // namespace tribofit::diagnosis
