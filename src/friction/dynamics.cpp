@@ -1,9 +1,13 @@
 #include "tribofit/friction/dynamics.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 
@@ -107,6 +111,36 @@ void FrictionDynamics::states_at_break_away(std::span<double> state) const {
     if constexpr (hooks::Ages<E, double>) state[k++] = age_;
     if constexpr (hooks::Remembers<E, double>) state[k++] = level;
   });
+}
+
+void FrictionDynamics::steady_states(const Instant<double>& at, std::span<double> state) const {
+  states_at_break_away(state);
+  const auto n = static_cast<Eigen::Index>(state.size());
+  Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(state.data(), n);
+  const auto rates_of = [&](const Eigen::VectorXd& z) {
+    Eigen::VectorXd rate(n);
+    rates(at, std::span<const double>(z.data(), state.size()), std::span<double>(rate.data(), state.size()));
+    return rate;
+  };
+  constexpr int kMostIterations = 30;
+  for (int i = 0; n > 0; ++i) {
+    const Eigen::VectorXd rate = rates_of(y);
+    Eigen::MatrixXd jacobian(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      Eigen::VectorXd shifted = y;
+      shifted[k] += y[k] == 0 ? 1e-9 : 1e-6 * y[k];
+      jacobian.col(k) = (rates_of(shifted) - rate) / (shifted[k] - y[k]);
+    }
+    const Eigen::VectorXd step = jacobian.partialPivLu().solve(-rate);
+    if (!step.allFinite() || i == kMostIterations) {
+      throw InputError("the memory of the friction law does not come to rest at a speed of " +
+                           std::to_string(1e3 * at.velocity) + " mm/s",
+                       "check that its effects have plausible parameters");
+    }
+    y += step;
+    if (step.norm() <= 1e-12 * y.norm()) break;
+  }
+  std::copy(y.data(), y.data() + n, state.begin());
 }
 
 double FrictionDynamics::run(const Instant<double>& now, std::span<const double> state, std::span<double> rate,

@@ -41,6 +41,7 @@ class Simulation {
  private:
   using Stepper = boost::numeric::odeint::runge_kutta_dopri5<BlockState>;
 
+  void begin_in_slip(int direction);
   void advance(double until);
   void stick(double until);
   void slip(double until);
@@ -50,6 +51,7 @@ class Simulation {
   void count_step();
   void turn_round();
   void confirm_creeping_slip(double restick_time);
+  void note_extremes(double h);
   void watch_creep(double h);
   void end_creeping_slip(double restick_time);
 
@@ -74,7 +76,8 @@ class Simulation {
 
   double time_ = 0;
   bool sticking_ = true;
-  double slid_ = 0;  ///< up to the last event [m]
+  double slid_ = 0;        ///< up to the last event [m]
+  double peak_speed_ = 0;  ///< since the slip began [m/s]
   std::size_t next_sample_ = 0, samples_ = 0, steps_ = 0;
 
   // In rigid stick.
@@ -93,12 +96,7 @@ class Simulation {
 Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
                        const SimulationOptions& options)
     : options_((check_simulation(rig, drive, model, p, options), options)),
-      setup_{rig,
-             true_drive(drive, model, p),
-             rig.natural_frequency(),
-             model.needs().angle,
-             model.needs().distance,
-             model.needs().acceleration},
+      setup_(rig, true_drive(drive, model, p), model),
       friction_(model, {p.begin(), p.end()}),
       flow_(setup_, friction_),
       scatter_(options.scatter.deviation, options.scatter.wander, options.seed, NormalStream::Purpose::scatter) {
@@ -111,12 +109,13 @@ Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& 
   least_slip_ = 0.1 * drive.mean_load * p[0] / rig.stiffness;
   time_ = -options_.settle;
   state_[1] = setup_.disc_velocity(time_);
-  if (friction_.acts_in_stick()) {
-    sticking_ = false;
-    friction_.begin_slip(0, 1, scatter_.value());
-    flow_.begin(time_, state_, 1, 0, 0);
-    step_ = most_step_ * 1e-3;
-    reversal_time_ = creep_end_ = time_;
+  if (options_.start) {
+    state_[0] = setup_.natural_frequency * options_.start->displacement;
+    state_[1] = options_.start->velocity;
+  }
+  const double gap = setup_.disc_velocity(time_) - state_[1];
+  if (friction_.acts_in_stick() || gap != 0) {
+    begin_in_slip(gap < 0 ? -1 : 1);
   } else {
     begin_stick();
   }
@@ -126,6 +125,18 @@ Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& 
   motion_.stated_speed = drive.speed.constant ? drive.speed.speed(0) : kNaN;
   motion_.mean_load = drive.mean_load;
   motion_.mean_temperature = drive.mean_temperature;
+}
+
+/// Starts moving, or creeping, in the direction of v_r given.
+void Simulation::begin_in_slip(int direction) {
+  sticking_ = false;
+  friction_.begin_slip(0, direction, scatter_.value());
+  flow_.begin(time_, state_, direction, 0, 0);
+  step_ = most_step_ * 1e-3;
+  reversal_time_ = creep_end_ = time_;
+  if (options_.start && flow_.slip_speed(time_, state_) > 0) flow_.steady_memories(time_, state_);
+  if (friction_.acts_in_stick()) return;
+  motion_.slips.push_back({.break_away_time = kNaN, .restick_time = kNaN, .direction = direction});
 }
 
 SimulatedMotion Simulation::run() {
@@ -148,6 +159,7 @@ SimulatedMotion Simulation::run() {
       for (; i < motion_.size() && !(motion_.time[i] >= slip.restick_time); ++i) motion_.sticks[i] = 0;
     }
   }
+  if (!friction_.acts_in_stick() && !sticking_) motion_.slips.back().peak_speed = peak_speed_;
   std::erase_if(motion_.slips, [](const SimulatedSlip& slip) { return slip.restick_time <= 0; });
   return std::move(motion_);
 }
@@ -242,6 +254,7 @@ void Simulation::break_away() {
                            .direction = direction,
                            .mu_s_offset = scatter_.value(),
                            .break_away_friction = std::abs(pull) / setup_.load(time_)});
+  peak_speed_ = 0;
 }
 
 // ---- slip
@@ -313,6 +326,7 @@ void Simulation::slip(double until) {
       continue;
     }
     if (crosses) h = land_on_zero_speed(h);
+    note_extremes(h);
     sample_slip(h);
     if (friction_.acts_in_stick()) watch_creep(h);
     time_ = until - time_ - h <= 0 ? until : time_ + h;
@@ -325,6 +339,32 @@ void Simulation::slip(double until) {
       end_slip();
     }
   }
+}
+
+/// Turning points and the largest speed within the step of length h just made.
+void Simulation::note_extremes(double h) {
+  if (time_ >= 0 && state_[1] * next_state_[1] < 0) {
+    const auto velocity = [&](double t) { return dense(t, h)[1]; };
+    const double t = find_zero(velocity, time_, time_ + h, state_[1], next_state_[1]);
+    motion_.turning_points.push_back({t, dense(t, h)[0] / setup_.natural_frequency, state_[1] > 0});
+  }
+  const auto gain = [&](double t, const BlockState& dy) {  // of speed
+    return flow_.direction() * (setup_.disc_acceleration(t) - dy[1]);
+  };
+  const double before = gain(time_, derivative_), after = gain(time_ + h, next_derivative_);
+  double speed = flow_.slip_speed(time_ + h, next_state_);
+  if (before > 0 && after < 0) {
+    const auto inside = [&](double t) {
+      BlockState dy;
+      flow_(dense(t, h), dy, t);
+      return gain(t, dy);
+    };
+    // Bracketed anew: the interpolant meets the ends of the step within its own error only.
+    const double low = inside(time_), high = inside(time_ + h);
+    const double t = low > 0 && high < 0 ? find_zero(inside, time_, time_ + h, low, high) : time_ + h;
+    speed = std::max(speed, flow_.slip_speed(t, dense(t, h)));
+  }
+  peak_speed_ = std::max(peak_speed_, speed);
 }
 
 /// At v_r = 0: stick if the spring is within the static limit, else motion turns round.
@@ -342,6 +382,7 @@ void Simulation::end_slip() {
     return;
   }
   slip.restick_time = time_;
+  slip.peak_speed = peak_speed_;
   scatter_.next();
   begin_stick();
 }
@@ -358,6 +399,7 @@ void Simulation::turn_round() {
   }
   creep_end_ = time_;
   slid_at_reversal_ = slid_;
+  peak_speed_ = 0;
   flow_.begin(time_, state_, direction, 0, slid_);
   flow_(state_, derivative_, time_);
 }
@@ -389,6 +431,7 @@ void Simulation::end_creeping_slip(double restick_time) {
   friction_.begin_slip(creep_end_ - reversal_time_, flow_.direction(), scatter_.value());
   reversal_time_ = creep_end_ = restick_time;
   slid_at_reversal_ = slid_;
+  peak_speed_ = 0;
   flow_(state_, derivative_, time_);
 }
 
@@ -401,7 +444,8 @@ void Simulation::confirm_creeping_slip(double restick_time) {
                            .stick_time = creep_end_ - reversal_time_,
                            .direction = flow_.direction() < 0 ? -1 : 1,
                            .mu_s_offset = scatter_.value(),
-                           .break_away_friction = std::abs(friction_at_creep_end_)});
+                           .break_away_friction = std::abs(friction_at_creep_end_),
+                           .peak_speed = peak_speed_});
 }
 
 // ---- samples

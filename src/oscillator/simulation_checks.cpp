@@ -57,6 +57,8 @@ void check_simulation(const Rig& rig, const Drive& drive, const FrictionModel& m
   require(not_negative(options.rate), "the sampling rate is negative", "give it as e.g. 20kHz");
   require(options.rate == 0 || options.duration * options.rate >= 2, "the record holds fewer than two samples",
           "give a longer duration or a higher rate");
+  require(!options.start || (std::isfinite(options.start->displacement) && std::isfinite(options.start->velocity)),
+          "the start of the block is not finite", "give a displacement and a velocity");
   check_friction(model, p);
   require(not_negative(options.settle), "the settling time is negative", "give zero or more seconds");
   require(positive(options.tolerance), "the tolerance is not positive", "1e-10 is usual");

@@ -18,24 +18,33 @@ double SlipFlow::slid(double t, const BlockState& y) const {
   return slid_before_ + std::abs(lag - lag_before_);
 }
 
+Instant<double> SlipFlow::instant(double speed, double block_acceleration, double t, const BlockState& y) const {
+  return {.velocity = direction_ * speed,
+          .direction = direction_,
+          .acceleration = block_acceleration,
+          .time = std::max(t, 0.0),
+          .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,
+          .distance = setup_.needs_distance && t > 0 ? slid(t, y) : 0,
+          .stick_time = stick_time_,
+          .load = setup_.load(t),
+          .mean_load = setup_.drive.mean_load,
+          .temperature = setup_.temperature(t),
+          .mean_temperature = setup_.drive.mean_temperature,
+          .disc_speed = setup_.drive.speed.speed(t)};
+}
+
 double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,
                              BlockState* dy) const {
-  const Instant<double> at = {.velocity = direction_ * speed,
-                              .direction = direction_,
-                              .acceleration = block_acceleration,
-                              .time = std::max(t, 0.0),
-                              .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,
-                              .distance = setup_.needs_distance && t > 0 ? slid(t, y) : 0,
-                              .stick_time = stick_time_,
-                              .load = setup_.load(t),
-                              .mean_load = setup_.drive.mean_load,
-                              .temperature = setup_.temperature(t),
-                              .mean_temperature = setup_.drive.mean_temperature,
-                              .disc_speed = setup_.drive.speed.speed(t)};
+  const Instant<double> at = instant(speed, block_acceleration, t, y);
   const std::size_t memories = friction_.state_count();
   const std::span<const double> state(y.data() + 2, memories);
   if (dy != nullptr && memories > 0) friction_.rates(at, state, std::span<double>(dy->data() + 2, memories));
   return friction_.friction(at, state);
+}
+
+void SlipFlow::steady_memories(double t, BlockState& y) const {
+  friction_.steady_states(instant(std::abs(slip_speed(t, y)), 0, t, y),
+                          std::span<double>(y.data() + 2, friction_.state_count()));
 }
 
 double SlipFlow::acceleration(double mu, double t, const BlockState& y) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <utility>
 
 #include "tribofit/friction/dynamics.hpp"
 #include "tribofit/oscillator/drive.hpp"
@@ -18,10 +19,18 @@ using BlockState = std::array<double, 2 + kMostMemories>;
 
 /// What a simulation is of; shared by its parts.
 struct Setup {
+  Setup(const Rig& the_rig, Drive the_drive, const FrictionModel& model)
+      : rig(the_rig),
+        drive(std::move(the_drive)),
+        natural_frequency(rig.natural_frequency()),
+        needs_angle(model.needs().angle),
+        needs_distance(model.needs().distance),
+        needs_acceleration(model.needs().acceleration) {}
+
   Rig rig;
   Drive drive;
-  double natural_frequency = 0;  ///< [rad/s]
-  bool needs_angle = false, needs_distance = false, needs_acceleration = false;
+  double natural_frequency;  ///< [rad/s]
+  bool needs_angle, needs_distance, needs_acceleration;
 
   double disc_velocity(double t) const { return drive.radius * drive.speed.speed(t); }
   double disc_acceleration(double t) const { return drive.radius * drive.speed.acceleration(t); }
@@ -53,8 +62,11 @@ class SlipFlow {
   void operator()(const BlockState& y, BlockState& dy, double t) const;
   /// Signed mu [1].
   double friction(double t, const BlockState& y) const;
+  /// Sets the memories in y to those of steady sliding at the speed of y.
+  void steady_memories(double t, BlockState& y) const;
 
  private:
+  Instant<double> instant(double speed, double acceleration, double t, const BlockState& y) const;
   /// Friction at the slip speed `speed` >= 0, with the rates of the memories when asked for.
   double friction_at(double speed, double acceleration, double t, const BlockState& y, BlockState* dy) const;
   double acceleration(double mu, double t, const BlockState& y) const;

@@ -36,6 +36,10 @@ class FrictionDynamics {
   /// Memory states at break-away of a rigid stick.
   void states_at_break_away(std::span<double> state) const;
 
+  /// Memory states in steady sliding, where none of them changes any more, at the speed and conditions of `at`.
+  /// Newton's method from the states at break-away; throws InputError where it finds none.
+  void steady_states(const Instant<double>& at, std::span<double> state) const;
+
   /// Signed mu at an instant [1].
   double friction(const Instant<double>& at, std::span<const double> state) const;
 

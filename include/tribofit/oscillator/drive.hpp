@@ -46,11 +46,11 @@ inline constexpr double kSpeedChangeTime = 0.05;  ///< [s]
 /// What is imposed on the block.
 struct Drive {
   SpeedProfile speed;
-  double radius = 0;                          ///< friction radius r [m], > 0; v_disc = omega r
-  double mean_load = 0;                       ///< N0 [N], > 0
-  std::function<double(double)> load;         ///< N(t) [N]; empty: N0 throughout
-  std::function<double(double)> temperature;  ///< T(t) [degC]; empty: mean_temperature throughout
-  double mean_temperature = 20;               ///< T0 [degC]
+  double radius = 0;                               ///< friction radius r [m], > 0; v_disc = omega r
+  double mean_load = 0;                            ///< N0 [N], > 0
+  std::function<double(double)> load = {};         ///< N(t) [N]; empty: N0 throughout
+  std::function<double(double)> temperature = {};  ///< T(t) [degC]; empty: mean_temperature throughout
+  double mean_temperature = 20;                    ///< T0 [degC]
 };
 
 }  // namespace tribofit

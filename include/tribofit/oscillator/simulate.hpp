@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct BreakAwayScatter {
   double wander = 0;     ///< correlation of neighbouring cycles [1], 0 <= wander < 1
 };
 
+/// A state of the block.
+struct BlockStart {
+  double displacement = 0, velocity = 0;  ///< [m, m/s]
+};
+
 struct SimulationOptions {
   double duration = 1;  ///< of the record [s], > 0
   double rate = 20000;  ///< samples per second [Hz]; 0: no samples, events only
@@ -27,16 +33,26 @@ struct SimulationOptions {
   std::uint64_t seed = 1;    ///< of the scatter
   double tolerance = 1e-10;  ///< local error of the integrator, relative
   double max_step = 0;       ///< longest step [s]; 0: an eighth of the natural period
+  /// Where the block begins; nothing: unloaded (x = 0) and carried by the disc. At another speed than the disc's it
+  /// begins in slip, with the memories of the law as in steady sliding at its v_r.
+  std::optional<BlockStart> start = {};
 };
 
 /// One slip of a simulated motion, with the stick before it.
 struct SimulatedSlip {
-  double break_away_time = 0;      ///< [s]; negative where it began in the settling
+  double break_away_time = 0;      ///< [s]; negative where it began in the settling, NaN where the motion began in slip
   double restick_time = 0;         ///< v_r back to zero (stick or reversal) [s]; NaN: not within the record
   double stick_time = 0;           ///< [s]; 0 where motion only reversed
   int direction = 1;               ///< sign of v_r
   double mu_s_offset = 0;          ///< added to mu_s in this cycle (the scatter) [1]
   double break_away_friction = 0;  ///< |mu| at break-away [1]
+  double peak_speed = 0;           ///< largest |v_r| [m/s]; so far, where the slip does not end within the record
+};
+
+/// Where the block turns round, x' = 0.
+struct TurningPoint {
+  double time = 0, displacement = 0;  ///< [s, m]
+  bool is_maximum = false;
 };
 
 /// A simulated motion on a uniform grid, SI, before any sensor. All channels have the same length.
@@ -51,6 +67,7 @@ struct SimulatedMotion {
   std::vector<double> load, temperature;                           ///< [N, degC]; empty where constant
   std::vector<std::uint8_t> sticks;                                ///< 1 in stick
   std::vector<SimulatedSlip> slips;                                ///< in order of time
+  std::vector<TurningPoint> turning_points;                        ///< within the record, in order of time
   double radius = 0, mean_load = 0, mean_temperature = 0;          ///< as the drive states them
   double stated_speed = std::numeric_limits<double>::quiet_NaN();  ///< omega as the drive states it, where that is
                                                                    ///< constant [rad/s]; else NaN

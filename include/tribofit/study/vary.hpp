@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/ingest/units.hpp"
+#include "tribofit/oscillator/machine.hpp"
+#include "tribofit/study/settled.hpp"
+
+namespace tribofit {
+
+/// A number of a machine that studies vary.
+struct Variable {
+  std::string name;  ///< stiffness, mass, damping, damping-ratio, load, radius, speed, velocity, mu_s, mu_k, ratio,
+                     ///< alpha or beta, and KEY.parameter of each effect
+  std::string unit;  ///< as shown and written
+  double si = 1;     ///< SI value of one unit
+  Quantity quantity = Quantity::dimensionless;
+  std::string meaning;
+};
+
+/// All variables of a machine. `velocity` is omega r, varied by the speed; `ratio` is mu_k/mu_s, varied by mu_k;
+/// `damping-ratio` is varied by the damping.
+std::vector<Variable> variables_of(const Machine& machine);
+
+/// The variable of that name. Throws InputError with the nearest known name where there is none.
+Variable variable_named(const Machine& machine, std::string_view name);
+
+double value_of(const Machine& machine, std::string_view name);            ///< SI
+Machine with_value(Machine machine, std::string_view name, double value);  ///< SI
+
+/// A measure of settled motion, as studies print it.
+struct MeasureInfo {
+  std::string name;  ///< frequency, stick-time, peak-to-peak, energy, peak-speed
+  std::string unit;
+  double si = 1;
+  double Settled::*value = nullptr;
+  std::string meaning;
+};
+const std::vector<MeasureInfo>& measures();
+/// Throws InputError with the nearest known name where there is none.
+const MeasureInfo& measure_named(std::string_view name);
+
+}  // namespace tribofit

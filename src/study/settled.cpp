@@ -1,0 +1,249 @@
+#include "tribofit/study/settled.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/oscillator/steady_sliding.hpp"
+
+namespace tribofit {
+
+namespace {
+
+double natural_period(const Machine& machine) {
+  return 2 * std::numbers::pi / machine.rig.natural_frequency();
+}
+
+/// Longest time of one stick and one slip: the spring is wound up from one static limit to the other.
+double longest_cycle(const Machine& machine) {
+  const double deflection = 2 * machine.parameters[0] * machine.load / machine.rig.stiffness;
+  return natural_period(machine) + deflection / machine.disc_velocity();
+}
+
+/// One stick-slip cycle, from break-away to break-away.
+struct SeenCycle {
+  double begin = 0, period = 0, stick_time = 0, peak_to_peak = 0, peak_speed = 0;
+};
+
+std::vector<SeenCycle> cycles_of(const SimulatedMotion& motion) {
+  std::vector<const SimulatedSlip*> begins;
+  for (const SimulatedSlip& slip : motion.slips) {
+    if (slip.stick_time > 0 && slip.break_away_time >= 0) begins.push_back(&slip);
+  }
+  std::vector<SeenCycle> cycles;
+  auto turn = motion.turning_points.begin();
+  for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
+    const double begin = begins[k]->break_away_time, end = begins[k + 1]->break_away_time;
+    while (turn != motion.turning_points.end() && turn->time < begin) ++turn;
+    double lowest = INFINITY, highest = -INFINITY;
+    for (; turn != motion.turning_points.end() && turn->time < end; ++turn) {
+      lowest = std::min(lowest, turn->displacement);
+      highest = std::max(highest, turn->displacement);
+    }
+    double fastest = 0;  // a stick may end in more than one slip
+    for (const SimulatedSlip* slip = begins[k]; slip != begins[k + 1]; ++slip) {
+      fastest = std::max(fastest, slip->peak_speed);
+    }
+    cycles.push_back({begin, end - begin, begins[k + 1]->stick_time, std::max(0.0, highest - lowest), fastest});
+  }
+  return cycles;
+}
+
+/// The slip in which the record ends and its beginning [s]; nothing where it ends in stick.
+std::optional<double> open_slip(const SimulatedMotion& motion) {
+  if (motion.slips.empty() || !std::isnan(motion.slips.back().restick_time)) return std::nullopt;
+  const double begin = motion.slips.back().break_away_time;
+  return std::isnan(begin) ? 0 : std::max(0.0, begin);
+}
+
+bool alike(double a, double b, double tolerance) {
+  return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
+}
+
+class Settling {
+ public:
+  Settling(const Machine& machine, const SettleOptions& options)
+      : machine_(machine), options_(options), period_(natural_period(machine)), cycle_(longest_cycle(machine)) {}
+
+  Settled run();
+
+ private:
+  SimulationOptions simulation(double duration) const;
+  bool judge(const SimulatedMotion& motion, double duration);
+  bool judge_cycles(const std::vector<SeenCycle>& cycles);
+  bool judge_swings(const SimulatedMotion& motion, double since);
+  void measure(const SeenCycle& cycle);
+  double fastest_of_vibration(const TurningPoint& from) const;
+
+  const Machine& machine_;
+  const SettleOptions& options_;
+  double period_, cycle_;
+  Settled out_;
+};
+
+SimulationOptions Settling::simulation(double duration) const {
+  SimulationOptions simulation{.duration = duration, .rate = 0};
+  if (options_.start == StartFrom::sliding) {
+    constexpr double kPush = 1e-3;
+    simulation.start = BlockStart{steady_sliding(machine_).displacement, kPush * machine_.disc_velocity()};
+  }
+  return simulation;
+}
+
+Settled Settling::run() {
+  const bool winds_up = options_.start == StartFrom::stick;
+  const double most_cycles = options_.longest_cycles * cycle_, most_swings = options_.longest_swings * period_;
+  for (double duration = winds_up ? 4 * cycle_ + 4 * period_ : 20 * period_;; duration *= 4) {
+    const SimulatedMotion motion =
+        simulate(machine_.rig, machine_.drive(), machine_.model, machine_.parameters, simulation(duration));
+    out_ = {};
+    out_.simulated = duration;
+    if (judge(motion, duration)) return out_;
+    if (duration >= (out_.sticks ? most_cycles : most_swings)) return out_;
+  }
+}
+
+bool Settling::judge(const SimulatedMotion& motion, double duration) {
+  const std::optional<double> since = open_slip(motion);
+  if (since && duration - *since > 2.5 * period_) return judge_swings(motion, *since);
+  out_.sticks = true;
+  return judge_cycles(cycles_of(motion));
+}
+
+void Settling::measure(const SeenCycle& cycle) {
+  out_.frequency = 1 / cycle.period;
+  out_.stick_time = cycle.stick_time;
+  out_.peak_to_peak = cycle.peak_to_peak;
+  out_.energy = 0.5 * machine_.rig.stiffness * cycle.peak_to_peak * cycle.peak_to_peak;
+  out_.peak_speed = cycle.peak_speed;
+  out_.begin = cycle.begin;
+}
+
+bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
+  if (cycles.size() < 3) {
+    out_.seen = fmt::format("{} break-aways in {:.3g} s", cycles.size(), out_.simulated);
+    return false;
+  }
+  const SeenCycle& last = cycles.back();
+  measure(last);
+  const bool settled = std::all_of(cycles.end() - 3, cycles.end(), [&](const SeenCycle& c) {
+    return alike(c.period, last.period, options_.tolerance) &&
+           alike(c.peak_to_peak, last.peak_to_peak, options_.tolerance);
+  });
+  if (settled) {
+    out_.regime = Regime::stick_slip;
+    return true;
+  }
+  const std::vector<SeenCycle> late(cycles.begin() + static_cast<std::ptrdiff_t>(cycles.size() / 2), cycles.end());
+  SeenCycle mean{.begin = last.begin}, least = last, most = last;
+  for (const SeenCycle& c : late) {
+    const double share = 1 / static_cast<double>(late.size());
+    mean.period += share * c.period;
+    mean.stick_time += share * c.stick_time;
+    mean.peak_to_peak += share * c.peak_to_peak;
+    mean.peak_speed += share * c.peak_speed;
+    least.period = std::min(least.period, c.period);
+    most.period = std::max(most.period, c.period);
+    least.peak_to_peak = std::min(least.peak_to_peak, c.peak_to_peak);
+    most.peak_to_peak = std::max(most.peak_to_peak, c.peak_to_peak);
+  }
+  measure(mean);
+  out_.seen = fmt::format(
+      "stick-slip that does not repeat itself: over the last {} cycles of {:.3g} s the period goes from {:.6g} to "
+      "{:.6g} "
+      "s, peak-to-peak from {:.6g} to {:.6g} mm",
+      late.size(), out_.simulated, least.period, most.period, 1e3 * least.peak_to_peak, 1e3 * most.peak_to_peak);
+  return false;
+}
+
+/// Largest |v_r| of a vibration that begins at a turning point.
+double Settling::fastest_of_vibration(const TurningPoint& from) const {
+  SimulationOptions options{.duration = 2 * period_, .rate = 0};
+  options.start = BlockStart{from.displacement, 0};
+  const SimulatedMotion motion = simulate(machine_.rig, machine_.drive(), machine_.model, machine_.parameters, options);
+  return motion.slips.empty() ? machine_.disc_velocity() : motion.slips.back().peak_speed;
+}
+
+bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
+  std::vector<TurningPoint> turns;
+  std::copy_if(motion.turning_points.begin(), motion.turning_points.end(), std::back_inserter(turns),
+               [&](const TurningPoint& turn) { return turn.time >= since; });
+  if (turns.size() < 6) {
+    out_.seen = fmt::format("sliding without a stick, {} turning points in {:.3g} s", turns.size(), out_.simulated);
+    const bool overdamped = steady_sliding(machine_).is_stable() && machine_.rig.damping_ratio() >= 1;
+    if (overdamped) out_.regime = Regime::sliding;
+    return overdamped;
+  }
+  double first = 0;
+  for (std::size_t i = 1; i < turns.size(); ++i) {
+    first = std::max(first, std::abs(turns[i].displacement - turns[i - 1].displacement));
+  }
+  const auto swing = [&](std::size_t from_end) {
+    const TurningPoint* turn = &turns[turns.size() - 1 - from_end];
+    return std::abs(turn[0].displacement - turn[-1].displacement);
+  };
+  const double last = swing(0), change = last / swing(2) - 1;
+  out_.stick_time = 0;
+  constexpr double kSmall = 0.05;
+  if (change < 0 && last < kSmall * first && steady_sliding(machine_).is_stable()) {
+    out_.regime = Regime::sliding;
+    out_.frequency = std::numeric_limits<double>::quiet_NaN();
+    out_.stick_time = std::numeric_limits<double>::quiet_NaN();
+    out_.peak_to_peak = out_.energy = 0;
+    out_.peak_speed = machine_.disc_velocity();
+    out_.begin = turns.back().time;
+    return true;
+  }
+  const TurningPoint& end = turns.back();
+  out_.frequency = 1 / (end.time - turns[turns.size() - 3].time);
+  out_.peak_to_peak = last;
+  out_.energy = 0.5 * machine_.rig.stiffness * last * last;
+  out_.begin = end.is_maximum ? end.time : turns[turns.size() - 2].time;
+  if (std::abs(change) < options_.tolerance) {
+    out_.regime = Regime::vibration;
+    out_.peak_speed = fastest_of_vibration(end);
+    return true;
+  }
+  out_.seen = fmt::format(
+      "vibration without a stick whose peak-to-peak of {:.4g} mm still {} by {:.2g} % a cycle after {:.3g} s",
+      1e3 * last, change < 0 ? "falls" : "grows", 1e2 * std::abs(change), out_.simulated);
+  return false;
+}
+
+}  // namespace
+
+std::string_view to_string(Regime regime) {
+  switch (regime) {
+    case Regime::stick_slip:
+      return "stick-slip";
+    case Regime::vibration:
+      return "vibration";
+    case Regime::sliding:
+      return "sliding";
+    case Regime::not_settled:
+      break;
+  }
+  return "not-settled";
+}
+
+Settled settle(const Machine& machine, const SettleOptions& options) {
+  steady_sliding(machine);  // refuses machines that cannot be
+  return Settling(machine, options).run();
+}
+
+SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, std::size_t cycles, std::size_t samples,
+                               const SettleOptions& options) {
+  const double period = std::isnan(settled.frequency) ? natural_period(machine) : 1 / settled.frequency;
+  SimulationOptions simulation{.duration = static_cast<double>(cycles) * period,
+                               .rate = static_cast<double>(samples) / period,
+                               .settle = settled.begin};
+  if (options.start == StartFrom::sliding) {
+    simulation.start = BlockStart{steady_sliding(machine).displacement, 1e-3 * machine.disc_velocity()};
+  }
+  return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, simulation);
+}
+
+}  // namespace tribofit
