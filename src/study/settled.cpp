@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
@@ -59,6 +60,21 @@ std::optional<double> open_slip(const SimulatedMotion& motion) {
   return std::isnan(begin) ? 0 : std::max(0.0, begin);
 }
 
+/// Slips that last longer end in no stick [natural periods].
+constexpr double kLongestSlip = 2.5;
+
+/// From turning point to turning point between two times [m].
+std::vector<double> swings_since(const SimulatedMotion& motion, double begin, double end = INFINITY) {
+  std::vector<double> sizes;
+  const TurningPoint* before = nullptr;
+  for (const TurningPoint& turn : motion.turning_points) {
+    if (turn.time < begin || turn.time > end) continue;
+    if (before != nullptr) sizes.push_back(std::abs(turn.displacement - before->displacement));
+    before = &turn;
+  }
+  return sizes;
+}
+
 bool alike(double a, double b, double tolerance) {
   return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
 }
@@ -108,7 +124,7 @@ Settled Settling::run() {
 
 bool Settling::judge(const SimulatedMotion& motion, double duration) {
   const std::optional<double> since = open_slip(motion);
-  if (since && duration - *since > 2.5 * period_) return judge_swings(motion, *since);
+  if (since && duration - *since > kLongestSlip * period_) return judge_swings(motion, *since);
   out_.sticks = true;
   return judge_cycles(cycles_of(motion));
 }
@@ -168,24 +184,16 @@ double Settling::fastest_of_vibration(const TurningPoint& from) const {
 }
 
 bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
-  std::vector<TurningPoint> turns;
-  std::copy_if(motion.turning_points.begin(), motion.turning_points.end(), std::back_inserter(turns),
-               [&](const TurningPoint& turn) { return turn.time >= since; });
-  if (turns.size() < 6) {
-    out_.seen = fmt::format("sliding without a stick, {} turning points in {:.3g} s", turns.size(), out_.simulated);
+  const std::vector<double> swings = swings_since(motion, since);
+  if (swings.size() < 5) {
+    out_.seen = fmt::format("sliding without a stick, {} swings in {:.3g} s", swings.size(), out_.simulated);
     const bool overdamped = steady_sliding(machine_).is_stable() && machine_.rig.damping_ratio() >= 1;
     if (overdamped) out_.regime = Regime::sliding;
     return overdamped;
   }
-  double first = 0;
-  for (std::size_t i = 1; i < turns.size(); ++i) {
-    first = std::max(first, std::abs(turns[i].displacement - turns[i - 1].displacement));
-  }
-  const auto swing = [&](std::size_t from_end) {
-    const TurningPoint* turn = &turns[turns.size() - 1 - from_end];
-    return std::abs(turn[0].displacement - turn[-1].displacement);
-  };
-  const double last = swing(0), change = last / swing(2) - 1;
+  const std::vector<TurningPoint>& turns = motion.turning_points;
+  const double first = *std::max_element(swings.begin(), swings.end());
+  const double last = swings.back(), change = last / swings[swings.size() - 3] - 1;
   out_.stick_time = 0;
   constexpr double kSmall = 0.05;
   if (change < 0 && last < kSmall * first && steady_sliding(machine_).is_stable()) {
@@ -202,7 +210,8 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   out_.peak_to_peak = last;
   out_.energy = 0.5 * machine_.rig.stiffness * last * last;
   out_.begin = end.is_maximum ? end.time : turns[turns.size() - 2].time;
-  if (std::abs(change) < options_.tolerance) {
+  constexpr double kStill = 1e-2;  // swings that grow from an unstable cycle change slowly at first
+  if (std::abs(change) < kStill * options_.tolerance) {
     out_.regime = Regime::vibration;
     out_.peak_speed = fastest_of_vibration(end);
     return true;
@@ -232,6 +241,38 @@ std::string_view to_string(Regime regime) {
 Settled settle(const Machine& machine, const SettleOptions& options) {
   steady_sliding(machine);  // refuses machines that cannot be
   return Settling(machine, options).run();
+}
+
+bool keeps_sticking(const Machine& machine) {
+  const double period = natural_period(machine), cycle = longest_cycle(machine);
+  constexpr double kCycles = 10, kMostPeriods = 2000, kStill = 1e-9;
+  // The first slip tells of most machines.
+  double duration = 0.5 * cycle + (kLongestSlip + 1) * period;
+  while (true) {
+    const SimulatedMotion motion =
+        simulate(machine.rig, machine.drive(), machine.model, machine.parameters, {.duration = duration, .rate = 0});
+    const std::optional<double> since = open_slip(motion);
+    const std::vector<double> swings = swings_since(motion, since.value_or(duration));
+    const std::size_t n = swings.size();
+    if (since && duration - *since > kLongestSlip * period && n >= 4) {
+      // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
+      if (swings[n - 1] < (1 + kStill) * swings[n - 3] || duration > kMostPeriods * period) return false;
+    } else if (duration >= kCycles * cycle) {
+      return true;
+    }
+    duration = std::max(kCycles * cycle, 4 * duration);
+  }
+}
+
+Swings swings_from(const Machine& machine, double velocity, double periods) {
+  SimulationOptions options{.duration = periods * natural_period(machine), .rate = 0};
+  options.start = BlockStart{steady_sliding(machine).displacement, velocity};
+  const SimulatedMotion motion = simulate(machine.rig, machine.drive(), machine.model, machine.parameters, options);
+  Swings out;
+  const double first_stick = motion.slips.empty() ? 0 : motion.slips.front().restick_time;
+  out.sticks = !std::isnan(first_stick);
+  out.sizes = swings_since(motion, 0, out.sticks ? first_stick : INFINITY);
+  return out;
 }
 
 SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, std::size_t cycles, std::size_t samples,

@@ -58,6 +58,19 @@ struct SettleOptions {
 /// Throws InputError for machines that cannot be. Cost: below 1 ms where it settles at once.
 Settled settle(const Machine& machine, const SettleOptions& options = {});
 
+/// Whether a machine that begins in stick still sticks after ten cycles. A slip of two and a half natural periods is
+/// none that ends: where a law without memory does not return to the speed of the disc in its first swing, it never
+/// does. Cost: a few of its cycles.
+bool keeps_sticking(const Machine& machine);
+
+/// Swings of the displacement [m] from turning point to turning point, over `periods` natural periods, of a block that
+/// passes its place in steady sliding at `velocity` [m/s]; up to the first stick, where there is one.
+struct Swings {
+  std::vector<double> sizes;
+  bool sticks = false;
+};
+Swings swings_from(const Machine& machine, double velocity, double periods);
+
 /// The machine as its settled motion begins anew: simulates `cycles` periods (of natural ones where nothing repeats)
 /// after settling, with `samples` in each.
 SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, std::size_t cycles, std::size_t samples,

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "tribofit/oscillator/machine.hpp"
+
+namespace tribofit {
+
+/// Speeds of the disc at which the motion of a machine changes its kind, as v_disc = omega r [m/s].
+struct CriticalSpeed {
+  /// Where steady sliding gains or loses its stability (see steady_sliding()), rising; none in the range: empty.
+  std::vector<double> linear;
+  /// Where stick vanishes on a slow way up, begun in stick-slip. NaN: nowhere in the range.
+  double stick_vanishes = std::numeric_limits<double>::quiet_NaN();
+  /// Where stick-slip comes back on a slow way down, begun in steady sliding. NaN: nowhere in the range. Below
+  /// stick_vanishes where the bifurcation is subcritical: between the two it depends on the past which motion is seen.
+  double stick_returns = std::numeric_limits<double>::quiet_NaN();
+  /// The range that was searched.
+  double lowest = 0, highest = 0;
+  /// Nothing sticks at the lowest speed, or something still does at the highest.
+  bool below_range = false, above_range = false;
+};
+
+struct CriticalSpeedOptions {
+  /// Searched speeds [m/s]; 0: from a hundredth of the machine's own speed to where sliding is stable and nothing
+  /// sticks, at most a thousand times its own.
+  double lowest = 0, highest = 0;
+};
+
+/// Both ways to the critical speed. Stability is scanned on a logarithmic grid and located by bisection to 1e-10;
+/// vanishing and return of stick to 1e-7, both taken to happen once in the range. The speed of the machine
+/// itself does not matter but for the default range. The way down is taken to end where sliding loses its stability, or
+/// below, where vibrations of all sizes grow until they stick. Cost: about 20 ms.
+/// Throws InputError for a machine that cannot be, or a range that is none.
+CriticalSpeed critical_speed(const Machine& machine, const CriticalSpeedOptions& options = {});
+
+}  // namespace tribofit

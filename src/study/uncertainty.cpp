@@ -1,0 +1,87 @@
+#include "tribofit/study/uncertainty.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace tribofit {
+
+namespace {
+
+/// A square root of a covariance, which need not have full rank.
+Eigen::MatrixXd root_of(const std::vector<double>& covariance, std::size_t count) {
+  const auto n = static_cast<Eigen::Index>(count);
+  if (covariance.empty()) return Eigen::MatrixXd::Zero(n, n);
+  if (covariance.size() != count * count) throw std::invalid_argument("draws_of: wrong size of a covariance");
+  const Eigen::MatrixXd full = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
+  // Parameters differ by powers of ten: scaled to a correlation first.
+  const Eigen::VectorXd scale =
+      full.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr([](double s) { return s > 0 ? s : 1; });
+  const Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * full * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (correlation + correlation.transpose()));
+  return scale.asDiagonal() * solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+bool can_be(const Machine& m) {
+  const bool decays = m.model.base_count() < 3 || m.parameters[2] >= 0;
+  return m.rig.mass > 0 && m.rig.stiffness > 0 && m.rig.damping >= 0 && m.parameters[0] > 0 && m.parameters[1] >= 0 &&
+         decays;
+}
+
+}  // namespace
+
+std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& covariance, std::size_t count,
+                              std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  boost::random::normal_distribution<double> normal;
+  const Eigen::MatrixXd friction = root_of(covariance.friction, machine.parameters.size());
+  const Eigen::MatrixXd rig = root_of(covariance.rig, 3);
+  const auto draw = [&](const Eigen::MatrixXd& root) {
+    Eigen::VectorXd z(root.cols());
+    for (double& x : z) x = normal(engine);
+    return Eigen::VectorXd(root * z);
+  };
+  std::vector<Machine> out;
+  constexpr std::size_t kMostTries = 100;  // for each
+  for (std::size_t tries = 0; out.size() < count && tries < kMostTries * count; ++tries) {
+    Machine drawn = machine;
+    const Eigen::VectorXd change = draw(friction), of_rig = draw(rig);
+    for (std::size_t k = 0; k < drawn.parameters.size(); ++k) {
+      drawn.parameters[k] += change[static_cast<Eigen::Index>(k)];
+      const Parameter& q = drawn.model.parameters()[k].parameter;
+      if (!drawn.model.parameters()[k].effect.empty()) {
+        drawn.parameters[k] = std::clamp(drawn.parameters[k], q.lower * q.si, q.upper * q.si);
+      }
+    }
+    drawn.rig.mass += of_rig[0];
+    drawn.rig.damping += of_rig[1];
+    drawn.rig.stiffness += of_rig[2];
+    if (can_be(drawn)) out.push_back(std::move(drawn));
+  }
+  return out;
+}
+
+Range range_of(std::vector<double> values) {
+  const std::size_t all = values.size();
+  std::erase_if(values, [](double x) { return std::isnan(x); });
+  constexpr double kMostMissing = 0.1;
+  const double missing = static_cast<double>(all - values.size());
+  if (values.empty() || missing > kMostMissing * static_cast<double>(all)) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    return {nan, nan};
+  }
+  std::sort(values.begin(), values.end());
+  const auto quantile = [&](double q) {
+    const double place = q * static_cast<double>(values.size() - 1);
+    const auto k = static_cast<std::size_t>(place);
+    const double part = place - static_cast<double>(k);
+    return k + 1 < values.size() ? (1 - part) * values[k] + part * values[k + 1] : values[k];
+  };
+  return {quantile(0.025), quantile(0.975)};
+}
+
+}  // namespace tribofit

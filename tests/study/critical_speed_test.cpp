@@ -1,0 +1,77 @@
+#include "tribofit/study/critical_speed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "machines.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/study/settled.hpp"
+#include "tribofit/study/uncertainty.hpp"
+
+namespace tribofit {
+namespace {
+
+using testing::published_machine;
+using testing::uradnicek_machine;
+
+TEST(CriticalSpeed, LinearOneOfTheExponentialLawHasAClosedForm) {
+  // c = N (mu_s - mu_k) alpha exp(-alpha v).
+  const Machine machine = published_machine();
+  const double drop = machine.parameters[0] - machine.parameters[1], decay = machine.parameters[2];
+  const double expected = std::log(machine.load * drop * decay / machine.rig.damping) / decay;
+  const CriticalSpeed critical = critical_speed(machine);
+  ASSERT_EQ(critical.linear.size(), 1U);
+  EXPECT_NEAR(critical.linear[0], expected, 1e-7 * expected);
+}
+
+TEST(CriticalSpeed, OfUradnicekAreThoseOfTheTwoRoots) {
+  // Loss of stability at 6.99 mm/s has two roots in c_v, 0.0615 and 0.277 s/mm.
+  for (const double decay : {61.5, 277.0}) {
+    const CriticalSpeed critical = critical_speed(uradnicek_machine(decay, 0.5e-3));
+    ASSERT_EQ(critical.linear.size(), 1U);
+    EXPECT_NEAR(critical.linear[0], 6.99e-3, 0.02e-3);
+  }
+}
+
+TEST(CriticalSpeed, StickVanishesWhereTheSlipFromBreakAwayJustReachesTheDisc) {
+  const Machine machine = uradnicek_machine(250, 0.5e-3);
+  const CriticalSpeed critical = critical_speed(machine);
+  const double found = critical.stick_vanishes;
+  EXPECT_TRUE(settle(uradnicek_machine(250, found * (1 - 1e-5))).sticks);
+  EXPECT_FALSE(settle(uradnicek_machine(250, found * (1 + 1e-5))).sticks);
+  // It does so far above the loss of stability: the bifurcation is subcritical.
+  EXPECT_GT(found, 1.2 * critical.linear.back());
+  // On the way down it cannot come back where sliding is stable.
+  EXPECT_LE(critical.stick_returns, critical.linear.back() * (1 + 1e-9));
+}
+
+TEST(CriticalSpeed, SaysWhereItLiesOutsideTheRange) {
+  const CriticalSpeed above = critical_speed(uradnicek_machine(250, 0.5e-3), {.lowest = 1e-4, .highest = 2e-4});
+  EXPECT_TRUE(above.above_range);
+  EXPECT_TRUE(std::isnan(above.stick_vanishes));
+  const CriticalSpeed below = critical_speed(uradnicek_machine(250, 0.5e-3), {.lowest = 0.1, .highest = 0.2});
+  EXPECT_TRUE(below.below_range);
+  EXPECT_THROW(critical_speed(published_machine(), {.lowest = 2, .highest = 1}), InputError);
+}
+
+TEST(Uncertainty, DrawsHaveTheCovarianceTheyAreDrawnFrom) {
+  const Machine machine = published_machine();
+  MachineCovariance covariance;
+  covariance.friction = {1e-6, 0.5e-6, 0, 0.5e-6, 1e-6, 0, 0, 0, 0.25};
+  covariance.rig = {1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e4};
+  const std::vector<Machine> draws = draws_of(machine, covariance, 4000, 3);
+  ASSERT_EQ(draws.size(), 4000U);
+  double ss = 0, sk = 0, kk = 0;
+  for (const Machine& m : draws) {
+    ss += std::pow(m.parameters[0] - machine.parameters[0], 2) / 4000;
+    sk += (m.parameters[0] - machine.parameters[0]) * (m.parameters[1] - machine.parameters[1]) / 4000;
+    kk += std::pow(m.rig.stiffness - machine.rig.stiffness, 2) / 4000;
+  }
+  EXPECT_NEAR(ss, 1e-6, 0.08e-6);
+  EXPECT_NEAR(sk, 0.5e-6, 0.06e-6);
+  EXPECT_NEAR(kk, 1e4, 0.08e4);
+}
+
+}  // namespace
+}  // namespace tribofit
