@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "console.hpp"
+#include "machine_options.hpp"
 #include "options.hpp"
 #include "simulated_drive.hpp"
 #include "tribofit/friction/model.hpp"
@@ -40,9 +41,7 @@ using Json = nlohmann::ordered_json;
 
 /// The command line as given; empty means: from the published test of the nearest radius.
 struct Request {
-  std::string radius = "15mm", speed, load, law = "exponential";
-  std::string mu_s, mu_k, alpha, beta, mass, stiffness, damping_ratio;
-  std::vector<std::string> effects, formulas;
+  MachineRequest machine;
   std::string noise_mu = "0", noise_v = "0mm/s", noise_colour = "0", scatter = "0", wander = "0";
   std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
   std::string velocity_gain = "1";
@@ -54,10 +53,8 @@ struct Request {
 
 /// What is simulated.
 struct Plan {
-  Rig rig;
+  Machine machine;
   Drive drive;
-  FrictionModel model{BaseLaw::exponential};
-  std::vector<double> parameters;
   Sensors sensors;
   SimulationOptions options;
   double speed = 0;           ///< [rad/s], the amplitude where the drive reverses
@@ -78,95 +75,10 @@ double given_or(const std::string& text, Quantity quantity, const char* option, 
   return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
 }
 
-/// An effect and its parameters in SI, in the order of its info().
-struct ChosenEffect {
-  Effect effect;
-  std::vector<double> values;
-};
-
-/// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
-/// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
-ChosenEffect read_effect(const std::string& text) {
-  auto colon = text.find(':');
-  const std::size_t first_end = std::min(text.find(',', colon), text.size());
-  if (colon != std::string::npos && text.find('=', colon) > first_end &&
-      !describe(effect_named(text.substr(0, colon))).forms.empty()) {
-    colon = first_end;
-  }
-  ChosenEffect chosen{effect_named(text.substr(0, colon)), {}};
-  const EffectInfo info = describe(chosen.effect);
-  std::vector<std::string> names;
-  for (const Parameter& parameter : info.parameters) {
-    names.push_back(parameter.name);
-    chosen.values.push_back(parameter.start * parameter.si);
-  }
-  std::size_t begin = colon == std::string::npos ? text.size() : colon + 1;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    begin = end + 1;
-    const auto equals = part.find('=');
-    if (equals == std::string::npos) {
-      throw CLI::ValidationError("'" + part + "' in --effect " + text + " is not name=value; write it as " +
-                                 info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
-    }
-    const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
-    if (found == names.end()) {
-      throw CLI::ValidationError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
-                                 "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
-    }
-    const auto k = static_cast<std::size_t>(found - names.begin());
-    const Parameter& parameter = info.parameters[k];
-    const std::optional<Unit> unit = find_unit(parameter.unit);
-    chosen.values[k] = parse_quantity(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
-                                      info.key + ":" + parameter.name, parameter.unit);
-  }
-  return chosen;
-}
-
-BaseLaw read_law(const std::string& name) {
-  if (const std::optional<BaseLaw> law = find_law(name)) return *law;
-  const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
-  throw CLI::ValidationError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
-}
-
-void plan_friction(const Request& request, const PublishedTest& test, BaseLaw law, Plan& plan) {
-  plan.parameters = {given_or(request.mu_s, Quantity::dimensionless, "--mu-s", "", test.friction.mu_s),
-                     given_or(request.mu_k, Quantity::dimensionless, "--mu-k", "", test.friction.mu_k)};
-  const bool exponential = law == BaseLaw::exponential, fractional = law == BaseLaw::fractional;
-  if ((!request.alpha.empty() && !exponential) || (!request.beta.empty() && !fractional)) {
-    throw InputError("the law '" + std::string(to_string(law)) + "' does not have the decay factor that was given",
-                     "--alpha is of the exponential law, --beta of the fractional one");
-  }
-  if (law != BaseLaw::coulomb) {
-    plan.parameters.push_back(given_or(exponential ? request.alpha : request.beta, Quantity::inverse_velocity,
-                                       exponential ? "--alpha" : "--beta", "s/mm", test.friction.decay));
-  }
-  std::vector<Effect> effects;
-  std::map<std::string, std::vector<double>> values;  // by key: the model puts effects into its own order
-  for (const std::string& text : request.effects) {
-    const ChosenEffect chosen = read_effect(text);
-    effects.push_back(chosen.effect);
-    values[describe(chosen.effect).key] = chosen.values;
-  }
-  for (const std::string& text : request.formulas) {
-    const Formula formula(text);
-    const EffectInfo info = formula.info();
-    effects.emplace_back(formula);
-    for (const Parameter& parameter : info.parameters) values[info.key].push_back(parameter.start * parameter.si);
-  }
-  refuse_clashes(effects);
-  plan.model = FrictionModel(law, std::move(effects));
-  for (const std::string& key : plan.model.effect_keys()) {
-    plan.parameters.insert(plan.parameters.end(), values[key].begin(), values[key].end());
-  }
-}
-
-void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
+void plan_drive(const Request& request, Plan& plan) {
   Drive& drive = plan.drive;
-  drive.radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
-  drive.mean_load = given_or(request.load, Quantity::force, "--load", "N", test.load);
-  plan.speed = given_or(request.speed, Quantity::angular_velocity, "--speed", "rpm", test.speed);
+  drive = plan.machine.drive();
+  plan.speed = plan.machine.speed;
   plan.run_up = given_or(request.run_up, Quantity::time, "--run-up", "s", 0);
   plan.reversing = given_or(request.reversing, Quantity::frequency, "--reversing", "Hz", 0);
   const bool stepped = !request.speed_steps.empty() || !request.pauses.empty();
@@ -176,7 +88,6 @@ void plan_drive(const Request& request, const PublishedTest& test, Plan& plan) {
   if (!request.run_up.empty() && !(plan.run_up > 0)) {
     throw InputError("--run-up is not positive", "give it as e.g. 1s, or leave it out");
   }
-  drive.speed = constant_speed(plan.speed);
   if (plan.run_up > 0) drive.speed = run_up_speed(plan.speed, plan.run_up);
   if (!request.reversing.empty()) drive.speed = reversing_speed(plan.speed, plan.reversing);
   if (stepped) {
@@ -205,16 +116,10 @@ Sensors plan_sensors(const Request& request) {
 
 Plan make_plan(const Request& request) {
   Plan plan;
-  const BaseLaw law = read_law(request.law);
-  const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
-  const PublishedTest test = published_test(radius, law);
-  plan.preset_radius = test.radius;
-  plan_friction(request, test, law, plan);
-  plan_drive(request, test, plan);
-  plan.rig = rig_with_damping_ratio(
-      given_or(request.mass, Quantity::mass, "--mass", "kg", test.rig.mass),
-      given_or(request.stiffness, Quantity::stiffness, "--stiffness", "N/mm", test.rig.stiffness),
-      given_or(request.damping_ratio, Quantity::dimensionless, "--damping-ratio", "", test.rig.damping_ratio()));
+  const RequestedMachine requested = machine_from(request.machine);
+  plan.machine = requested.machine;
+  plan.preset_radius = requested.preset_radius;
+  plan_drive(request, plan);
   plan.sensors = plan_sensors(request);
   plan.options = {.duration = parse_quantity(request.duration, Quantity::time, "--duration", "s"),
                   .rate = parse_quantity(request.rate, Quantity::frequency, "--rate", "Hz"),
@@ -222,8 +127,9 @@ Plan make_plan(const Request& request) {
                   .seed = request.seed};
   if (!(plan.options.rate > 0)) throw InputError("--rate is not positive", "give it as e.g. 20kHz");
   const bool starts_at_speed = plan.run_up == 0 && plan.reversing == 0 && plan.drive.speed.speed(0) != 0;
-  if (starts_at_speed && plan.rig.mass > 0 && plan.rig.stiffness > 0 && plan.parameters[0] > 0) {
-    plan.options.settle = settling_time(plan.rig, plan.drive, plan.parameters);
+  if (starts_at_speed && plan.machine.rig.mass > 0 && plan.machine.rig.stiffness > 0 &&
+      plan.machine.parameters[0] > 0) {
+    plan.options.settle = settling_time(plan.machine.rig, plan.drive, plan.machine.parameters);
   }
   return plan;
 }
@@ -293,11 +199,11 @@ void write_trace(WholeFile& file, const Trace& trace, const Plan& plan) {
 
 Json parameters_json(const Plan& plan) {
   Json list = Json::array();
-  const auto slots = plan.model.parameters();
+  const auto slots = plan.machine.model.parameters();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Parameter& parameter = slots[i].parameter;
     list.push_back({{"name", parameter.name},
-                    {"value", plan.parameters[i] / parameter.si},
+                    {"value", plan.machine.parameters[i] / parameter.si},
                     {"unit", parameter.unit},
                     {"effect", slots[i].effect.empty() ? Json() : Json(slots[i].effect)}});
   }
@@ -311,7 +217,7 @@ Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
                     {"restick_s", std::isnan(slip.restick_time) ? Json() : Json(slip.restick_time)},
                     {"stick_s", slip.stick_time},
                     {"direction", slip.direction},
-                    {"mu_s", plan.parameters[0] + slip.mu_s_offset},
+                    {"mu_s", plan.machine.parameters[0] + slip.mu_s_offset},
                     {"break_away_friction", slip.break_away_friction}});
   }
   return list;
@@ -339,16 +245,16 @@ Json truth(const Request& request, const Plan& plan, const SimulatedMotion& moti
             {"temperature", request.temperature},
             {"mean_temperature_degC", plan.drive.mean_temperature},
             {"settled_before_s", plan.options.settle}}},
-          {"law", to_string(plan.model.law())},
-          {"effects", plan.model.effect_keys()},
-          {"effect_names", plan.model.effect_names()},
-          {"formulas", request.formulas},
+          {"law", to_string(plan.machine.model.law())},
+          {"effects", plan.machine.model.effect_keys()},
+          {"effect_names", plan.machine.model.effect_names()},
+          {"formulas", request.machine.formulas},
           {"parameters", parameters_json(plan)},
           {"rig",
-           {{"mass_kg", plan.rig.mass},
-            {"stiffness_N_per_mm", 1e-3 * plan.rig.stiffness},
-            {"damping_ratio", plan.rig.damping_ratio()},
-            {"damping_N_s_per_mm", 1e-3 * plan.rig.damping},
+           {{"mass_kg", plan.machine.rig.mass},
+            {"stiffness_N_per_mm", 1e-3 * plan.machine.rig.stiffness},
+            {"damping_ratio", plan.machine.rig.damping_ratio()},
+            {"damping_N_s_per_mm", 1e-3 * plan.machine.rig.damping},
             {"defaults_from_radius_mm", 1e3 * plan.preset_radius}}},
           {"scatter", {{"deviation", plan.options.scatter.deviation}, {"wander", plan.options.scatter.wander}}},
           {"sensors",
@@ -386,7 +292,7 @@ void run(const Request& request) {
   const Plan plan = make_plan(request);
   WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
   const auto [motion, recording, floor] =
-      hide(plan.model, plan.parameters, plan.rig, plan.drive, plan.options, plan.sensors);
+      hide(plan.machine.model, plan.machine.parameters, plan.machine.rig, plan.drive, plan.options, plan.sensors);
   write_trace(trace_file, recording.trace, plan);
   truth_file.write(truth(request, plan, motion, floor).dump(1) + "\n");
   trace_file.finish();
@@ -395,14 +301,14 @@ void run(const Request& request) {
   truth_file.commit();
   if (request.quiet) return;
   std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
-                                 motion.break_away_count(), plan.model.name());
+                                 motion.break_away_count(), plan.machine.model.name());
   text += fmt::format("{}: the truth; over slip the true law leaves {:.6f} (RMSE)\n", truth_path, floor);
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
     text += fmt::format("what was not given is that of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
   }
   std::string known = fmt::format("--radius {:g}mm", 1e3 * plan.drive.radius);
   if (plan.drive.speed.constant) known += fmt::format(" --speed {:g}rpm", plan.speed / kRpm);
-  if (plan.model.needs().force) known += fmt::format(" --load {:g}N", plan.drive.mean_load);
+  if (plan.machine.model.needs().force) known += fmt::format(" --load {:g}N", plan.drive.mean_load);
   print(text + fmt::format("next: identify {} {}\n", known, request.out));
 }
 
@@ -415,13 +321,8 @@ void add_options(CLI::App& verb, Request& r) {
   verb.add_option("--rate", r.rate, "samples per second")->capture_default_str();
   verb.add_option("--seed", r.seed, "of noise and scatter")->capture_default_str();
   verb.add_flag("--quiet", r.quiet, "print nothing");
-  const char* rig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
-  group(rig, "--radius", r.radius, "friction radius")->capture_default_str();
-  group(rig, "--speed", r.speed, "disc speed, e.g. 4rpm");
-  group(rig, "--load", r.load, "normal force, e.g. 50N");
-  group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
-  group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
-  group(rig, "--damping-ratio", r.damping_ratio, "of the block on its spring, e.g. 0.02");
+  add_machine_options(verb, r.machine);
+  const char* rig = "Motion of the disc, load and temperature";
   group(rig, "--run-up", r.run_up, "start from standstill and reach the speed in this time; else the start is settled");
   group(rig, "--reversing", r.reversing,
         "the disc goes forth and back as a sine of this frequency; --speed is its peak");
@@ -433,20 +334,7 @@ void add_options(CLI::App& verb, Request& r) {
         "a sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
   group(rig, "--temperature", r.temperature,
         "temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
-  const char* law = "Friction (default: the published values at the nearest radius)";
-  group(law, "--law", r.law, "exponential, fractional or coulomb")->capture_default_str();
-  group(law, "--mu-s", r.mu_s, "static friction");
-  group(law, "--mu-k", r.mu_k, "kinetic friction");
-  group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");
-  group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
-  group(law, "--effect", r.effects,
-        "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
-      ->take_all()
-      ->expected(1);
-  group(law, "--formula", r.formulas,
-        "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
-      ->take_all()
-      ->expected(1);
+  const char* law = "Scatter of break-away";
   group(law, "--scatter", r.scatter, "standard deviation of mu_s from cycle to cycle")->capture_default_str();
   group(law, "--wander", r.wander, "correlation of the scatter between neighbouring cycles")->capture_default_str();
   const char* sensors = "Sensors";

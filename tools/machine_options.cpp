@@ -1,0 +1,196 @@
+#include "machine_options.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "options.hpp"
+#include "tribofit/friction/formula.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/units.hpp"
+#include "tribofit/oscillator/presets.hpp"
+
+namespace tribofit {
+namespace {
+
+double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
+                double otherwise) {
+  return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
+}
+
+/// An effect and its parameters in SI, in the order of its info().
+struct ChosenEffect {
+  Effect effect;
+  std::vector<double> values;
+};
+
+/// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
+/// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
+ChosenEffect read_effect(const std::string& text) {
+  auto colon = text.find(':');
+  const std::size_t first_end = std::min(text.find(',', colon), text.size());
+  if (colon != std::string::npos && text.find('=', colon) > first_end &&
+      !describe(effect_named(text.substr(0, colon))).forms.empty()) {
+    colon = first_end;
+  }
+  ChosenEffect chosen{effect_named(text.substr(0, colon)), {}};
+  const EffectInfo info = describe(chosen.effect);
+  std::vector<std::string> names;
+  for (const Parameter& parameter : info.parameters) {
+    names.push_back(parameter.name);
+    chosen.values.push_back(parameter.start * parameter.si);
+  }
+  std::size_t begin = colon == std::string::npos ? text.size() : colon + 1;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    begin = end + 1;
+    const auto equals = part.find('=');
+    if (equals == std::string::npos) {
+      throw CLI::ValidationError("'" + part + "' in --effect " + text + " is not name=value; write it as " +
+                                 info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
+    }
+    const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
+    if (found == names.end()) {
+      throw CLI::ValidationError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
+                                 "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
+    }
+    const auto k = static_cast<std::size_t>(found - names.begin());
+    const Parameter& parameter = info.parameters[k];
+    const std::optional<Unit> unit = find_unit(parameter.unit);
+    chosen.values[k] = parse_quantity(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
+                                      info.key + ":" + parameter.name, parameter.unit);
+  }
+  return chosen;
+}
+
+BaseLaw read_law(const std::string& name) {
+  if (const std::optional<BaseLaw> law = find_law(name)) return *law;
+  const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
+  throw CLI::ValidationError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
+}
+
+/// Effects with their values by key: the model puts them into its own order.
+struct ChosenEffects {
+  std::vector<Effect> effects;
+  std::map<std::string, std::vector<double>> values;
+};
+
+ChosenEffects chosen_effects(const MachineRequest& request) {
+  ChosenEffects out;
+  for (const std::string& text : request.effects) {
+    const ChosenEffect chosen = read_effect(text);
+    out.effects.push_back(chosen.effect);
+    out.values[describe(chosen.effect).key] = chosen.values;
+  }
+  for (const std::string& text : request.formulas) {
+    const Formula formula(text);
+    const EffectInfo info = formula.info();
+    out.effects.emplace_back(formula);
+    for (const Parameter& parameter : info.parameters) out.values[info.key].push_back(parameter.start * parameter.si);
+  }
+  refuse_clashes(out.effects);
+  return out;
+}
+
+void set_levels(const MachineRequest& request, std::vector<double>& p) {
+  p[0] = given_or(request.mu_s, Quantity::dimensionless, "--mu-s", "", p[0]);
+  p[1] = given_or(request.mu_k, Quantity::dimensionless, "--mu-k", "", p[1]);
+}
+
+void set_decay(const MachineRequest& request, BaseLaw law, std::vector<double>& p) {
+  const bool exponential = law == BaseLaw::exponential, fractional = law == BaseLaw::fractional;
+  if ((!request.alpha.empty() && !exponential) || (!request.beta.empty() && !fractional)) {
+    throw InputError("the law '" + std::string(to_string(law)) + "' does not have the decay factor that was given",
+                     "--alpha is of the exponential law, --beta of the fractional one");
+  }
+  if (law == BaseLaw::coulomb) return;
+  p[2] = given_or(exponential ? request.alpha : request.beta, Quantity::inverse_velocity,
+                  exponential ? "--alpha" : "--beta", "s/mm", p[2]);
+}
+
+void set_rig(const MachineRequest& request, Rig& rig) {
+  if (!request.damping.empty() && !request.damping_ratio.empty()) {
+    throw CLI::ValidationError("--damping and --damping-ratio exclude each other; give one of them");
+  }
+  const double ratio = rig.damping_ratio();
+  const bool other_block = !request.mass.empty() || !request.stiffness.empty();
+  rig.mass = given_or(request.mass, Quantity::mass, "--mass", "kg", rig.mass);
+  rig.stiffness = given_or(request.stiffness, Quantity::stiffness, "--stiffness", "N/mm", rig.stiffness);
+  if (!request.damping.empty()) {
+    rig.damping = parse_quantity(request.damping, Quantity::damping, "--damping", "N s/mm");
+  } else if (other_block || !request.damping_ratio.empty()) {
+    rig =
+        rig_with_damping_ratio(rig.mass, rig.stiffness,
+                               given_or(request.damping_ratio, Quantity::dimensionless, "--damping-ratio", "", ratio));
+  }
+}
+
+}  // namespace
+}  // namespace tribofit
+
+using namespace tribofit;
+
+double disc_speed_from(const std::string& text, double radius, const std::string& option) {
+  const std::size_t end = text.find_last_of("0123456789.");
+  const std::string unit = end == std::string::npos ? "" : text.substr(end + 1);
+  const std::optional<Unit> known = find_unit(unit);
+  if (!unit.empty() && known && known->quantity == Quantity::velocity) {
+    return parse_quantity(text, Quantity::velocity, option) / radius;
+  }
+  return parse_quantity(text, Quantity::angular_velocity, option, "rpm");
+}
+
+RequestedMachine machine_from(const MachineRequest& request) {
+  const BaseLaw law = read_law(request.law);
+  const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
+  const PublishedTest test = published_test(radius, law);
+  RequestedMachine out;
+  out.preset_radius = test.radius;
+  Machine& machine = out.machine;
+  machine.radius = radius;
+  machine.load = given_or(request.load, Quantity::force, "--load", "N", test.load);
+  machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, radius, "--speed");
+  machine.rig = test.rig;
+  set_rig(request, machine.rig);
+  const ChosenEffects chosen = chosen_effects(request);
+  machine.model = FrictionModel(law, chosen.effects);
+  machine.parameters = {test.friction.mu_s, test.friction.mu_k};
+  if (law != BaseLaw::coulomb) machine.parameters.push_back(test.friction.decay);
+  set_levels(request, machine.parameters);
+  set_decay(request, law, machine.parameters);
+  for (const std::string& key : machine.model.effect_keys()) {
+    const std::vector<double>& values = chosen.values.at(key);
+    machine.parameters.insert(machine.parameters.end(), values.begin(), values.end());
+  }
+  return out;
+}
+
+void add_machine_options(CLI::App& verb, MachineRequest& r) {
+  const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
+    return verb.add_option(flag, value, help)->group(name);
+  };
+  const char* rig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
+  group(rig, "--radius", r.radius, "friction radius")->capture_default_str();
+  group(rig, "--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
+  group(rig, "--load", r.load, "normal force, e.g. 50N");
+  group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
+  group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
+  group(rig, "--damping", r.damping, "of the block on its spring, e.g. 4.7Ns/m");
+  group(rig, "--damping-ratio", r.damping_ratio, "the same as c/(2 sqrt(k m)), e.g. 0.02");
+  const char* law = "Friction (default: the published values at the nearest radius)";
+  group(law, "--law", r.law, "exponential, fractional or coulomb")->capture_default_str();
+  group(law, "--mu-s", r.mu_s, "static friction");
+  group(law, "--mu-k", r.mu_k, "kinetic friction");
+  group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");
+  group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
+  group(law, "--effect", r.effects,
+        "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
+      ->take_all()
+      ->expected(1);
+  group(law, "--formula", r.formulas,
+        "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
+      ->take_all()
+      ->expected(1);
+}

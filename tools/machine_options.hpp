@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tribofit/oscillator/machine.hpp"
+#include "verbs.hpp"
+
+/// A machine as typed; empty means: from the published test of the nearest radius.
+struct MachineRequest {
+  std::string radius = "15mm", speed, load, law = "exponential";
+  std::string mu_s, mu_k, alpha, beta, mass, stiffness, damping, damping_ratio;
+  std::vector<std::string> effects, formulas;
+};
+
+/// Options of the rig and of its friction.
+void add_machine_options(CLI::App& verb, MachineRequest& request);
+
+/// The machine in SI, and the radius [m] of the published test that what was not typed comes from.
+struct RequestedMachine {
+  tribofit::Machine machine;
+  double preset_radius = 0;
+};
+/// Throws tribofit::InputError, or CLI::ValidationError for names that are none.
+RequestedMachine machine_from(const MachineRequest& request);
+
+/// A speed of the disc [rad/s] from a rotational speed or, at the friction radius [m], from omega r ("4rpm",
+/// "0.5mm/s").
+double disc_speed_from(const std::string& text, double radius, const std::string& option);
