@@ -102,10 +102,7 @@ class Settling {
 
 SimulationOptions Settling::simulation(double duration) const {
   SimulationOptions simulation{.duration = duration, .rate = 0};
-  if (options_.start == StartFrom::sliding) {
-    constexpr double kPush = 1e-3;
-    simulation.start = BlockStart{steady_sliding(machine_).displacement, kPush * machine_.disc_velocity()};
-  }
+  if (options_.start == StartFrom::sliding) simulation.start = start_in_sliding(machine_);
   return simulation;
 }
 
@@ -238,6 +235,11 @@ std::string_view to_string(Regime regime) {
   return "not-settled";
 }
 
+BlockStart start_in_sliding(const Machine& machine) {
+  constexpr double kPush = 1e-3;
+  return {steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
+}
+
 Settled settle(const Machine& machine, const SettleOptions& options) {
   steady_sliding(machine);  // refuses machines that cannot be
   return Settling(machine, options).run();
@@ -281,9 +283,7 @@ SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, s
   SimulationOptions simulation{.duration = static_cast<double>(cycles) * period,
                                .rate = static_cast<double>(samples) / period,
                                .settle = settled.begin};
-  if (options.start == StartFrom::sliding) {
-    simulation.start = BlockStart{steady_sliding(machine).displacement, 1e-3 * machine.disc_velocity()};
-  }
+  if (options.start == StartFrom::sliding) simulation.start = start_in_sliding(machine);
   return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, simulation);
 }
 

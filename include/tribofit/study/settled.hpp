@@ -58,6 +58,9 @@ struct SettleOptions {
 /// Throws InputError for machines that cannot be. Cost: below 1 ms where it settles at once.
 Settled settle(const Machine& machine, const SettleOptions& options = {});
 
+/// The block in steady sliding, with a velocity of a thousandth of the disc's beside it.
+BlockStart start_in_sliding(const Machine& machine);
+
 /// Whether a machine that begins in stick still sticks after ten cycles. A slip of two and a half natural periods is
 /// none that ends: where a law without memory does not return to the speed of the disc in its first swing, it never
 /// does. Cost: a few of its cycles.

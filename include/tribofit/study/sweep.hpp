@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/study/critical_speed.hpp"
+#include "tribofit/study/settled.hpp"
+#include "tribofit/study/uncertainty.hpp"
+#include "tribofit/study/vary.hpp"
+
+namespace tribofit {
+
+/// Settled motion of a machine over values [SI] of one of its variables. Cost: below 1 ms a value where motion settles
+/// at once; on `threads` threads (0: as many as there are), which do not change the result.
+std::vector<Settled> sweep(const Machine& machine, std::string_view variable, std::span<const double> values,
+                           const SettleOptions& options = {}, int threads = 0);
+
+/// `count` values from low to high, both included, equally far apart or (logarithmic) in equal ratios.
+std::vector<double> spread(double low, double high, std::size_t count, bool logarithmic = false);
+
+/// A number with the range that the uncertainty of the machine leaves it; NaN: none is known.
+struct Uncertain {
+  double value = 0;
+  Range range;
+};
+
+/// How a machine moves over the speed of its disc.
+struct SpeedStudy {
+  std::vector<double> velocity;     ///< omega r [m/s]
+  std::vector<Settled> up, down;    ///< begun in stick, and in steady sliding
+  std::vector<double> growth_rate;  ///< of a small vibration about steady sliding [1/s]
+  CriticalSpeed critical;
+  Range linear_range, vanishes_range,
+      returns_range;              ///< 95 %, of the last linear one, and of stick_vanishes and _returns
+  Settled own;                    ///< at the machine's own speed
+  std::vector<Range> own_ranges;  ///< of its measures, in the order of measures()
+};
+
+struct SpeedStudyOptions {
+  std::vector<double> velocity;  ///< omega r [m/s]; empty: 40 from a tenth of the machine's own to beyond the critical
+  MachineCovariance covariance = {};
+  std::size_t draws = 200;
+  std::uint64_t seed = 1;
+  SettleOptions settle = {};
+  int threads = 0;
+};
+
+/// Measures over speed, critical speed both ways, and what the uncertainty of the machine makes of them (draws of all
+/// its numbers, each studied alike). Throws as settle() and critical_speed() do.
+SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options = {});
+
+}  // namespace tribofit
