@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -145,6 +146,11 @@ void FrictionDynamics::steady_states(const Instant<double>& at, std::span<double
 
 double FrictionDynamics::run(const Instant<double>& now, std::span<const double> state, std::span<double> rate,
                              bool want_rates) const {
+  if (model_.effects().empty()) {  // simulations spend most of their time here
+    const double shape = stribeck_shape(model_.law(), law_.decay * std::abs(now.velocity));
+    const double mu = law_.mu_k + (law_.mu_s - law_.mu_k) * shape;
+    return (now.velocity != 0 ? now.velocity : now.direction) < 0 ? -mu : mu;
+  }
   Instant<double> at = now;
   if (at.velocity != 0) at.direction = at.velocity < 0 ? -1 : 1;
   double speed = std::abs(at.velocity);

@@ -30,7 +30,7 @@ Instant<double> SlipFlow::instant(double speed, double block_acceleration, doubl
           .mean_load = setup_.drive.mean_load,
           .temperature = setup_.temperature(t),
           .mean_temperature = setup_.drive.mean_temperature,
-          .disc_speed = setup_.drive.speed.speed(t)};
+          .disc_speed = setup_.disc_speed(t)};
 }
 
 double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,

@@ -22,6 +22,7 @@ struct Setup {
   Setup(const Rig& the_rig, Drive the_drive, const FrictionModel& model)
       : rig(the_rig),
         drive(std::move(the_drive)),
+        constant_speed(drive.speed.constant ? drive.speed.speed(0) : 0),
         natural_frequency(rig.natural_frequency()),
         needs_angle(model.needs().angle),
         needs_distance(model.needs().distance),
@@ -29,11 +30,15 @@ struct Setup {
 
   Rig rig;
   Drive drive;
+  double constant_speed;     ///< of the disc, where it is constant [rad/s]
   double natural_frequency;  ///< [rad/s]
   bool needs_angle, needs_distance, needs_acceleration;
 
-  double disc_velocity(double t) const { return drive.radius * drive.speed.speed(t); }
-  double disc_acceleration(double t) const { return drive.radius * drive.speed.acceleration(t); }
+  double disc_speed(double t) const { return drive.speed.constant ? constant_speed : drive.speed.speed(t); }
+  double disc_velocity(double t) const { return drive.radius * disc_speed(t); }
+  double disc_acceleration(double t) const {
+    return drive.speed.constant ? 0 : drive.radius * drive.speed.acceleration(t);
+  }
   /// Way of the disc under the block since t = 0 [m].
   double disc_travel(double t) const { return drive.radius * drive.speed.angle(t); }
   double load(double t) const { return drive.load ? drive.load(t) : drive.mean_load; }
