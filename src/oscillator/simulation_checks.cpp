@@ -40,12 +40,16 @@ void check_friction(const FrictionModel& model, std::span<const double> p) {
   }
 }
 
+bool positive(double x) {
+  return std::isfinite(x) && x > 0;
+}
+bool not_negative(double x) {
+  return std::isfinite(x) && x >= 0;
+}
+
 }  // namespace
 
-void check_simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
-                      const SimulationOptions& options) {
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  const auto not_negative = [](double x) { return std::isfinite(x) && x >= 0; };
+void check_rig_and_drive(const Rig& rig, const Drive& drive) {
   require(positive(rig.mass), "the mass of the block is not positive", "give the moving mass in kg");
   require(positive(rig.stiffness), "the stiffness is not positive", "give the spring's stiffness, e.g. 16.2 N/mm");
   require(not_negative(rig.damping), "the damping is negative", "give zero or more");
@@ -53,14 +57,23 @@ void check_simulation(const Rig& rig, const Drive& drive, const FrictionModel& m
   require(positive(drive.mean_load), "the load is not positive", "give the normal force, e.g. 50N");
   require(drive.speed.speed && drive.speed.acceleration && drive.speed.angle, "the drive has no speed",
           "use constant_speed() or another profile");
-  require(positive(options.duration), "the duration is not positive", "give it as e.g. 20s");
-  require(not_negative(options.rate), "the sampling rate is negative", "give it as e.g. 20kHz");
-  require(options.rate == 0 || options.duration * options.rate >= 2, "the record holds fewer than two samples",
+}
+
+void check_record(double duration, double rate, double settle, const std::optional<BlockStart>& start) {
+  require(positive(duration), "the duration is not positive", "give it as e.g. 20s");
+  require(not_negative(rate), "the sampling rate is negative", "give it as e.g. 20kHz");
+  require(rate == 0 || duration * rate >= 2, "the record holds fewer than two samples",
           "give a longer duration or a higher rate");
-  require(!options.start || (std::isfinite(options.start->displacement) && std::isfinite(options.start->velocity)),
+  require(not_negative(settle), "the settling time is negative", "give zero or more seconds");
+  require(!start || (std::isfinite(start->displacement) && std::isfinite(start->velocity)),
           "the start of the block is not finite", "give a displacement and a velocity");
+}
+
+void check_simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
+                      const SimulationOptions& options) {
+  check_rig_and_drive(rig, drive);
+  check_record(options.duration, options.rate, options.settle, options.start);
   check_friction(model, p);
-  require(not_negative(options.settle), "the settling time is negative", "give zero or more seconds");
   require(positive(options.tolerance), "the tolerance is not positive", "1e-10 is usual");
   require(not_negative(options.max_step), "the longest step is negative", "0 leaves it to the simulation");
   require(not_negative(options.scatter.deviation), "the break-away scatter is negative", "give zero or more");

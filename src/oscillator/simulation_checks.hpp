@@ -1,10 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "tribofit/oscillator/simulate.hpp"
 
 namespace tribofit {
+
+/// Each throws InputError for what cannot be, and says what to do.
+void check_rig_and_drive(const Rig& rig, const Drive& drive);
+void check_record(double duration, double rate, double settle, const std::optional<BlockStart>& start);
 
 /// Throws InputError for a rig, drive, model or option that cannot be, and says what to do.
 void check_simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
