@@ -39,13 +39,6 @@ int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_V
   return 0;
 }
 
-int events(realtype t, N_Vector y, realtype* value, void* user) {
-  std::array<double, Cvode::kEvents> values;
-  static_cast<const Cvode::Problem*>(user)->events(t, state_of(y), values);
-  std::copy(values.begin(), values.end(), value);
-  return 0;
-}
-
 /// CVODE would print; its words are kept instead.
 void keep_message(int, const char*, const char*, char* message, void* into) {
   *static_cast<std::string*>(into) = message;
@@ -91,8 +84,7 @@ Cvode::Cvode(Problem problem, double t, const State& y, const Options& options)
          CVodeSStolerances(h.memory, options.relative_tolerance, options.absolute_tolerance) == CV_SUCCESS &&
          CVodeSetUserData(h.memory, &problem_) == CV_SUCCESS &&
          CVodeSetLinearSolver(h.memory, h.solver, h.matrix) == CV_SUCCESS &&
-         CVodeSetJacFn(h.memory, jacobian) == CV_SUCCESS && CVodeSetMaxStep(h.memory, options.max_step) == CV_SUCCESS &&
-         CVodeRootInit(h.memory, kEvents, events) == CV_SUCCESS && CVodeSetNoInactiveRootWarn(h.memory) == CV_SUCCESS;
+         CVodeSetJacFn(h.memory, jacobian) == CV_SUCCESS && CVodeSetMaxStep(h.memory, options.max_step) == CV_SUCCESS;
   if (!good) throw std::runtime_error("CVODE cannot be set up" + (failure_.empty() ? "" : ": " + failure_));
 }
 
@@ -100,15 +92,12 @@ Cvode::~Cvode() = default;
 
 bool Cvode::step(double until) {
   Handles& h = *handles_;
-  crossed_.fill(0);
   realtype reached = time_;
   if (CVodeSetStopTime(h.memory, until) < 0) return false;
   const int status = CVode(h.memory, until, h.y, &reached, CV_ONE_STEP);
   time_ = reached;
   state_ = state_of(h.y);
-  if (status < 0) return false;
-  if (status == CV_ROOT_RETURN) CVodeGetRootInfo(h.memory, crossed_.data());
-  return true;
+  return status >= 0;
 }
 
 Cvode::State Cvode::at(double t) const {

@@ -8,17 +8,16 @@
 
 namespace tribofit {
 
-/// A stiff initial value problem of two unknowns with four events, solved by SUNDIALS CVODE (BDF, dense Newton with the
-/// Jacobian given). Step by step: every step ends where the integrator ends it, or at an event within it.
+/// A stiff initial value problem of two unknowns, solved step by step by SUNDIALS CVODE (BDF, dense Newton with the
+/// Jacobian given).
 class Cvode {
  public:
-  static constexpr std::size_t kSize = 2, kEvents = 4;
+  static constexpr std::size_t kSize = 2;
   using State = std::array<double, kSize>;
   using Jacobian = std::array<State, kSize>;  ///< [row][column]
   struct Problem {
     std::function<void(double t, const State& y, State& dy)> rates;
     std::function<void(double t, const State& y, Jacobian& jacobian)> jacobian;
-    std::function<void(double t, const State& y, std::array<double, kEvents>& value)> events;  ///< where each is zero
   };
   struct Options {
     double relative_tolerance, absolute_tolerance, max_step;
@@ -36,8 +35,6 @@ class Cvode {
   const State& state() const { return state_; }
   /// State within the step just made.
   State at(double t) const;
-  /// Which events the last step ended at: +1 rising, -1 falling, 0 not.
-  const std::array<int, kEvents>& crossed() const { return crossed_; }
   /// Why step() was false, in the words of CVODE.
   const std::string& failure() const { return failure_; }
 
@@ -47,7 +44,6 @@ class Cvode {
   Problem problem_;
   double time_;
   State state_;
-  std::array<int, kEvents> crossed_{};
   std::string failure_;
   std::unique_ptr<Handles> handles_;
 };

@@ -1,7 +1,6 @@
 #include "tribofit/oscillator/simulate.hpp"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "find_zero.hpp"
 #include "normal_stream.hpp"
 #include "simulation_checks.hpp"
 #include "slip_flow.hpp"
@@ -20,17 +20,6 @@ namespace tribofit {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Zero of f between low and high, where f changes sign, to the last bits.
-template <class F>
-double find_zero(F&& f, double low, double high, double at_low, double at_high) {
-  if (at_low == 0) return low;
-  if (at_high == 0) return high;
-  std::uintmax_t iterations = 100;
-  const auto bracket = boost::math::tools::toms748_solve(f, low, high, at_low, at_high,
-                                                         boost::math::tools::eps_tolerance<double>(50), iterations);
-  return bracket.second;
-}
 
 class Simulation {
  public:

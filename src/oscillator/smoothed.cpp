@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "cvode.hpp"
+#include "find_zero.hpp"
 #include "simulation_checks.hpp"
 #include "slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -47,8 +49,8 @@ class SmoothedSimulation {
   Cvode::Problem problem();
   State initial_state() const;
   void advance(double until);
-  void handle_events();
-  void begin_slip(double t, int direction, double friction);
+  void find_events(double begin, const State& before);
+  void begin_slip(double t, int direction);
   void end_slip(double t);
   void sample(double until);
   void write_sample(double t, const State& y);
@@ -92,7 +94,7 @@ SmoothedSimulation::SmoothedSimulation(const Rig& rig, const Drive& drive, const
                    .max_step = 2 * std::numbers::pi / rig.natural_frequency() / 8}) {
   const double begin = -options.settle;
   const double gap = relative_velocity(begin, integrator_.state());
-  if (std::abs(gap) > threshold(begin)) begin_slip(kNaN, gap < 0 ? -1 : 1, 0);
+  if (std::abs(gap) > threshold(begin)) begin_slip(kNaN, gap < 0 ? -1 : 1);
   stick_begin_ = begin;
   motion_.rate = options.rate;
   motion_.settled = options.settle > 0;
@@ -106,7 +108,6 @@ SmoothedSimulation::State SmoothedSimulation::initial_state() const {
   return {setup_.natural_frequency * options_.start.displacement, options_.start.velocity};
 }
 
-/// Events: |v_r| at the threshold on either side, the block at rest (it turns round), v_r at its extreme in slip.
 Cvode::Problem SmoothedSimulation::problem() {
   return {.rates =
               [this](double t, const State& y, State& dy) {
@@ -117,11 +118,6 @@ Cvode::Problem SmoothedSimulation::problem() {
                 const double slope = setup_.load(t) * law_.slope(relative_velocity(t, y));
                 jacobian = {{{0, setup_.natural_frequency},
                              {-setup_.natural_frequency, -(slope + setup_.rig.damping) / setup_.rig.mass}}};
-              },
-          .events =
-              [this](double t, const State& y, std::array<double, Cvode::kEvents>& value) {
-                const double v = relative_velocity(t, y), limit = threshold(t);
-                value = {v - limit, v + limit, y[1], slipping_ ? setup_.disc_acceleration(t) - acceleration(t, y) : 1};
               }};
 }
 
@@ -143,15 +139,14 @@ SimulatedMotion SmoothedSimulation::run() {
 void SmoothedSimulation::advance(double until) {
   constexpr double kMostSteps = 1e5, kMostStepsASecond = 2e6;  // a stick-slip cycle needs some 400
   while (integrator_.time() < until) {
-    if (!integrator_.step(until)) give_up();
-    if (static_cast<double>(++steps_) > kMostSteps + kMostStepsASecond * (integrator_.time() + options_.settle)) {
-      give_up();
-    }
+    const double begin = integrator_.time();
+    const State before = integrator_.state();
+    const bool stepped = integrator_.step(until);
+    ++steps_;
+    const double most = kMostSteps + kMostStepsASecond * (integrator_.time() + options_.settle);
+    if (!stepped || static_cast<double>(steps_) > most) give_up();
+    find_events(begin, before);
     sample(integrator_.time());
-    if (slipping_) {
-      peak_speed_ = std::max(peak_speed_, std::abs(relative_velocity(integrator_.time(), integrator_.state())));
-    }
-    handle_events();
   }
 }
 
@@ -164,26 +159,39 @@ void SmoothedSimulation::give_up() const {
       "lower the sharpness, or use the law with located events");
 }
 
-void SmoothedSimulation::handle_events() {
-  const double t = integrator_.time();
-  const State& y = integrator_.state();
-  const auto& crossed = integrator_.crossed();
-  const double friction = std::abs(law_.friction(relative_velocity(t, y)));
-  if (crossed[0] < 0 && slipping_ && motion_.slips.back().direction > 0) end_slip(t);
-  if (crossed[1] > 0 && slipping_ && motion_.slips.back().direction < 0) end_slip(t);
-  if (crossed[0] > 0 && !slipping_) begin_slip(t, 1, friction);
-  if (crossed[1] < 0 && !slipping_) begin_slip(t, -1, friction);
-  if (crossed[2] != 0 && t >= 0) {
-    motion_.turning_points.push_back({t, y[0] / setup_.natural_frequency, crossed[2] < 0});
+/// Events within the step just made, which began at `begin` in the state `before`.
+void SmoothedSimulation::find_events(double begin, const State& before) {
+  const double end = integrator_.time();
+  const State& after = integrator_.state();
+  const auto crossing = [&](auto&& value) -> std::optional<double> {
+    const double at_begin = value(begin, before), at_end = value(end, after);
+    if (!(at_begin * at_end < 0)) return std::nullopt;
+    return find_zero([&](double t) { return value(t, integrator_.at(t)); }, begin, end, at_begin, at_end);
+  };
+  const auto speed = [this](double t, const State& y) { return std::abs(relative_velocity(t, y)); };
+
+  if (const auto t = crossing([](double, const State& y) { return y[1]; }); t && *t >= 0) {
+    motion_.turning_points.push_back({*t, integrator_.at(*t)[0] / setup_.natural_frequency, before[1] > 0});
+  }
+  if (slipping_) {
+    const auto gain = [this](double t, const State& y) { return setup_.disc_acceleration(t) - acceleration(t, y); };
+    peak_speed_ = std::max({peak_speed_, speed(begin, before), speed(end, after)});
+    if (const auto t = crossing(gain)) peak_speed_ = std::max(peak_speed_, speed(*t, integrator_.at(*t)));
+  }
+  const auto excess = [&](double t, const State& y) { return speed(t, y) - threshold(t); };
+  if (const auto t = crossing(excess)) {
+    slipping_ ? end_slip(*t) : begin_slip(*t, relative_velocity(end, after) < 0 ? -1 : 1);
   }
 }
 
-void SmoothedSimulation::begin_slip(double t, int direction, double friction) {
+void SmoothedSimulation::begin_slip(double t, int direction) {
   slipping_ = true;
   peak_speed_ = 0;
+  const bool begins_so = std::isnan(t);
+  const double friction = begins_so ? 0 : std::abs(law_.friction(relative_velocity(t, integrator_.at(t))));
   motion_.slips.push_back({.break_away_time = t,
                            .restick_time = kNaN,
-                           .stick_time = std::isnan(t) ? 0 : t - stick_begin_,
+                           .stick_time = begins_so ? 0 : t - stick_begin_,
                            .direction = direction,
                            .break_away_friction = friction});
 }
