@@ -167,14 +167,24 @@ RequestedMachine machine_from(const MachineRequest& request) {
   return out;
 }
 
+namespace {
+
+constexpr const char* kRigGroup = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
+
+}  // namespace
+
 void add_machine_options(CLI::App& verb, MachineRequest& r) {
+  verb.add_option("--radius", r.radius, "friction radius")->capture_default_str()->group(kRigGroup);
+  verb.add_option("--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s")->group(kRigGroup);
+  verb.add_option("--load", r.load, "normal force, e.g. 50N")->group(kRigGroup);
+  add_machine_numbers(verb, r);
+}
+
+void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
   const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
     return verb.add_option(flag, value, help)->group(name);
   };
-  const char* rig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
-  group(rig, "--radius", r.radius, "friction radius")->capture_default_str();
-  group(rig, "--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
-  group(rig, "--load", r.load, "normal force, e.g. 50N");
+  const char* rig = kRigGroup;
   group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
   group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
   group(rig, "--damping", r.damping, "of the block on its spring, e.g. 4.7Ns/m");

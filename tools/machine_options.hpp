@@ -15,6 +15,8 @@ struct MachineRequest {
 
 /// Options of the rig and of its friction.
 void add_machine_options(CLI::App& verb, MachineRequest& request);
+/// The same without radius, speed and load.
+void add_machine_numbers(CLI::App& verb, MachineRequest& request);
 
 /// The machine in SI, and the radius [m] of the published test that what was not typed comes from.
 struct RequestedMachine {

@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
   add_diagnose(app, status);
   add_effects(app, status);
   add_simulate(app, status);
+  add_study(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

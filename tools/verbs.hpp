@@ -12,3 +12,4 @@ void add_merge(CLI::App& app, int& status);
 void add_diagnose(CLI::App& app, int& status);
 void add_effects(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
+void add_study(CLI::App& app, int& status);

@@ -68,7 +68,7 @@ std::vector<Portrait> study_phase(const Machine& machine, const std::vector<doub
     const double duration = winding + static_cast<double>(options.cycles) * cycle;
     SimulationOptions simulation{.duration = duration, .rate = static_cast<double>(options.samples) / cycle};
     if (options.settle.start == StartFrom::sliding) simulation.start = start_in_sliding(at);
-    portrait.start = simulate(at.rig, at.drive(), at.model, at.parameters, simulation);
+    portrait.start = motion_of(at, simulation, options.settle.sharpness);
     if (repeats) portrait.cycle = settled_motion(at, portrait.settled, 1, options.samples, options.settle);
     out.push_back(std::move(portrait));
   }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 
 namespace tribofit {
@@ -110,8 +110,7 @@ Settled Settling::run() {
   const bool winds_up = options_.start == StartFrom::stick;
   const double most_cycles = options_.longest_cycles * cycle_, most_swings = options_.longest_swings * period_;
   for (double duration = winds_up ? 4 * cycle_ + 4 * period_ : 20 * period_;; duration *= 4) {
-    const SimulatedMotion motion =
-        simulate(machine_.rig, machine_.drive(), machine_.model, machine_.parameters, simulation(duration));
+    const SimulatedMotion motion = motion_of(machine_, simulation(duration), options_.sharpness);
     out_ = {};
     out_.simulated = duration;
     if (judge(motion, duration)) return out_;
@@ -176,7 +175,7 @@ bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
 double Settling::fastest_of_vibration(const TurningPoint& from) const {
   SimulationOptions options{.duration = 2 * period_, .rate = 0};
   options.start = BlockStart{from.displacement, 0};
-  const SimulatedMotion motion = simulate(machine_.rig, machine_.drive(), machine_.model, machine_.parameters, options);
+  const SimulatedMotion motion = motion_of(machine_, options, options_.sharpness);
   return motion.slips.empty() ? machine_.disc_velocity() : motion.slips.back().peak_speed;
 }
 
@@ -235,6 +234,16 @@ std::string_view to_string(Regime regime) {
   return "not-settled";
 }
 
+SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& options, double sharpness) {
+  if (sharpness == 0) return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, options);
+  const SmoothedLaw law = smoothed_law(machine.model, machine.parameters, sharpness);
+  return simulate_smoothed(machine.rig, machine.drive(), law,
+                           {.duration = options.duration,
+                            .rate = options.rate,
+                            .settle = options.settle,
+                            .start = options.start.value_or(BlockStart{0, machine.disc_velocity()})});
+}
+
 BlockStart start_in_sliding(const Machine& machine) {
   constexpr double kPush = 1e-3;
   return {steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
@@ -284,7 +293,7 @@ SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, s
                                .rate = static_cast<double>(samples) / period,
                                .settle = settled.begin};
   if (options.start == StartFrom::sliding) simulation.start = start_in_sliding(machine);
-  return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, simulation);
+  return motion_of(machine, simulation, options.sharpness);
 }
 
 }  // namespace tribofit

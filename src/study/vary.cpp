@@ -109,11 +109,13 @@ Machine with_value(Machine machine, std::string_view name, double value) {
 
 const std::vector<MeasureInfo>& measures() {
   static const std::vector<MeasureInfo> all = {
-      {"frequency", "Hz", 1, &Settled::frequency, "response frequency: cycles a second"},
-      {"stick-time", "s", 1, &Settled::stick_time, "time in stick in each cycle (the stick period of [C])"},
-      {"peak-to-peak", "mm", 1e-3, &Settled::peak_to_peak, "of the displacement of the block"},
-      {"energy", "mJ", 1e-3, &Settled::energy, "before break-away, k (x2 - x1)^2/2 [C]"},
-      {"peak-speed", "mm/s", 1e-3, &Settled::peak_speed, "largest relative velocity"}};
+      {"frequency", "Hz", 1, &Settled::frequency, "frequency_hz", "Hz", "response frequency: cycles a second"},
+      {"stick-time", "s", 1, &Settled::stick_time, "stick_time_s",
+       "time in stick in each cycle (the stick period of [C])"},
+      {"peak-to-peak", "mm", 1e-3, &Settled::peak_to_peak, "peak_to_peak_mm", "peak-peak mm",
+       "of the displacement of the block"},
+      {"energy", "mJ", 1e-3, &Settled::energy, "energy_mJ", "energy mJ", "before break-away, k (x2 - x1)^2/2 [C]"},
+      {"peak-speed", "mm/s", 1e-3, &Settled::peak_speed, "peak_speed_mm_s", "peak mm/s", "largest relative velocity"}};
   return all;
 }
 

@@ -47,6 +47,10 @@ struct SettleOptions {
   double sharpness = 0;          ///< s of the smoothed law [s/m], see smoothed.hpp; 0: the event-located law
 };
 
+/// The motion of a machine, by its own law or by the smoothed one of that sharpness [s/m] (0: its own). options.start:
+/// where it begins, else unloaded and carried by the disc. Throws as simulate() and smoothed_law() do.
+SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& options, double sharpness = 0);
+
 /// Simulates a machine until its motion repeats itself, and measures that.
 ///
 /// Stick-slip is settled when period and peak-to-peak of three cycles agree (a law without memory is so from the first

@@ -36,6 +36,8 @@ struct MeasureInfo {
   std::string unit;
   double si = 1;
   double Settled::*value = nullptr;
+  std::string column;   ///< name with its unit, in CSV and JSON
+  std::string heading;  ///< the same where there is little room
   std::string meaning;
 };
 const std::vector<MeasureInfo>& measures();

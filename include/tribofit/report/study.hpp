@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tribofit/report/json.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "tribofit/study/map.hpp"
+#include "tribofit/study/response.hpp"
+#include "tribofit/study/sensitivity.hpp"
+#include "tribofit/study/sweep.hpp"
+
+namespace tribofit {
+
+/// What is studied, and where it comes from ("given values", "identified from trace.csv").
+struct StudiedMachine {
+  Machine machine;
+  MachineCovariance covariance;
+  std::string source;
+  std::vector<std::string> notes;
+  double sharpness = 0;  ///< of the smoothed law [s/m]; 0: the event-located law
+};
+
+/// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.
+std::string render_study(const StudiedMachine& of, const SpeedStudy& study, const TerminalOptions& options = {});
+std::string render_study(const StudiedMachine& of, const std::vector<Portrait>& study,
+                         const TerminalOptions& options = {});
+std::string render_study(const StudiedMachine& of, const Response& study, const TerminalOptions& options = {});
+std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+                         const TerminalOptions& options = {});
+/// A map as rows of values of one measure, thinned to what a terminal shows. rows: as computed, y rising.
+std::string render_map(const StudiedMachine& of, const MapRequest& request,
+                       const std::vector<std::vector<MapCell>>& rows, const MeasureInfo& measure,
+                       const TerminalOptions& options = {});
+
+/// {"tool", "study": {"kind", "machine", "parameters", ...}}; units are in the names. What is not known is null.
+std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const JsonOptions& options = {});
+std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& study, const JsonOptions& options = {});
+std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options = {});
+std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+                       const JsonOptions& options = {});
+std::string map_json(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
+                     const JsonOptions& options = {});
+
+/// Tables of a study in a folder, made where it is not there: speed.csv; phase_1.csv ... with the start and cycle_1.csv
+/// ... with one settled cycle; response.csv and harmonics.csv; sensitivity.csv and elasticities.csv. All or none.
+void write_study(const std::string& folder, const SpeedStudy& study);
+void write_study(const std::string& folder, const std::vector<Portrait>& study);
+void write_study(const std::string& folder, const Response& study);
+void write_study(const std::string& folder, const std::vector<Sensitivity>& study);
+
+/// One cell a line: x, y, regime, measures; to the last digit.
+std::string map_csv_header(const MapRequest& request);
+std::string map_csv_row(const MapRequest& request, std::size_t row, const std::vector<MapCell>& cells);
+/// The cells of a row as map_csv_row() wrote it; nothing where the text is not that row of this map.
+std::vector<MapCell> map_row_from_csv(const MapRequest& request, std::size_t row, const std::string& text);
+
+}  // namespace tribofit

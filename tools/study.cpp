@@ -1,0 +1,296 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "console.hpp"
+#include "machine_options.hpp"
+#include "map_file.hpp"
+#include "options.hpp"
+#include "studied_machine.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+#include "tribofit/report/study.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+/// What is typed behind `identify study KIND`.
+struct Request {
+  Settings settings;  // of the trace, and the outputs
+  MachineRequest machine;
+  std::string sharpness;
+  std::string from = "stick";
+  std::string range, at;    // speeds
+  std::size_t points = 40;  // of a sweep
+  std::size_t cycles = 6;   // of a portrait
+  std::size_t harmonics = 20;
+  std::vector<std::string> vary;
+  double factor = 2;
+  std::string x, y, measure = "peak-to-peak";
+  bool again = false;
+};
+
+SettleOptions settle_options(const Request& r) {
+  SettleOptions options;
+  options.start = r.from == "sliding" ? StartFrom::sliding : StartFrom::stick;
+  if (!r.sharpness.empty()) {
+    options.sharpness = parse_quantity(r.sharpness, Quantity::inverse_velocity, "--sharpness", "s/mm");
+    if (!(options.sharpness > 0)) {
+      throw InputError("--sharpness: '" + r.sharpness + "' is not greater than zero", "give it as e.g. 500s/mm");
+    }
+  }
+  return options;
+}
+
+std::vector<std::string> split(const std::string& text, const std::string& separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t at = text.find(separator); at != std::string::npos; at = text.find(separator, begin)) {
+    parts.push_back(text.substr(begin, at - begin));
+    begin = at + separator.size();
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+/// A speed of the disc as omega r [m/s], from "6mm/s" or "4rpm".
+double velocity_from(const std::string& text, const Machine& machine, const std::string& option) {
+  const double velocity = machine.radius * disc_speed_from(text, machine.radius, option);
+  if (!(velocity > 0))
+    throw InputError(option + ": '" + text + "' is not greater than zero", "give e.g. 6mm/s or 4rpm");
+  return velocity;
+}
+
+/// "1mm/s..20mm/s" as `count` speeds omega r [m/s].
+std::vector<double> velocities_from(const std::string& text, std::size_t count, const Machine& machine) {
+  const std::vector<std::string> ends = split(text, "..");
+  if (ends.size() != 2)
+    throw InputError("--range: '" + text + "' is no range", "write it as 1mm/s..20mm/s or 1rpm..8rpm");
+  const double low = velocity_from(ends[0], machine, "--range"), high = velocity_from(ends[1], machine, "--range");
+  if (!(high > low)) throw InputError("--range: '" + text + "' does not rise", "write the lower speed first");
+  return spread(low, high, count);
+}
+
+/// "stiffness=8N/mm..20N/mm:100"; what is left out is half to twice the machine's own value, and 40 values.
+MapAxis axis_from(const std::string& text, const Machine& machine, const std::string& option) {
+  constexpr std::size_t kMost = 2000;
+  const auto equals = text.find('=');
+  MapAxis axis;
+  axis.variable = variable_named(machine, text.substr(0, equals));
+  const double own = value_of(machine, axis.variable.name);
+  double low = 0.5 * own, high = 2 * own;
+  std::size_t count = 40;
+  const auto bad = [&](const std::string& what) {
+    return InputError(option + " '" + text + "': " + what, "write it as stiffness=8N/mm..20N/mm:100");
+  };
+  if (equals != std::string::npos) {
+    std::string range = text.substr(equals + 1);
+    if (const auto colon = range.find(':'); colon != std::string::npos) {
+      const std::string number = range.substr(colon + 1);
+      range.resize(colon);
+      if (number.empty() || number.size() > 5 || number.find_first_not_of("0123456789") != std::string::npos) {
+        throw bad("'" + number + "' is no count of values");
+      }
+      count = std::stoul(number);
+    }
+    const std::vector<std::string> ends = split(range, "..");
+    if (ends.size() != 2) throw bad("'" + range + "' is no range");
+    low = parse_quantity(ends[0], axis.variable.quantity, option, axis.variable.unit);
+    high = parse_quantity(ends[1], axis.variable.quantity, option, axis.variable.unit);
+  } else if (axis.variable.name == "ratio") {
+    high = std::min(high, 1.0);
+  }
+  if (count < 2 || count > kMost) throw bad(fmt::format("{} values; from 2 to {} can be had", count, kMost));
+  if (!(high > low)) throw bad("the range does not rise");
+  axis.values = spread(low, high, count);
+  return axis;
+}
+
+/// Writes what was asked for and prints the rest. csv: writes the tables into the folder given.
+void deliver(const Request& r, const std::string& text, const std::function<std::string()>& json,
+             const std::function<void(const std::string&)>& csv) {
+  const Settings& s = r.settings;
+  std::optional<WholeFile> file;
+  if (!s.json.empty()) {
+    file.emplace(s.json == "-" ? "/dev/stdout" : s.json);
+    file->write(json());
+    file->finish();
+  }
+  if (!s.csv.empty() && csv) csv(s.csv);
+  if (file) file->commit();
+  if (!s.quiet && s.json != "-") print(text);
+}
+
+/// What every kind begins with.
+struct Begun {
+  StudiedMachine of;
+  SettleOptions settle;
+  TerminalOptions terminal;
+  JsonOptions json;
+};
+
+Begun begin(Request& r, const CLI::App& kind) {
+  refuse_empty_values(kind);
+  Begun out;
+  out.settle = settle_options(r);
+  std::vector<std::string> arguments = own_options(kind);
+  out.json.arguments = arguments;
+  out.of = studied_machine(r.settings, r.machine);
+  out.of.sharpness = out.settle.sharpness;
+  out.terminal = terminal_options(r.settings, shared_arguments(kind));
+  out.terminal.inputs = r.settings.traces;
+  out.terminal.csv_written = !r.settings.csv.empty();
+  return out;
+}
+
+void run_speed(Request& r, const CLI::App& kind) {
+  const Begun b = begin(r, kind);
+  SpeedStudyOptions options;
+  options.settle = b.settle;
+  options.covariance = b.of.covariance;
+  options.threads = r.settings.threads;
+  if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.of.machine);
+  const SpeedStudy study = study_speed(b.of.machine, options);
+  deliver(
+      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
+      [&](const std::string& folder) { write_study(folder, study); });
+}
+
+void run_phase(Request& r, const CLI::App& kind) {
+  const Begun b = begin(r, kind);
+  std::vector<double> velocities;
+  if (!r.range.empty()) velocities = velocities_from(r.range, r.points, b.of.machine);
+  if (!r.at.empty()) {
+    for (const std::string& text : split(r.at, ",")) velocities.push_back(velocity_from(text, b.of.machine, "--at"));
+  }
+  if (velocities.empty()) velocities = {b.of.machine.disc_velocity()};
+  PortraitOptions options;
+  options.cycles = r.cycles;
+  options.settle = b.settle;
+  const std::vector<Portrait> study = study_phase(b.of.machine, velocities, options);
+  deliver(
+      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
+      [&](const std::string& folder) { write_study(folder, study); });
+}
+
+void run_response(Request& r, const CLI::App& kind) {
+  const Begun b = begin(r, kind);
+  const Response study = study_response(b.of.machine, r.harmonics, b.settle);
+  deliver(
+      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
+      [&](const std::string& folder) { write_study(folder, study); });
+}
+
+void run_sensitivity(Request& r, const CLI::App& kind) {
+  const Begun b = begin(r, kind);
+  SensitivityOptions options;
+  options.variables = r.vary;
+  options.factor = r.factor;
+  options.count = r.points;
+  options.settle = b.settle;
+  options.threads = r.settings.threads;
+  const std::vector<Sensitivity> study = study_sensitivity(b.of.machine, options);
+  deliver(
+      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
+      [&](const std::string& folder) { write_study(folder, study); });
+}
+
+void run_map(Request& r, const CLI::App& kind) {
+  const Begun b = begin(r, kind);
+  const MeasureInfo& measure = measure_named(r.measure);
+  MapRequest request{b.of.machine, axis_from(r.x, b.of.machine, "--x"), axis_from(r.y, b.of.machine, "--y"), b.settle};
+  check_map(request);
+  MapFile file(r.settings.csv, request, r.again);
+  ProgressLine progress;
+  std::size_t known = file.known_count();
+  const double all = static_cast<double>(request.y.values.size());
+  compute_map(request, file.done(), r.settings.threads, [&](std::size_t row, const std::vector<MapCell>& cells) {
+    file.add(row, cells);
+    progress.show("map", static_cast<double>(++known) / all);
+    return true;
+  });
+  file.finish();
+  deliver(r, render_map(b.of, request, file.rows(), measure, b.terminal),
+          [&] { return map_json(b.of, request, file.rows(), b.json); }, {});
+}
+
+CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const std::shared_ptr<Request>& r,
+                   void (*run)(Request&, const CLI::App&), int& status) {
+  CLI::App* kind = study.add_subcommand(name, help);
+  kind->get_formatter()->column_width(30);
+  add_input_options(*kind, r->settings);
+  add_machine_numbers(*kind, r->machine);
+  kind->add_option("--sharpness", r->sharpness,
+                   "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
+  kind->add_option("--from", r->from, "Begin in stick (default) or in sliding")
+      ->check(CLI::IsMember({"stick", "sliding"}));
+  add_output_options(*kind, r->settings);
+  kind->callback([r, kind, run, &status] {
+    run(*r, *kind);
+    status = 0;
+  });
+  return kind;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, int& status) {
+  CLI::App* study = app.add_subcommand("study", "What a machine does: critical speed, portraits, sensitivities, maps");
+  study->require_subcommand(1);
+  study->footer(
+      "A machine is a rig with its friction: identified from a trace, or given, or both (what is given beats what was\n"
+      "identified). Without either it is the published test at the radius given.\n\n"
+      "Examples:\n"
+      "  identify study speed --radius 15mm --load 50N trace.csv\n"
+      "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv    what would more damping do?\n"
+      "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
+      "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
+  const auto request = [] { return std::make_shared<Request>(); };
+
+  auto r = request();
+  CLI::App* kind =
+      add_kind(*study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed, status);
+  kind->add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm");
+  kind->add_option("--points", r->points, "Number of speeds (default 40)")->check(CLI::Range(2, 10000));
+
+  r = request();
+  kind = add_kind(*study, "phase", "Phase portraits", r, run_phase, status);
+  kind->add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)");
+  kind->add_option("--range", r->range, "Speeds, 1mm/s..20mm/s");
+  kind->add_option("--points", r->points, "Number of speeds in --range")->check(CLI::Range(2, 1000));
+  kind->add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)")->check(CLI::Range(1, 10000));
+
+  r = request();
+  kind = add_kind(*study, "response", "A(omega), and spectra of force and displacement", r, run_response, status);
+  kind->add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)")->check(CLI::Range(1, 1000));
+
+  r = request();
+  r->points = 21;
+  kind = add_kind(*study, "sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity,
+                  status);
+  kind->add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)")->allow_extra_args(false);
+  kind->add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)")
+      ->check(CLI::Range(1.0001, 1e6));
+  kind->add_option("--points", r->points, "Values of a sweep (default 21)")->check(CLI::Range(2, 10000));
+
+  r = request();
+  kind = add_kind(*study, "map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map, status);
+  kind->add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100")->required();
+  kind->add_option("--y", r->y, "Down: the same")->required();
+  kind->add_option("--measure", r->measure,
+                   "The one printed (all are written): peak-to-peak (default), stick-time, ...");
+  kind->add_flag("--again", r->again, "Compute rows that are known already, too");
+}
