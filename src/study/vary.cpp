@@ -110,7 +110,7 @@ Machine with_value(Machine machine, std::string_view name, double value) {
 const std::vector<MeasureInfo>& measures() {
   static const std::vector<MeasureInfo> all = {
       {"frequency", "Hz", 1, &Settled::frequency, "frequency_hz", "Hz", "response frequency: cycles a second"},
-      {"stick-time", "s", 1, &Settled::stick_time, "stick_time_s",
+      {"stick-time", "s", 1, &Settled::stick_time, "stick_time_s", "stick s",
        "time in stick in each cycle (the stick period of [C])"},
       {"peak-to-peak", "mm", 1e-3, &Settled::peak_to_peak, "peak_to_peak_mm", "peak-peak mm",
        "of the displacement of the block"},
