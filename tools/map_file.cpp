@@ -110,4 +110,6 @@ void MapFile::finish() {
   std::string text = map_csv_header(request_);
   for (std::size_t row = 0; row < rows_.size(); ++row) text += map_csv_row(request_, row, rows_[row]);
   write_whole(map_path_, text);
+  out_.close();
+  std::filesystem::remove(rows_path_);
 }

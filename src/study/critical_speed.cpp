@@ -38,14 +38,13 @@ class Search {
     out_.below_range = !sticks(out_.lowest);
     out_.above_range = sticks(out_.highest);
     if (out_.below_range || out_.above_range) return out_;
-    out_.stick_vanishes = turning_of([&](double v) { return sticks(v); }, out_.lowest, out_.highest, kClose);
+    out_.stick_vanishes =
+        turning_of([&](double v) { return sticks(v); }, out_.lowest, out_.highest, options_.tolerance);
     out_.stick_returns = way_down();
     return out_;
   }
 
  private:
-  static constexpr double kClose = 1e-7;
-
   bool sticks(double velocity) const { return keeps_sticking(at(machine_, velocity)); }
   bool is_stable(double velocity) const { return steady_sliding(at(machine_, velocity)).is_stable(); }
   /// Sliding is unstable, and vibration of any size grows until it sticks: none without a stick lies between.
@@ -101,7 +100,7 @@ class Search {
     if (begin <= out_.lowest || is_stable(begin)) return std::numeric_limits<double>::quiet_NaN();
     if (returns(begin)) return lost;
     if (!returns(out_.lowest)) return std::numeric_limits<double>::quiet_NaN();
-    return turning_of([&](double v) { return returns(v); }, out_.lowest, begin, kClose);
+    return turning_of([&](double v) { return returns(v); }, out_.lowest, begin, options_.tolerance);
   }
 
   const Machine& machine_;

@@ -256,7 +256,7 @@ Settled settle(const Machine& machine, const SettleOptions& options) {
 
 bool keeps_sticking(const Machine& machine) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
-  constexpr double kCycles = 10, kMostPeriods = 2000, kStill = 1e-9;
+  constexpr double kCycles = 4, kMostPeriods = 2000, kStill = 1e-9;
   // The first slip tells of most machines.
   double duration = 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {

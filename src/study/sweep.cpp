@@ -62,8 +62,14 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
                                          : draws_of(machine, options.covariance, options.draws, options.seed);
   std::vector<CriticalSpeed> criticals(draws.size());
   std::vector<Settled> settled(draws.size());
+  CriticalSpeedOptions around;  // other machines are not far
+  constexpr double kFar = 3;
+  around.lowest =
+      std::min(out.critical.lowest, out.critical.linear.empty() ? INFINITY : out.critical.linear.front() / kFar);
+  around.highest = kFar * out.critical.highest;
+  around.tolerance = 1e-4;
   run_tasks(draws.size(), options.threads, [&](std::size_t i) {
-    criticals[i] = critical_speed(draws[i]);
+    criticals[i] = critical_speed(draws[i], around);
     settled[i] = settle(draws[i], options.settle);
   });
   const auto over_draws = [&](const auto& list, const auto& number) {

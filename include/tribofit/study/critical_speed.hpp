@@ -26,10 +26,11 @@ struct CriticalSpeedOptions {
   /// Searched speeds [m/s]; 0: from a hundredth of the machine's own speed to where sliding is stable and nothing
   /// sticks, at most a thousand times its own.
   double lowest = 0, highest = 0;
+  double tolerance = 1e-7;  ///< of stick_vanishes and stick_returns, relative
 };
 
 /// Both ways to the critical speed. Stability is scanned on a logarithmic grid and located by bisection to 1e-10;
-/// vanishing and return of stick to 1e-7, both taken to happen once in the range. The speed of the machine
+/// vanishing and return of stick to the tolerance, both taken to happen once in the range. The speed of the machine
 /// itself does not matter but for the default range. The way down is taken to end where sliding loses its stability, or
 /// below, where vibrations of all sizes grow until they stick. Cost: about 20 ms.
 /// Throws InputError for a machine that cannot be, or a range that is none.

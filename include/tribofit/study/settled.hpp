@@ -65,9 +65,9 @@ Settled settle(const Machine& machine, const SettleOptions& options = {});
 /// The block in steady sliding, with a velocity of a thousandth of the disc's beside it.
 BlockStart start_in_sliding(const Machine& machine);
 
-/// Whether a machine that begins in stick still sticks after ten cycles. A slip of two and a half natural periods is
-/// none that ends: where a law without memory does not return to the speed of the disc in its first swing, it never
-/// does. Cost: a few of its cycles.
+/// Whether a machine that begins in stick still sticks after four of its longest cycles. A slip of two and a half
+/// natural periods is none that ends: where a law without memory does not return to the speed of the disc in its first
+/// swing, it never does. Cost: a few of its cycles.
 bool keeps_sticking(const Machine& machine);
 
 /// Swings of the displacement [m] from turning point to turning point, over `periods` natural periods, of a block that
