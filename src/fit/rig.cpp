@@ -1,0 +1,249 @@
+#include "tribofit/fit/rig.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "force_balance.hpp"
+#include "influence.hpp"
+#include "rig_messages.hpp"
+#include "rig_solution.hpp"
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kClear = 3;          // standard errors from zero that mass and stiffness must be
+constexpr double kMostNoise = 0.3;    // of what a channel has for itself
+constexpr double kFewestSamples = 8;  // in a free period
+
+RigValue rig_value(double value, double std_error, double freedom) {
+  RigValue out;
+  out.value = value;
+  out.determined = std::isfinite(value) && std::isfinite(std_error);
+  if (!out.determined) return {};
+  const double half = t_quantile_95(freedom) * std_error;
+  out.std_error = std_error;
+  out.lower95 = value - half;
+  out.upper95 = value + half;
+  return out;
+}
+
+/// Slope of force over that of the disc's way in the inner part of a stick; nothing where it is too short.
+std::optional<double> stick_stiffness(const Motion& motion, const NormalForce& load, const Span& stick) {
+  const std::size_t tenth = stick.size() / 10, begin = stick.begin + tenth, end = stick.end - tenth;
+  if (end < begin + 8) return std::nullopt;
+  double st = 0, sf = 0, sw = 0, stt = 0, stf = 0, stw = 0, way = 0;
+  const auto n = static_cast<double>(end - begin);
+  for (std::size_t i = begin; i < end; ++i) {
+    const double t = static_cast<double>(i - begin) - 0.5 * (n - 1), f = load.at(i) * motion.friction[i];
+    st += t, sf += f, sw += way, stt += t * t, stf += t * f, stw += t * way;
+    way += motion.step * motion.disc_velocity_at(i);
+  }
+  return stw != 0 ? std::optional(stf / stw) : std::nullopt;
+}
+
+Measure mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double x : values) sum += x;
+  const MeanError error = mean_error(values);
+  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
+}
+
+bool disc_is_known(const Motion& motion) {
+  return !motion.disc_velocity.empty() || motion.constant_disc_velocity != 0;
+}
+
+/// Stiffness from the slope of stick, and what the balance's differs from it, cycle by cycle where both have the cycle.
+void compare_stick_slope(const Motion& motion, const Segmentation& segmentation, const NormalForce& load,
+                         const Balance* balance, const Eigen::VectorXd& influence, RigFit& fit) {
+  if (!disc_is_known(motion)) return;
+  std::vector<double> slopes, differences;
+  std::vector<std::size_t> middles;
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (cycle.stick.size() == 0) continue;
+    const std::optional<double> k = stick_stiffness(motion, load, cycle.stick);
+    if (!k) continue;
+    slopes.push_back(*k);
+    middles.push_back(cycle.stick.begin + cycle.stick.size() / 2);
+  }
+  if (slopes.size() < 3) return;
+  const Measure mean = mean_of(slopes);
+  fit.stick_slope_stiffness = rig_value(mean.value, mean.std_error, mean.degrees_of_freedom);
+  if (!fit.stiffness.determined || balance == nullptr) return;
+  for (std::size_t k = 0, b = 0; k < slopes.size(); ++k) {
+    while (b < balance->spans.size() && balance->spans[b].end <= middles[k]) ++b;
+    if (b == balance->spans.size()) break;
+    if (balance->spans[b].begin <= middles[k]) differences.push_back(influence(Eigen::Index(b)) - slopes[k]);
+  }
+  const MeanError error = mean_error(differences);
+  if (error.std_error > 0) fit.stick_slope_difference = (fit.stiffness.value - mean.value) / error.std_error;
+}
+
+/// A record that only sticks: the spring is wound up evenly, and the slope of force says how stiff it is.
+void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit) {
+  fit.reason =
+      "the block never slips: it moves with the disc, so that nothing accelerates and mass and damping do not show";
+  if (!disc_is_known(motion)) return;
+  constexpr std::size_t kPieces = 12;
+  std::vector<double> slopes;
+  for (std::size_t k = 0; k < kPieces; ++k) {
+    const Span piece{k * motion.size() / kPieces, (k + 1) * motion.size() / kPieces};
+    if (const auto slope = stick_stiffness(motion, load, piece)) slopes.push_back(*slope);
+  }
+  if (slopes.size() < 3) return;
+  const Measure mean = mean_of(slopes);
+  fit.stick_slope_stiffness = rig_value(mean.value, mean.std_error, mean.degrees_of_freedom);
+  fit.stiffness = fit.stick_slope_stiffness;
+}
+
+void add_systematic(const Instruments& instruments, const NormalForce& load, RigFit& fit) {
+  const auto of = [](const std::optional<Declared>& d) { return d ? d->uncertainty : 0.0; };
+  const auto part = [](const std::optional<Declared>& d) {
+    return d && d->value != 0 ? d->uncertainty / std::abs(d->value) : 0.0;
+  };
+  const double scale = std::hypot(load.nominal ? part(instruments.rig.load) : 0, part(instruments.force_sensor.gain),
+                                  part(instruments.vibrometer.gain));
+  const double delay = of(instruments.vibrometer.delay), c = fit.damping.value, k = fit.stiffness.value;
+  const double below = fit.mass_below_declared ? of(instruments.force_sensor.mass_below) : 0;
+  fit.mass.systematic = std::hypot(scale * fit.mass.value, delay * c, below);
+  fit.damping.systematic = std::hypot(scale * c, delay * k);
+  fit.stiffness.systematic = std::abs(scale * k);
+}
+
+/// Natural frequency and damping ratio by the delta method.
+void add_derived(RigFit& fit) {
+  const double m = fit.mass.value, c = fit.damping.value, k = fit.stiffness.value;
+  if (!(m > 0 && k > 0)) return;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> covariance(fit.covariance.data());
+  const auto derived = [&](double value, const Eigen::Vector3d& gradient) {
+    return rig_value(value, std::sqrt(std::max(0.0, gradient.dot(covariance * gradient))), fit.degrees_of_freedom);
+  };
+  const double f = std::sqrt(k / m) / kTwoPi, zeta = c / (2 * std::sqrt(k * m));
+  fit.natural_frequency = derived(f, {-0.5 * f / m, 0, 0.5 * f / k});
+  fit.damping_ratio = derived(zeta, {-0.5 * zeta / m, 0.5 / std::sqrt(k * m), -0.5 * zeta / k});
+}
+
+/// A declared ping frequency is that of the whole mass.
+void add_mass_below(const Instruments& instruments, RigFit& fit) {
+  const auto& ping = instruments.rig.ping_frequency;
+  if (!ping || fit.per_unit_load || !(fit.stiffness.value > 0)) return;
+  const double omega = kTwoPi * ping->value, whole = fit.stiffness.value / (omega * omega);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> covariance(fit.covariance.data());
+  const Eigen::Vector3d gradient(-1, 0, 1 / (omega * omega));
+  fit.mass_below = rig_value(whole - fit.mass.value, std::sqrt(gradient.dot(covariance * gradient)),
+                             fit.degrees_of_freedom);
+  fit.mass_below.systematic = 2 * whole * ping->uncertainty / ping->value;
+}
+
+void set_values(const BalanceSolution& solution, RigFit& fit) {
+  const Spread spread = spread_of(solution.influence);
+  fit.degrees_of_freedom = spread.degrees_of_freedom.head(3).minCoeff();
+  const auto value = [&](Eigen::Index k) {
+    return rig_value(solution.values(k), spread.std_error(k), spread.degrees_of_freedom(k));
+  };
+  fit.mass = value(0);
+  fit.damping = value(1);
+  fit.stiffness = value(2);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) fit.covariance[std::size_t(3 * i + j)] = spread.covariance(i, j);
+  }
+  fit.residual_rmse = solution.rmse;
+}
+
+/// Terms that a sound record does not have, both at once: each alone would pass for the other.
+void try_further_terms(const Balance& balance, const BalanceSolution& solution, RigFit& fit) {
+  const bool corner_is_free = solution.columns.back() == kIntegral;
+  std::vector<BalanceColumn> columns = {kAcceleration, kVelocity, kDisplacement, kIntegral, kJerk};
+  const BalanceSolution all = solve_balance(balance, columns, solution.values.head(3));
+  if (!all.solved || all.values(2) == 0) return;
+  const Spread spread = spread_of(all.influence);
+  const auto value = [&](Eigen::Index k, double factor) {
+    return rig_value(factor * all.values(k), std::abs(factor) * spread.std_error(k), spread.degrees_of_freedom(k));
+  };
+  fit.delay = value(4, -1);
+  if (!corner_is_free) fit.high_pass = value(3, 1 / (kTwoPi * all.values(2)));
+  // v_b = v_m + w integral(v_m): the coefficient of v_m is c + m w.
+  fit.damping_without_both = all.values(1) - (corner_is_free ? 0 : all.values(0) * kTwoPi * fit.high_pass.value);
+}
+
+/// Whether the values are those of a rig, and if not, why.
+void judge(const BalanceSolution& solution, RigFit& fit) {
+  const auto clear = [](const RigValue& v) { return v.determined && std::abs(v.value) > kClear * v.std_error; };
+  if (!(solution.noise_share.maxCoeff() < kMostNoise) || !clear(fit.mass) || !clear(fit.stiffness)) {
+    fit.reason = "the block moves too little against the noise of the channels to tell mass, damping and stiffness";
+    return;
+  }
+  fit.reason = rig::why_impossible(fit);
+  fit.determined = fit.reason.empty();
+}
+
+/// The balance, once more with test functions that suit the natural period found.
+std::pair<Balance, BalanceSolution> solve(const Motion& motion, const Segmentation& segmentation,
+                                          const NormalForce& load, double period) {
+  std::vector<BalanceColumn> columns = {kAcceleration, kVelocity, kDisplacement};
+  if (motion.high_pass > 0) columns.push_back(kIntegral);
+  Balance balance = force_balance(motion, segmentation, load, period);
+  BalanceSolution solution = solve_balance(balance, columns);
+  if (solution.solved && solution.values(0) > 0 && solution.values(2) > 0) {
+    const double found = kTwoPi * std::sqrt(solution.values(0) / solution.values(2));
+    balance = force_balance(motion, segmentation, load, std::clamp(found, period / 4, 4 * period));
+    solution = solve_balance(balance, columns);
+  }
+  return {std::move(balance), std::move(solution)};
+}
+
+}  // namespace
+
+Rig RigFit::to_rig() const {
+  if (!determined) throw std::logic_error("RigFit::to_rig(): no rig was found: " + reason);
+  return {mass.value, std::max(0.0, damping.value), stiffness.value};
+}
+
+RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments) {
+  RigFit fit;
+  const NormalForce load = normal_force(motion);
+  fit.per_unit_load = !load.known;
+  fit.load = load.mean;
+  if (motion.velocity_kind == VelocityKind::fixed_block) {
+    fit.reason = "the block stands still: its motion was not measured";
+    return fit;
+  }
+  fit.mass_below_declared = instruments.force_sensor.mass_below.has_value() && load.known &&
+                            motion.velocity_kind == VelocityKind::block;
+  if (segmentation.kind == MotionKind::always_sticking) {
+    from_stick_alone(motion, load, fit);
+    rig::add_messages(motion, segmentation, instruments, fit);
+    return fit;
+  }
+  const double period = period_guess(motion, segmentation);
+  if (!(period > kFewestSamples * motion.step)) {
+    fit.reason = period > 0 ? "the record has fewer than eight samples in a swing of the block"
+                            : "no slip is complete and nothing swings: there is no motion to balance forces on";
+    return fit;
+  }
+  auto [balance, solution] = solve(motion, segmentation, load, period);
+  fit.cycles = balance.blocks.size();
+  fit.smoothing = balance.width;
+  if (!solution.solved) {
+    fit.reason = fit.cycles < 3 ? "there are fewer than three whole cycles: no error could be given"
+                                : "the motion does not tell mass, damping and stiffness from one another";
+    return fit;
+  }
+  set_values(solution, fit);
+  compare_stick_slope(motion, segmentation, load, &balance, solution.influence.col(2), fit);
+  try_further_terms(balance, solution, fit);
+  judge(solution, fit);
+  add_derived(fit);
+  add_mass_below(instruments, fit);
+  add_systematic(instruments, load, fit);
+  rig::add_messages(motion, segmentation, instruments, fit);
+  return fit;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,170 @@
+#include "rig_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tribofit/segmentation/mean_error.hpp"
+
+namespace tribofit::rig {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kChance = 1e-3;  // of a false word about one record
+constexpr double kMatters = 0.1;  // of the damping
+
+double t_of(const RigValue& v) {
+  return v.determined && v.std_error > 0 ? std::abs(v.value) / v.std_error : 0;
+}
+
+/// Whether a further term is there and moves the damping by enough to be spoken of.
+bool counts(const RigValue& term, const RigFit& fit) {
+  return term.determined && t_p_value(t_of(term), fit.degrees_of_freedom) < kChance &&
+         std::abs(fit.damping_without_both - fit.damping.value) >
+             std::max(kMatters * std::abs(fit.damping.value), 2 * fit.damping.std_error);
+}
+
+bool delay_counts(const RigFit& fit) {
+  return counts(fit.delay, fit);
+}
+
+bool high_pass_counts(const RigFit& fit) {
+  return counts(fit.high_pass, fit);
+}
+
+const char* damping_unit(const RigFit& fit) {
+  return fit.per_unit_load ? "s/mm" : "N s/mm";
+}
+
+std::string delay_text(const RigFit& fit) {
+  return fmt::format("friction is recorded {:.3g} +- {:.1g} ms {} v_b; k times that comes off the damping, which would be "
+                     "{:.3g} {} without it",
+                     1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
+                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.damping_without_both,
+                     damping_unit(fit));
+}
+
+/// The damping in N s/mm, as tables show it.
+std::string damping_text(const RigFit& fit) {
+  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error,
+                     damping_unit(fit));
+}
+
+std::string why_negative_damping(const RigFit& fit) {
+  const bool sags = high_pass_counts(fit), late = delay_counts(fit);
+  if (sags && fit.high_pass.value > 0 && (!late || t_of(fit.high_pass) > t_of(fit.delay))) {
+    return fmt::format("v_b went through a high-pass that was not undone (the balance sees {:.3g} Hz)",
+                       fit.high_pass.value);
+  }
+  if (late) return delay_text(fit);
+  return fmt::format("a friction channel {:.3g} ms late would do it (c is lowered by k times the delay), so would a "
+                     "high-pass of the vibrometer",
+                     1e3 * -fit.damping.value / fit.stiffness.value);
+}
+
+}  // namespace
+
+std::string why_impossible(const RigFit& fit) {
+  const double m = fit.mass.value, k = fit.stiffness.value;
+  if (k < 0 && m < 0) {
+    return "mass and stiffness come out negative: v_b or friction has the wrong sign";
+  }
+  if (k < 0) return "the stiffness comes out negative: the channels do not belong to one block on a spring";
+  if (m < 0) {
+    return "the mass comes out negative: more mass hangs below the force sensor than above it (only m - m_s shows), or "
+           "the channels are far apart in time";
+  }
+  if (fit.damping.upper95 < 0) {
+    return fmt::format("the damping comes out negative, {}: {}", damping_text(fit), why_negative_damping(fit));
+  }
+  return "";
+}
+
+namespace {
+
+void add_about_channels(const Motion& motion, RigFit& fit) {
+  auto& out = fit.messages;
+  const bool late = delay_counts(fit), sags = high_pass_counts(fit);
+  const bool sag_first = sags && (!late || t_of(fit.high_pass) > t_of(fit.delay));
+  if (sag_first && fit.high_pass.value > 0) {
+    out.push_back(fmt::format(
+        "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on v_b that is not undone (a force "
+        "goes with the integral of the displacement, which no rig does); it would be {:.3g} {} without: undo it, or "
+        "declare it as vibrometer.high_pass",
+        fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.damping_without_both, damping_unit(fit)));
+  } else if (sag_first) {
+    out.push_back(fmt::format(
+        "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on the force (a charge amplifier "
+        "drifts back so), or one on v_b undone too far",
+        -fit.high_pass.value, fit.high_pass.std_error));
+  } else if (late) {
+    out.push_back(delay_text(fit) + "; a delay or a slower force sensor does this: declare it with --instruments");
+  }
+  if (motion.high_pass > 0) {
+    out.push_back(fmt::format("a high-pass of {:.3g} Hz on v_b was undone; what its corner is off by is fitted along",
+                              motion.high_pass));
+  }
+}
+
+void add_about_mass(const Instruments& instruments, RigFit& fit) {
+  auto& out = fit.messages;
+  if (fit.mass_below_declared) {
+    out.push_back(fmt::format("the mass holds the declared {:.4g} kg below the force sensor",
+                              instruments.force_sensor.mass_below->value));
+    return;
+  }
+  if (fit.mass_below.determined) {
+    out.push_back(fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
+                              "below the force sensor",
+                              fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
+    return;
+  }
+  out.push_back(
+      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; declare "
+      "force_sensor.mass_below or rig.ping_frequency with --instruments");
+}
+
+void add_about_stiffness(const Motion& motion, const Instruments& instruments, RigFit& fit) {
+  auto& out = fit.messages;
+  if (fit.determined && t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChance) {
+    out.push_back(fmt::format(
+        "the slope of stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or omega r is off, or the "
+        "contact creeps in stick",
+        100 * (fit.stick_slope_stiffness.value / fit.stiffness.value - 1)));
+  }
+  if (const auto& pull = instruments.rig.stiffness; pull && fit.stiffness.determined && !fit.per_unit_load) {
+    const double error = std::hypot(fit.stiffness.std_error, fit.stiffness.systematic, pull->uncertainty);
+    out.push_back(fmt::format("the declared pull test gives {:.4g} N/mm, {:+.1f} standard errors from the balance",
+                              1e-3 * pull->value, (pull->value - fit.stiffness.value) / error));
+  }
+  if (fit.per_unit_load) {
+    out.push_back("no normal force is known: mass, damping and stiffness are per newton of it; give --load 50N");
+  }
+  if (motion.velocity_kind == VelocityKind::relative && motion.disc_velocity.empty()) {
+    out.push_back("v_r was measured: the disc is taken to turn evenly");
+  }
+}
+
+}  // namespace
+
+void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments,
+                  RigFit& fit) {
+  if (segmentation.kind == MotionKind::always_sticking) {
+    if (fit.stiffness.determined) {
+      fit.messages.push_back("the stiffness is from the slope of friction while the disc winds the spring up");
+    }
+  } else {
+    if (segmentation.kind == MotionKind::always_slipping) {
+      fit.messages.push_back("the block never sticks: the balance rests on how it swings in slip alone");
+    }
+    add_about_channels(motion, fit);
+    if (fit.mass.determined) add_about_mass(instruments, fit);
+    if (fit.determined && fit.damping.value < 0) {
+      fit.messages.push_back("the damping is zero within its error; a simulation takes zero");
+    }
+  }
+  add_about_stiffness(motion, instruments, fit);
+}
+
+}  // namespace tribofit::rig
