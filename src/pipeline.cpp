@@ -60,8 +60,12 @@ void share_floor(std::vector<Fit>& fits, std::size_t best) {
   }
 }
 
+/// What a trace is read for.
+enum class Purpose { law, rig };
+
 /// Where the instruments file contradicts what was used, or says more than is used.
-void compare_declared(const Motion& motion, const Instruments& instruments, std::vector<std::string>& warnings) {
+void compare_declared(const Motion& motion, const Instruments& instruments, Purpose purpose,
+                      std::vector<std::string>& warnings) {
   const auto compare = [&](const Condition& used, const std::optional<Declared>& declared, const char* name) {
     if (!declared || !used.known() || used.source == "instruments file") return;
     const double allowed = std::max(1e-6 * std::abs(declared->value), 2 * declared->uncertainty);
@@ -77,8 +81,12 @@ void compare_declared(const Motion& motion, const Instruments& instruments, std:
     if (declared)
       warnings.push_back(fmt::format("{} is declared in the instruments file but nothing uses it yet", name));
   };
-  unused(instruments.rig.stiffness, "rig.stiffness");
-  unused(instruments.rig.ping_frequency, "rig.ping_frequency");
+  const auto of_rig = [&](const std::optional<Declared>& declared, const char* name) {
+    if (declared && purpose != Purpose::rig)
+      warnings.push_back(fmt::format("{} is declared in the instruments file; only `identify rig` uses it", name));
+  };
+  of_rig(instruments.rig.stiffness, "rig.stiffness");
+  of_rig(instruments.rig.ping_frequency, "rig.ping_frequency");
   unused(instruments.rig.pad_radius, "rig.pad_radius");
 }
 
@@ -98,7 +106,7 @@ bool is_constant(const std::vector<double>& channel) {
 }
 
 /// What keeps the data from carrying an analysis, as sentences; none when nothing does.
-std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation) {
+std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation, Purpose purpose) {
   constexpr std::size_t kFewestSamples = 16;
   std::vector<std::string> found;
   if (motion.size() < kFewestSamples) {
@@ -110,7 +118,7 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
   if (is_constant(motion.relative_velocity) && !motion.sticks && motion.velocity_kind != VelocityKind::fixed_block) {
     found.push_back("the velocity is the same in every sample: the channel was not recorded");
   }
-  if (found.empty() && segmentation.kind == MotionKind::always_sticking) {
+  if (found.empty() && segmentation.kind == MotionKind::always_sticking && purpose == Purpose::law) {
     found.push_back("nothing slips in this trace: there is no friction law to fit");
   }
   return found;
@@ -148,7 +156,8 @@ void require_formulas(const std::vector<Effect>& effects, Identification& trace)
 }
 
 /// The stages up to the cycles. Effects of the motion among `effects` are corrected.
-Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options) {
+Identification prepare(const TraceInput& input, const IdentifyOptions& options, MotionOptions motion_options,
+                       Purpose purpose = Purpose::law) {
   Identification out;
   out.path = input.path;
   Trace trace = input.trace ? *input.trace : read_trace(input.path, with_declared(input.read, options.instruments));
@@ -169,9 +178,9 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 
-  compare_declared(out.motion, options.instruments, out.warnings);
+  compare_declared(out.motion, options.instruments, purpose, out.warnings);
   require_channels(options, out.motion, out.warnings, out.analysed);
-  for (const std::string& obstacle : obstacles(out.motion, out.segmentation)) {
+  for (const std::string& obstacle : obstacles(out.motion, out.segmentation, purpose)) {
     out.warnings.push_back(obstacle);
     out.analysed = false;
   }
@@ -304,6 +313,17 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
   Identification out = prepare({path, options.read, {}}, options, options.motion);
   require_formulas(options.effects, out);
   if (out.analysed) fit_all(options, out);
+  return out;
+}
+
+RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& options) {
+  RigIdentification out{prepare(input, options, options.motion, Purpose::rig), {}};
+  if (out.trace.analysed) {
+    out.rig = identify_rig(out.trace.motion, out.trace.segmentation, options.instruments);
+  } else {
+    out.rig.reason = out.trace.warnings.back();
+  }
+  out.trace.analysed = out.rig.determined;
   return out;
 }
 

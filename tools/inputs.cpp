@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "options.hpp"
+
 using namespace tribofit;
 
 namespace {
@@ -48,6 +50,18 @@ std::vector<bool> last_repeats(const std::vector<Input>& inputs) {
 }
 
 }  // namespace
+
+Input only_input(const Settings& s, const ReadOptions& read, const std::string& verb) {
+  if (s.traces.empty()) {
+    throw CLI::ValidationError("no trace given; try `identify " + verb + " --radius 15mm --load 50N trace.csv`");
+  }
+  std::vector<Input> inputs = find_runs(s.traces, read).runs;
+  if (inputs.size() != 1) throw CLI::ValidationError("`identify " + verb + "` takes one trace at a time");
+  std::vector<std::string> files = input_files(s);
+  files.push_back(inputs.front().trace.path);
+  refuse_overwriting(s, files);
+  return std::move(inputs.front());
+}
 
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;

@@ -8,6 +8,10 @@
 
 using Input = tribofit::Run;
 
+/// The one trace of a verb that takes one at a time (a folder of one does). Wrong usage where there are none or several,
+/// or where an output would overwrite an input.
+Input only_input(const Settings& settings, const tribofit::ReadOptions& read, const std::string& verb);
+
 /// Whether two names lead to one file.
 bool same_file(const std::string& a, const std::string& b);
 

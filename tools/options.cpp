@@ -48,14 +48,18 @@ void add_model_options(CLI::App& app, Settings& s) {
   fit("--seed", s.seed_text, "Seed of the random starts (default 1)");
 }
 
-void add_output_options(CLI::App& app, Settings& s) {
+void add_result_options(CLI::App& app, Settings& s) {
   app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
       ->group("Output");
-  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder")->group("Output");
   app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
       ->check(CLI::Range(0, 1024))
       ->group("Output");
   app.add_flag("--quiet", s.quiet, "Do not print the table")->group("Output");
+}
+
+void add_output_options(CLI::App& app, Settings& s) {
+  add_result_options(app, s);
+  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder")->group("Output");
 }
 
 Effect effect_named(const std::string& name) {

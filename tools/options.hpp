@@ -11,6 +11,9 @@
 void add_input_options(CLI::App& app, Settings& settings);
 /// Laws, effects and how they are fitted.
 void add_model_options(CLI::App& app, Settings& settings);
+/// Where the result goes, for verbs that write no tables.
+void add_result_options(CLI::App& app, Settings& settings);
+/// The same with tables as CSV.
 void add_output_options(CLI::App& app, Settings& settings);
 /// What several runs have in common.
 void add_pooling_options(CLI::App& app, Settings& settings);

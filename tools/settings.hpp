@@ -15,6 +15,7 @@ struct Settings {
   std::vector<std::string> continued_in;
   std::vector<std::string> confirm;  // diagnose: runs that take no part
   bool trim = true;
+  bool keep_high_pass = false;  // rig: one found on the velocity is not undone
 
   std::vector<std::string> laws, effects, formulas;
   std::string protocol = "both", loss = "squares";

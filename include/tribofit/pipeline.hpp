@@ -19,6 +19,7 @@
 
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/rig.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
@@ -82,6 +83,16 @@ struct DiagnosedTraces {
 /// input brings its own.
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& options = {},
                          const DiagnoseOptions& more = {});
+
+/// The rig behind one trace.
+struct RigIdentification {
+  Identification trace;  ///< without fits; `analysed` is that of the rig
+  RigFit rig;
+};
+
+/// The stages in order: read, move, segment, balance the forces. Needs no law: of `options`, reading, instruments and
+/// motion are used.
+RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& options = {});
 
 /// The stages in order: read, move, segment, fit.
 Identification identify(const std::string& path, const IdentifyOptions& options = {});

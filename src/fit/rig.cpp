@@ -66,7 +66,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
   std::vector<double> slopes, differences;
   std::vector<std::size_t> middles;
   for (const Cycle& cycle : segmentation.cycles) {
-    if (cycle.stick.size() == 0) continue;
+    if (!cycle.stick_complete) continue;
     const std::optional<double> k = stick_stiffness(motion, load, cycle.stick);
     if (!k) continue;
     slopes.push_back(*k);

@@ -10,14 +10,13 @@
 #include "numbers.hpp"
 #include "style.hpp"
 #include "terminal_fits.hpp"
+#include "terminal_parts.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/version.hpp"
 #include "verdict.hpp"
 
 namespace tribofit {
-namespace {
 
-/// "  name      text", the text broken to the width and indented behind the name.
 std::string item(const Style& style, std::string_view name, std::string_view text) {
   constexpr std::size_t kNameWidth = 18;
   const std::string head = fmt::format("  {:<{}}", name, kNameWidth);
@@ -40,6 +39,8 @@ std::string trace_lines(const Identification& r, const Style& style) {
   }
   return text;
 }
+
+namespace {
 
 /// "15 mm (command line)", or every step's own where they differ.
 std::string condition(const Motion& motion, Condition Conditions::*which, double unit, std::string_view name) {
@@ -65,6 +66,8 @@ std::string speed_text(const Motion& motion) {
   const auto [low, high] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
   return fmt::format("{} to {} rpm (recorded)", brief(*low / kRpm), brief(*high / kRpm));
 }
+
+}  // namespace
 
 std::string condition_lines(const Identification& r, const Style& style) {
   const Motion& m = r.motion;
@@ -93,6 +96,8 @@ std::string health_lines(const Identification& r, const Style& style) {
   if (found == 0) text += fmt::format("  no problems found ({} checks)\n", r.motion.health.size());
   return text;
 }
+
+namespace {
 
 std::string motion_sentence(const Segmentation& s) {
   switch (s.kind) {

@@ -98,13 +98,6 @@ bool has_option(const std::vector<std::string>& arguments, const std::string& na
                      [&](const std::string& a) { return a == name || a.rfind(name + "=", 0) == 0; });
 }
 
-std::string command_line(const TerminalOptions& options, const std::string& more, const std::string& path) {
-  std::string text = "identify";
-  for (const std::string& argument : options.arguments) text += " " + shell_quoted(argument);
-  if (!more.empty()) text += " " + more;
-  return text + " " + shell_quoted(path.rfind('-', 0) == 0 ? "./" + path : path);
-}
-
 /// `identify diagnose` with the user's own options, as far as it knows them.
 std::string diagnose_command(const TerminalOptions& options, const std::string& path) {
   TerminalOptions known = options;
@@ -155,6 +148,13 @@ Suggestion next_command(const Identification& result, const TerminalOptions& opt
     return {"to check the intervals by profile likelihood", command_line(options, "--profile", result.path)};
   }
   return {"to see which effects can be added", "identify effects"};
+}
+
+std::string command_line(const TerminalOptions& options, const std::string& more, const std::string& path) {
+  std::string text = "identify";
+  for (const std::string& argument : options.arguments) text += " " + shell_quoted(argument);
+  if (!more.empty()) text += " " + more;
+  return text + " " + shell_quoted(path.rfind('-', 0) == 0 ? "./" + path : path);
 }
 
 std::string shell_quoted(const std::string& argument) {

@@ -16,4 +16,8 @@ struct Suggestion {
 };
 Suggestion next_command(const Identification& result, const TerminalOptions& options);
 
+/// `identify` with the user's own options, `more` behind them, and the trace. options.arguments begins with the verb
+/// where there is one.
+std::string command_line(const TerminalOptions& options, const std::string& more, const std::string& path);
+
 }  // namespace tribofit

@@ -1,0 +1,61 @@
+#include "tribofit/report/rig.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "inputs.hpp"
+#include "options.hpp"
+#include "settings.hpp"
+#include "tribofit/campaign/run.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1;
+
+constexpr const char* kFooter =
+    "Mass, damping and stiffness from N mu = m dv_b/dt + c v_b + k x, whatever the friction law is. Without\n"
+    "--load (or a channel of it) they are per newton. A high-pass found on the vibrometer is undone first;\n"
+    "--keep-high-pass shows what it does to the damping.\n\n"
+    "Examples:\n"
+    "  identify rig --radius 15mm --load 50N trace.csv\n"
+    "  identify rig --radius 15mm --load 50N --instruments lab.json --json rig.json trace.csv";
+
+int run(const Settings& s, const std::vector<std::string>& arguments) {
+  IdentifyOptions options = options_from(s);
+  options.motion.undo_high_pass = !s.keep_high_pass;
+  const Input input = only_input(s, options.read, "rig");
+  RigIdentification result = identify_rig(input.trace, options);
+  Identification& trace = result.trace;
+  trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
+  trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
+  if (!s.quiet && s.json != "-") print(render_rig(result, terminal_options(s, arguments_for(input, arguments))));
+  if (result.rig.determined) return kDone;
+  complain(trace.path + ": no rig can be had: " + result.rig.reason);
+  return kFailed;
+}
+
+}  // namespace
+
+void add_rig(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("rig", "Mass, damping and stiffness of the rig behind a trace");
+  verb->footer(kFooter);
+  const auto settings = std::make_shared<Settings>();
+  add_input_options(*verb, *settings);
+  verb->add_flag("--keep-high-pass", settings->keep_high_pass,
+                 "Do not undo a high-pass found on the velocity (one that is declared is undone)")
+      ->group("Reading");
+  add_result_options(*verb, *settings);
+  verb->callback([settings, verb, &status] {
+    refuse_empty_values(*verb);
+    status = run(*settings, own_options(*verb));
+  });
+}
