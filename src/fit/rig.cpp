@@ -34,18 +34,35 @@ RigValue rig_value(double value, double std_error, double freedom) {
   return out;
 }
 
-/// Slope of force over that of the disc's way in the inner part of a stick; nothing where it is too short.
-std::optional<double> stick_stiffness(const Motion& motion, const NormalForce& load, const Span& stick) {
-  const std::size_t tenth = stick.size() / 10, begin = stick.begin + tenth, end = stick.end - tenth;
-  if (end < begin + 8) return std::nullopt;
-  double st = 0, sf = 0, sw = 0, stt = 0, stf = 0, stw = 0, way = 0;
-  const auto n = static_cast<double>(end - begin);
-  for (std::size_t i = begin; i < end; ++i) {
-    const double t = static_cast<double>(i - begin) - 0.5 * (n - 1), f = load.at(i) * motion.friction[i];
-    st += t, sf += f, sw += way, stt += t * t, stf += t * f, stw += t * way;
+/// Force over the way of the disc, as a straight line.
+struct Line {
+  double slope = 0, level = 0, middle = 0, squares = 0;  // level at the middle; sum of squares of the way about it
+};
+
+/// Nothing where the samples are too few or the disc stands.
+std::optional<Line> force_over_way(const Motion& motion, const NormalForce& load, const Span& span) {
+  if (span.end < span.begin + 8) return std::nullopt;
+  const auto n = static_cast<double>(span.size());
+  const double first = load.at(span.begin) * motion.friction[span.begin];
+  double way = 0, sx = 0, sf = 0, sxx = 0, sxf = 0;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double f = load.at(i) * motion.friction[i] - first;
+    sx += way, sf += f, sxx += way * way, sxf += way * f;
     way += motion.step * motion.disc_velocity_at(i);
   }
-  return stw != 0 ? std::optional(stf / stw) : std::nullopt;
+  Line line;
+  line.middle = sx / n;
+  line.level = first + sf / n;
+  line.squares = sxx - sx * sx / n;
+  if (!(line.squares > 1e-9 * sxx)) return std::nullopt;
+  line.slope = (sxf - sx * sf / n) / line.squares;
+  return line;
+}
+
+/// The same over the inner part of a stick: what follows re-stick and what precedes break-away are left out.
+std::optional<Line> within_stick(const Motion& motion, const NormalForce& load, const Span& stick) {
+  const std::size_t tenth = stick.size() / 10;
+  return force_over_way(motion, load, {stick.begin + tenth, stick.end - tenth});
 }
 
 Measure mean_of(const std::vector<double>& values) {
@@ -67,9 +84,9 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
   std::vector<std::size_t> middles;
   for (const Cycle& cycle : segmentation.cycles) {
     if (!cycle.stick_complete) continue;
-    const std::optional<double> k = stick_stiffness(motion, load, cycle.stick);
-    if (!k) continue;
-    slopes.push_back(*k);
+    const std::optional<Line> line = within_stick(motion, load, cycle.stick);
+    if (!line) continue;
+    slopes.push_back(line->slope);
     middles.push_back(cycle.stick.begin + cycle.stick.size() / 2);
   }
   if (slopes.size() < 3) return;
@@ -85,20 +102,24 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
   if (error.std_error > 0) fit.stick_slope_difference = (fit.stiffness.value - mean.value) / error.std_error;
 }
 
-/// A record that only sticks: the spring is wound up evenly, and the slope of force says how stiff it is.
+/// A record that only sticks: the spring is wound up evenly, and the slope of force over the way says how stiff it is.
+/// Its error is that of the pieces of the record.
 void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit) {
   fit.reason =
       "the block never slips: it moves with the disc, so that nothing accelerates and mass and damping do not show";
-  if (!disc_is_known(motion)) return;
-  constexpr std::size_t kPieces = 12;
-  std::vector<double> slopes;
-  for (std::size_t k = 0; k < kPieces; ++k) {
-    const Span piece{k * motion.size() / kPieces, (k + 1) * motion.size() / kPieces};
-    if (const auto slope = stick_stiffness(motion, load, piece)) slopes.push_back(*slope);
+  const std::optional<Line> line = force_over_way(motion, load, {0, motion.size()});
+  if (!disc_is_known(motion) || !line) return;
+  constexpr std::size_t kPieces = 24;
+  std::vector<double> influence(kPieces, 0.0);
+  double way = 0;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const double x = way - line->middle, residual = load.at(i) * motion.friction[i] - line->level - line->slope * x;
+    influence[i * kPieces / motion.size()] += kPieces * x * residual / line->squares;
+    way += motion.step * motion.disc_velocity_at(i);
   }
-  if (slopes.size() < 3) return;
-  const Measure mean = mean_of(slopes);
-  fit.stick_slope_stiffness = rig_value(mean.value, mean.std_error, mean.degrees_of_freedom);
+  const MeanError error = mean_error(influence);
+  fit.stick_slope_stiffness = rig_value(line->slope, error.std_error, error.degrees_of_freedom);
+  if (!(std::abs(line->slope) > kClear * error.std_error)) return;
   fit.stiffness = fit.stick_slope_stiffness;
 }
 

@@ -87,6 +87,7 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
   auto& out = fit.messages;
   const bool late = delay_counts(fit), sags = high_pass_counts(fit);
   const bool sag_first = sags && (!late || t_of(fit.high_pass) > t_of(fit.delay));
+  fit.damping_doubtful = sags || late;
   if (sag_first && fit.high_pass.value > 0) {
     out.push_back(fmt::format(
         "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on v_b that is not undone (a force "
@@ -127,11 +128,14 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
 
 void add_about_stiffness(const Motion& motion, const Instruments& instruments, RigFit& fit) {
   auto& out = fit.messages;
-  if (fit.determined && t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChance) {
+  constexpr double kLeast = 0.005;  // of the stiffness: less is no news about a gain or a radius
+  const double off = fit.stick_slope_stiffness.value / fit.stiffness.value - 1;
+  if (fit.determined && fit.stick_slope_stiffness.determined && std::abs(off) > kLeast &&
+      t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChance) {
     out.push_back(fmt::format(
         "the slope of stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or omega r is off, or the "
         "contact creeps in stick",
-        100 * (fit.stick_slope_stiffness.value / fit.stiffness.value - 1)));
+        100 * off));
   }
   if (const auto& pull = instruments.rig.stiffness; pull && fit.stiffness.determined && !fit.per_unit_load) {
     const double error = std::hypot(fit.stiffness.std_error, fit.stiffness.systematic, pull->uncertainty);

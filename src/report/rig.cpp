@@ -54,7 +54,9 @@ std::string table_of(const RigFit& rig, const Style& style) {
 }
 
 std::string rig_lines(const RigFit& rig, const Style& style) {
-  std::string text = style.heading("Rig") + table_of(rig, style);
+  const std::string table = table_of(rig, style);
+  if (table.empty() && rig.messages.empty()) return "";
+  std::string text = style.heading("Rig") + table;
   if (rig.stiffness.determined && rig.mass.determined) {
     std::string from = fmt::format("force balance over {} cycles, leaves {} {} in {} ms means", rig.cycles,
                                    significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
@@ -93,6 +95,16 @@ Suggestion next_of(const RigIdentification& result, const TerminalOptions& optio
           of_verb("twin", placed ? "" : "--radius 15mm")};
 }
 
+std::string verdict_on(const RigFit& rig) {
+  std::string text =
+      fmt::format("The block is {} {} on {} {}; it swings at {} Hz and loses by a damping ratio of {}.",
+                  significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
+                  significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
+                  significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2));
+  if (rig.damping_doubtful) text += " Do not rely on the damping: a note says what is in its way.";
+  return text;
+}
+
 Json value_json(const RigValue& v, double si) {
   if (!v.determined) return nullptr;
   return {{"value", number(v.value / si)},
@@ -117,6 +129,7 @@ Json rig_json(const RigFit& rig) {
       rig.stick_slope_stiffness.determined && rig.mass.determined ? number(rig.stick_slope_difference) : Json(nullptr);
   json["mass_below_declared"] = rig.mass_below_declared;
   json["mass_below_kg"] = value_json(rig.mass_below, 1);
+  json["damping_doubtful"] = rig.damping_doubtful;
   json["delay_ms"] = value_json(rig.delay, kMillisecond);
   json["high_pass_hz"] = value_json(rig.high_pass, 1);
   json[rig.per_unit_load ? "residual_rmse" : "residual_rmse_N"] = number(rig.residual_rmse);
@@ -138,12 +151,7 @@ std::string render_rig(const RigIdentification& result, const TerminalOptions& o
     text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
   }
   const RigFit& rig = result.rig;
-  const std::string verdict =
-      rig.determined ? fmt::format("The block is {} {} on {} {}; it swings at {} Hz and loses by a damping ratio of {}.",
-                                   significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
-                                   significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
-                                   significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2))
-                     : "No rig can be had: " + rig.reason + ".";
+  const std::string verdict = rig.determined ? verdict_on(rig) : "No rig can be had: " + rig.reason + ".";
   text += "  " + wrapped(verdict, style.width, 2) + "\n";
   const Suggestion next = next_of(result, options);
   text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n  " + next.command + "\n";

@@ -41,6 +41,7 @@ struct RigFit {
   RigValue delay;                              ///< friction recorded later than v_b, as the balance sees it [s]
   RigValue high_pass;                          ///< of the velocity, not undone, as the balance sees it [Hz]
   double damping_without_both = 0;             ///< c with delay and high-pass taken into account [N s/m]
+  bool damping_doubtful = false;               ///< one of the two is there and moves c; a message says which
   double residual_rmse = 0;                    ///< of the balance after smoothing [N or N per N of load]
   double smoothing = 0;                        ///< width of the test functions [s]
   std::size_t cycles = 0;                      ///< units of evidence
