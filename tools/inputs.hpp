@@ -8,8 +8,8 @@
 
 using Input = tribofit::Run;
 
-/// The one trace of a verb that takes one at a time (a folder of one does). Wrong usage where there are none or several,
-/// or where an output would overwrite an input.
+/// The one trace of a verb that takes one at a time (a folder of one does). Wrong usage where there are none or
+/// several, or where an output would overwrite an input.
 Input only_input(const Settings& settings, const tribofit::ReadOptions& read, const std::string& verb);
 
 /// Whether two names lead to one file.

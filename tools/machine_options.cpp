@@ -143,7 +143,7 @@ double disc_speed_from(const std::string& text, double radius, const std::string
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
-  const BaseLaw law = read_law(request.law);
+  const BaseLaw law = request.law.empty() ? BaseLaw::exponential : read_law(request.law);
   const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
   const PublishedTest test = published_test(radius, law);
   RequestedMachine out;
@@ -165,6 +165,13 @@ RequestedMachine machine_from(const MachineRequest& request) {
     machine.parameters.insert(machine.parameters.end(), values.begin(), values.end());
   }
   return out;
+}
+
+Machine with_typed(Machine machine, const MachineRequest& request) {
+  set_levels(request, machine.parameters);
+  set_decay(request, machine.model.law(), machine.parameters);
+  set_rig(request, machine.rig);
+  return machine;
 }
 
 namespace {
@@ -190,7 +197,7 @@ void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
   group(rig, "--damping", r.damping, "of the block on its spring, e.g. 4.7Ns/m");
   group(rig, "--damping-ratio", r.damping_ratio, "the same as c/(2 sqrt(k m)), e.g. 0.02");
   const char* law = "Friction (default: the published values at the nearest radius)";
-  group(law, "--law", r.law, "exponential, fractional or coulomb")->capture_default_str();
+  group(law, "--law", r.law, "exponential (default), fractional or coulomb");
   group(law, "--mu-s", r.mu_s, "static friction");
   group(law, "--mu-k", r.mu_k, "kinetic friction");
   group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");

@@ -8,7 +8,7 @@
 
 /// A machine as typed; empty means: from the published test of the nearest radius.
 struct MachineRequest {
-  std::string radius = "15mm", speed, load, law = "exponential";
+  std::string radius = "15mm", speed, load, law;  // law: exponential
   std::string mu_s, mu_k, alpha, beta, mass, stiffness, damping, damping_ratio;
   std::vector<std::string> effects, formulas;
 };
@@ -25,6 +25,9 @@ struct RequestedMachine {
 };
 /// Throws tribofit::InputError, or CLI::ValidationError for names that are none.
 RequestedMachine machine_from(const MachineRequest& request);
+
+/// An identified machine with the levels, decay factor and rig that were typed in place of its own.
+tribofit::Machine with_typed(tribofit::Machine machine, const MachineRequest& request);
 
 /// A speed of the disc [rad/s] from a rotational speed or, at the friction radius [m], from omega r ("4rpm",
 /// "0.5mm/s").

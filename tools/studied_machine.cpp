@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
 #include <string_view>
 
+#include "inputs.hpp"
 #include "options.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/fit/rig.hpp"
+#include "tribofit/pipeline.hpp"
 
 using namespace tribofit;
 
@@ -23,9 +27,78 @@ StudiedMachine given(const Settings& settings, MachineRequest typed) {
 
 }  // namespace
 
+namespace {
+
+/// Rows and columns of a covariance of three that are known exactly now.
+void set_exact(std::vector<double>& covariance, std::size_t k) {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+  for (std::size_t i = 0; k < n && i < n; ++i) covariance[i * n + k] = covariance[k * n + i] = 0;
+}
+
+void forget_typed(const MachineRequest& typed, MachineCovariance& covariance) {
+  if (!typed.mu_s.empty()) set_exact(covariance.friction, 0);
+  if (!typed.mu_k.empty()) set_exact(covariance.friction, 1);
+  if (!typed.alpha.empty() || !typed.beta.empty()) set_exact(covariance.friction, 2);
+  if (!typed.mass.empty()) set_exact(covariance.rig, 0);
+  if (!typed.damping.empty() || !typed.damping_ratio.empty()) set_exact(covariance.rig, 1);
+  if (!typed.stiffness.empty()) set_exact(covariance.rig, 2);
+}
+
+StudiedMachine identified(const Settings& settings, const MachineRequest& typed) {
+  Settings of_trace = settings;
+  for (const std::string& effect : typed.effects) {
+    if (effect.find('=') != std::string::npos) {
+      throw CLI::ValidationError("--effect " + effect +
+                                 ": beside a trace its values are identified; name the key alone");
+    }
+  }
+  of_trace.effects = typed.effects;
+  of_trace.formulas = typed.formulas;
+  if (!typed.law.empty()) of_trace.laws = {typed.law};
+  of_trace.protocol = "joint";
+  IdentifyOptions options = options_from(of_trace);
+  const Input input = only_input(of_trace, options.read, "study");
+  options.read = input.trace.read;
+  const Identification trace = identify(input.trace.path, options);
+  const auto refuse = [&](const std::string& reason) {
+    throw std::runtime_error(input.trace.path + ": no machine can be identified: " + reason);
+  };
+  if (!trace.analysed || trace.fits.empty())
+    refuse(trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
+  const Fit& fit = trace.fits[trace.best];
+  if (!fit.converged) refuse("the fit of the law did not converge");
+  const RigFit rig = identify_rig(trace.motion, trace.segmentation, options.instruments);
+  if (!rig.determined) refuse(rig.reason);
+  const double velocity = trace.motion.constant_disc_velocity;
+  if (!(velocity > 0)) refuse("the disc does not turn at one constant speed forwards");
+
+  StudiedMachine out;
+  out.machine.rig = rig.to_rig();
+  out.machine.model = fit.model;
+  out.machine.parameters = fit.values();
+  out.machine.load = rig.load;
+  const Condition& radius = trace.motion.conditions.radius;
+  out.machine.radius = radius.known() ? radius.value : 1;
+  out.machine.speed = velocity / out.machine.radius;
+  out.covariance.friction = fit.covariance;
+  out.covariance.rig.assign(rig.covariance.begin(), rig.covariance.end());
+  out.machine = with_typed(std::move(out.machine), typed);
+  forget_typed(typed, out.covariance);
+  out.source = "identified from " + input.trace.path;
+  if (rig.per_unit_load) {
+    out.notes.push_back(
+        "no normal force is known: forces, mass, damping, stiffness and energy are per newton of it "
+        "(state --load)");
+  }
+  if (!radius.known())
+    out.notes.push_back("no radius is known: speeds of the disc are omega r, rotational ones mean nothing");
+  return out;
+}
+
+}  // namespace
+
 StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed) {
-  if (settings.traces.empty()) return given(settings, typed);
-  throw InputError("a machine cannot be identified from a trace yet", "give its numbers");
+  return settings.traces.empty() ? given(settings, typed) : identified(settings, typed);
 }
 
 std::vector<std::string> shared_arguments(const CLI::App& kind) {

@@ -93,9 +93,9 @@ Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const Spa
   std::vector<double> displacement = integral_of(velocity, step);
   take_off_mean(displacement);
   const std::vector<double> columns[kBalanceColumns] = {
-      weighted(velocity, 1, h, step),     weighted(velocity, 0, h, step), weighted(displacement, 0, h, step),
-      weighted(integral_of(displacement, step), 0, h, step), weighted(velocity, 2, h, step),
-      weighted(force, 0, h, step)};
+      weighted(velocity, 1, h, step),     weighted(velocity, 0, h, step),
+      weighted(displacement, 0, h, step), weighted(integral_of(displacement, step), 0, h, step),
+      weighted(velocity, 2, h, step),     weighted(force, 0, h, step)};
   const std::size_t hop = hop_of(h), count = (columns[0].size() + hop - 1) / hop;
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(count), Eigen::Index{kBalanceColumns});
   for (std::size_t c = 0; c < kBalanceColumns; ++c) {
@@ -130,8 +130,8 @@ class StickNoise {
   double freedom_ = 0;
 };
 
-/// Covariance that white noise on v_b leaves in velocity, acceleration and jerk: the B-spline's overlaps with itself and
-/// its derivatives.
+/// Covariance that white noise on v_b leaves in velocity, acceleration and jerk: the B-spline's overlaps with itself
+/// and its derivatives.
 Eigen::MatrixXd white_noise(const Motion& motion, std::size_t h) {
   const double samples = static_cast<double>(h), knot = samples * motion.step;
   const double v = motion.velocity_noise * motion.velocity_noise / samples, per = 1 / (knot * knot);
@@ -171,8 +171,8 @@ NormalForce normal_force(const Motion& motion) {
     out.channel = motion.load;
   } else {
     const Condition& whole = motion.conditions.load;
-    const bool by_step = std::any_of(motion.steps.begin(), motion.steps.end(),
-                                     [](const Step& s) { return s.conditions.load.known(); });
+    const bool by_step =
+        std::any_of(motion.steps.begin(), motion.steps.end(), [](const Step& s) { return s.conditions.load.known(); });
     if (by_step) {
       out.channel.assign(n, whole.value);
       for (const Step& step : motion.steps) {
@@ -201,8 +201,7 @@ std::vector<Span> balance_blocks(const Motion& motion, const Segmentation& segme
   std::vector<std::size_t> ends;
   if (segmentation.kind == MotionKind::stick_slip) {
     for (const Cycle& cycle : segmentation.cycles) {
-      const std::size_t middle =
-          cycle.stick.size() > 0 ? cycle.stick.begin + cycle.stick.size() / 2 : cycle.slip.begin;
+      const std::size_t middle = cycle.stick.size() > 0 ? cycle.stick.begin + cycle.stick.size() / 2 : cycle.slip.begin;
       if (ends.empty() || middle >= ends.back() + least) ends.push_back(middle);
     }
   } else {

@@ -157,8 +157,8 @@ void add_mass_below(const Instruments& instruments, RigFit& fit) {
   const double omega = kTwoPi * ping->value, whole = fit.stiffness.value / (omega * omega);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> covariance(fit.covariance.data());
   const Eigen::Vector3d gradient(-1, 0, 1 / (omega * omega));
-  fit.mass_below = rig_value(whole - fit.mass.value, std::sqrt(gradient.dot(covariance * gradient)),
-                             fit.degrees_of_freedom);
+  fit.mass_below =
+      rig_value(whole - fit.mass.value, std::sqrt(gradient.dot(covariance * gradient)), fit.degrees_of_freedom);
   fit.mass_below.systematic = 2 * whole * ping->uncertainty / ping->value;
 }
 
@@ -235,8 +235,8 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
     fit.reason = "the block stands still: its motion was not measured";
     return fit;
   }
-  fit.mass_below_declared = instruments.force_sensor.mass_below.has_value() && load.known &&
-                            motion.velocity_kind == VelocityKind::block;
+  fit.mass_below_declared =
+      instruments.force_sensor.mass_below.has_value() && load.known && motion.velocity_kind == VelocityKind::block;
   if (segmentation.kind == MotionKind::always_sticking) {
     from_stick_alone(motion, load, fit);
     rig::add_messages(motion, segmentation, instruments, fit);

@@ -12,7 +12,7 @@ struct BalanceSolution {
   bool solved = false;
   std::vector<BalanceColumn> columns;
   Eigen::VectorXd values;
-  Eigen::MatrixXd influence;  ///< blocks x values: jackknife pseudo-values about zero
+  Eigen::MatrixXd influence;    ///< blocks x values: jackknife pseudo-values about zero
   Eigen::VectorXd noise_share;  ///< of what each column has for itself, how much is noise
   double rmse = 0;
 };

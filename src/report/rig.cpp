@@ -81,9 +81,8 @@ Suggestion next_of(const RigIdentification& result, const TerminalOptions& optio
     if (!verb.empty()) known.arguments.insert(known.arguments.begin(), verb);
     return command_line(known, more, trace.path);
   };
-  if (trace.segmentation.kind == MotionKind::stick_slip && trace.motion.high_pass == 0 &&
-      trace.motion.size() > 0 && std::find(options.arguments.begin(), options.arguments.end(), "--keep-high-pass") !=
-                                     options.arguments.end()) {
+  if (trace.segmentation.kind == MotionKind::stick_slip && trace.motion.high_pass == 0 && trace.motion.size() > 0 &&
+      std::find(options.arguments.begin(), options.arguments.end(), "--keep-high-pass") != options.arguments.end()) {
     return {"to undo the high-pass", of_verb("rig", "")};
   }
   if (!result.rig.determined) return {"to see the trace, its health and its law", of_verb("", "")};
@@ -96,11 +95,10 @@ Suggestion next_of(const RigIdentification& result, const TerminalOptions& optio
 }
 
 std::string verdict_on(const RigFit& rig) {
-  std::string text =
-      fmt::format("The block is {} {} on {} {}; it swings at {} Hz and loses by a damping ratio of {}.",
-                  significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
-                  significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
-                  significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2));
+  std::string text = fmt::format("The block is {} {} on {} {}; it swings at {} Hz and loses by a damping ratio of {}.",
+                                 significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
+                                 significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
+                                 significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2));
   if (rig.damping_doubtful) text += " Do not rely on the damping: a note says what is in its way.";
   return text;
 }
@@ -114,8 +112,10 @@ Json value_json(const RigValue& v, double si) {
 }
 
 Json rig_json(const RigFit& rig) {
-  Json json = {{"determined", rig.determined}, {"reason", text_or_null(rig.reason)},
-               {"per_unit_load", rig.per_unit_load}, {"cycles", rig.cycles}};
+  Json json = {{"determined", rig.determined},
+               {"reason", text_or_null(rig.reason)},
+               {"per_unit_load", rig.per_unit_load},
+               {"cycles", rig.cycles}};
   const auto values = shown_values(rig);
   for (const Shown& q : values) json[q.key] = value_json(q.value, q.si);
   Json rows = Json::array();

@@ -258,19 +258,19 @@ bool keeps_sticking(const Machine& machine) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
   constexpr double kCycles = 4, kMostPeriods = 2000, kStill = 1e-9;
   // The first slip tells of most machines.
-  double duration = 0.5 * cycle + (kLongestSlip + 1) * period;
+  double duration = machine.model.effects().empty() ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {
     const SimulatedMotion motion =
         simulate(machine.rig, machine.drive(), machine.model, machine.parameters, {.duration = duration, .rate = 0});
     const std::optional<double> since = open_slip(motion);
     const std::vector<double> swings = swings_since(motion, since.value_or(duration));
-    const std::size_t n = swings.size();
-    if (since && duration - *since > kLongestSlip * period && n >= 4) {
-      // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
-      if (swings[n - 1] < (1 + kStill) * swings[n - 3] || duration > kMostPeriods * period) return false;
-    } else if (duration >= kCycles * cycle) {
-      return true;
-    }
+    const std::size_t n = swings.size(), cycles = cycles_of(motion).size();
+    const bool slides = since && duration - *since > kLongestSlip * period && n >= 4;
+    // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
+    if (slides && (swings[n - 1] < (1 + kStill) * swings[n - 3] || duration > kMostPeriods * period)) return false;
+    // A bare law begins each cycle at the same break-away.
+    if (cycles >= (machine.model.effects().empty() ? 1U : 3U)) return true;
+    if (!slides && duration >= kCycles * cycle) return true;
     duration = std::max(kCycles * cycle, 4 * duration);
   }
 }

@@ -24,7 +24,8 @@ TEST(Response, EveryHarmonicObeysTheForceBalanceOfTheRig) {
   const Machine machine = published_machine();
   const Response response = study_response(machine);
   ASSERT_EQ(response.harmonics.size(), 20U);
-  // A jump of friction (at re-stick, at most N mu_s) lies up to a sample off, which is an error of as much on every line.
+  // A jump of friction (at re-stick, at most N mu_s) lies up to a sample off, which is an error of as much on every
+  // line.
   const double jump = 2 * machine.load * machine.parameters[0] / 16384;
   for (const Harmonic& h : response.harmonics) {
     const double w = 2 * std::numbers::pi * h.frequency;
