@@ -18,12 +18,6 @@ int leading_power(double value, int digits) {
   return std::stoi(text.substr(text.find('e') + 1));
 }
 
-/// Columns a text takes: bytes that continue a UTF-8 character take none.
-std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 }  // namespace
 
 std::string significant(double value, int digits) {
@@ -119,7 +113,7 @@ void Table::add(std::vector<std::string> row) {
 std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> width(rows_.front().size(), 0);
   for (const auto& row : rows_) {
-    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], columns_of(row[k]));
+    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], displayed(row[k]));
   }
   return width;
 }
@@ -136,7 +130,7 @@ std::string Table::text(std::size_t indent, std::string_view header_on, std::str
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     std::string line(indent, ' ');
     for (std::size_t k = 0; k < rows_[i].size(); ++k) {
-      const std::string gap(width[k] - columns_of(rows_[i][k]), ' ');
+      const std::string gap(width[k] - displayed(rows_[i][k]), ' ');
       if (k > 0) line += "  ";
       line += left_[k] ? rows_[i][k] + gap : gap + rows_[i][k];
     }
@@ -153,7 +147,7 @@ std::string wrapped(std::string_view sentence, std::size_t width, std::size_t in
   while (!sentence.empty()) {
     const std::size_t blank = sentence.find(' ');
     const std::string_view word = sentence.substr(0, blank);
-    const std::size_t length = columns_of(word);
+    const std::size_t length = displayed(word);
     if (column > indent) {
       const bool fits = column + 1 + length <= width;
       result += fits ? std::string(" ") : "\n" + std::string(indent, ' ');
@@ -164,6 +158,48 @@ std::string wrapped(std::string_view sentence, std::size_t width, std::size_t in
     sentence.remove_prefix(blank == std::string_view::npos ? sentence.size() : blank + 1);
   }
   return result;
+}
+
+namespace {
+
+/// The words of a command; a quoted one stays whole.
+std::vector<std::string> words_of(const std::string& command) {
+  std::vector<std::string> words(1);
+  bool quoted = false;
+  for (const char c : command) {
+    if (c == '\'') quoted = !quoted;
+    if (c == ' ' && !quoted) {
+      words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+}  // namespace
+
+std::size_t displayed(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string folded_command(const std::string& command, std::size_t width) {
+  constexpr std::size_t kIndent = 2, kContinued = 6;
+  std::string text(kIndent, ' ');
+  std::size_t column = kIndent;
+  for (const std::string& word : words_of(command)) {
+    const bool first = column == kIndent;
+    const std::size_t length = displayed(word);
+    if (!first && column + 1 + length + 2 > width) {
+      text += " \\\n" + std::string(kContinued, ' ') + word;
+      column = kContinued + length;
+      continue;
+    }
+    text += (first ? "" : " ") + word;
+    column += length + (first ? 0 : 1);
+  }
+  return text;
 }
 
 }  // namespace tribofit

@@ -73,6 +73,13 @@ class Table {
   std::vector<bool> left_;
 };
 
+/// Columns a text takes: bytes that continue a UTF-8 character take none.
+std::size_t displayed(std::string_view text);
+
+/// A command on lines no longer than `width`, as a shell reads them: indented, and broken between words with a
+/// backslash.
+std::string folded_command(const std::string& command, std::size_t width);
+
 /// `sentence` broken at blanks to `width` columns, continuation lines indented by `indent`.
 std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent);
 

@@ -111,10 +111,10 @@ std::string seen_text(const Settled& settled, const Style& style) {
 }
 
 std::string next_text(const std::string& purpose, const char* kind, const TerminalOptions& options) {
-  std::string command = std::string("  identify study ") + kind;
+  std::string command = std::string("identify study ") + kind;
   for (const std::string& argument : options.arguments) command += " " + shell_quoted(argument);
   for (const std::string& input : options.inputs) command += " " + shell_quoted(input);
-  return "\nNext, " + purpose + ":\n" + command + "\n";
+  return "\nNext, " + purpose + ":\n" + folded_command(command, Style(false, options.width).width) + "\n";
 }
 
 }  // namespace

@@ -191,13 +191,6 @@ class Page {
       text_ += text + "\n";
     }
   }
-
-  /// Columns a text takes: bytes that continue a UTF-8 character take none.
-  static std::size_t displayed(std::string_view text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-  }
-
   void shares(const std::string& title, const std::vector<Share>& all, bool wanted) {
     if (!wanted || d_.verdict == Verdict::not_enough_data) return;
     heading(title);
@@ -310,41 +303,8 @@ class Page {
 
   void next() {
     const Suggestion next = next_after_diagnosis(result_, options_);
-    text_ += "\n" + wrapped("Next, " + next.reason + ":", style_.width, 0) + "\n" + folded(next.command) + "\n";
-  }
-
-  /// A command on lines no longer than the page, as a shell reads them: broken between options with a backslash.
-  std::string folded(const std::string& command) const {
-    constexpr std::size_t kIndent = 2, kContinued = 6;
-    std::string text(kIndent, ' ');
-    std::size_t column = kIndent;
-    for (const std::string& word : words_of(command)) {
-      const bool first = column == kIndent;
-      const std::size_t length = displayed(word);
-      if (!first && column + 1 + length + 2 > style_.width) {
-        text += " \\\n" + std::string(kContinued, ' ') + word;
-        column = kContinued + length;
-        continue;
-      }
-      text += (first ? "" : " ") + word;
-      column += length + (first ? 0 : 1);
-    }
-    return text;
-  }
-
-  /// The words of a command; a quoted one stays whole.
-  static std::vector<std::string> words_of(const std::string& command) {
-    std::vector<std::string> words(1);
-    bool quoted = false;
-    for (const char c : command) {
-      if (c == '\'') quoted = !quoted;
-      if (c == ' ' && !quoted) {
-        words.emplace_back();
-      } else {
-        words.back() += c;
-      }
-    }
-    return words;
+    text_ += "\n" + wrapped("Next, " + next.reason + ":", style_.width, 0) + "\n" +
+             folded_command(next.command, style_.width) + "\n";
   }
 
   const DiagnosedTraces& result_;
