@@ -249,7 +249,11 @@ CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const st
 
 void add_study(CLI::App& app, int& status) {
   CLI::App* study = app.add_subcommand("study", "What a machine does: critical speed, portraits, sensitivities, maps");
-  study->require_subcommand(1);
+  study->require_subcommand(0, 1);
+  study->callback([study] {
+    if (!study->get_subcommands().empty()) return;
+    throw CLI::ValidationError("name what to study: speed, phase, response, sensitivity or map");
+  });
   study->footer(
       "A machine is a rig with its friction: identified from a trace, or given, or both (what is given beats what was\n"
       "identified). Without either it is the published test at the radius given.\n\n"

@@ -88,6 +88,9 @@ std::string critical_text(const StudiedMachine& of, const SpeedStudy& study, con
   }
   line("on the way up stick vanishes at", c.stick_vanishes, study.vanishes_range);
   line("on the way down it comes back at", c.stick_returns, study.returns_range);
+  if (!std::isnan(c.stick_vanishes) && std::isnan(c.stick_returns)) {
+    text += "  on the way down it does not come back: sliding goes on\n";
+  }
   if (c.below_range) text += fmt::format("  nothing sticks at {} mm/s and above\n", significant(1e3 * c.lowest, 3));
   if (c.above_range) {
     text += fmt::format("  it still sticks at {} mm/s, the highest speed searched\n", significant(1e3 * c.highest, 3));

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 
@@ -110,7 +111,13 @@ Settled Settling::run() {
   const bool winds_up = options_.start == StartFrom::stick;
   const double most_cycles = options_.longest_cycles * cycle_, most_swings = options_.longest_swings * period_;
   for (double duration = winds_up ? 4 * cycle_ + 4 * period_ : 20 * period_;; duration *= 4) {
-    const SimulatedMotion motion = motion_of(machine_, simulation(duration), options_.sharpness);
+    SimulatedMotion motion;
+    try {
+      motion = motion_of(machine_, simulation(duration), options_.sharpness);
+    } catch (const InputError& error) {
+      out_.seen = error.problem();
+      return out_;
+    }
     out_ = {};
     out_.simulated = duration;
     if (judge(motion, duration)) return out_;
@@ -250,7 +257,9 @@ BlockStart start_in_sliding(const Machine& machine) {
 }
 
 Settled settle(const Machine& machine, const SettleOptions& options) {
-  steady_sliding(machine);  // refuses machines that cannot be
+  // Refuses machines that cannot be; what cannot be integrated afterwards does not settle.
+  steady_sliding(machine);
+  if (options.sharpness > 0) smoothed_law(machine.model, machine.parameters, options.sharpness);
   return Settling(machine, options).run();
 }
 

@@ -41,10 +41,10 @@ enum class StartFrom {
 
 struct SettleOptions {
   StartFrom start = StartFrom::stick;
-  double tolerance = 1e-6;       ///< of period and peak-to-peak from cycle to cycle, relative
-  double longest_cycles = 200;   ///< given up after so many stick-slip cycles
-  double longest_swings = 2000;  ///< and so many natural periods without a stick
-  double sharpness = 0;          ///< s of the smoothed law [s/m], see smoothed.hpp; 0: the event-located law
+  double tolerance = 1e-6;      ///< of period and peak-to-peak from cycle to cycle, relative
+  double longest_cycles = 200;  ///< given up after so many stick-slip cycles
+  double longest_swings = 500;  ///< and so many natural periods without a stick
+  double sharpness = 0;         ///< s of the smoothed law [s/m], see smoothed.hpp; 0: the event-located law
 };
 
 /// The motion of a machine, by its own law or by the smoothed one of that sharpness [s/m] (0: its own). options.start:
@@ -59,7 +59,8 @@ SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& optio
 /// shrink once shrink always, and only a vibration smaller than that could still be hidden.
 /// Machines whose friction goes with time, angle or distance need not settle: `seen` then says what the last cycles
 /// were, and the measures are their means.
-/// Throws InputError for machines that cannot be. Cost: below 1 ms where it settles at once.
+/// A motion that cannot be integrated is not settled either, and `seen` is why. Throws InputError for machines that
+/// cannot be. Cost: below 1 ms where it settles at once.
 Settled settle(const Machine& machine, const SettleOptions& options = {});
 
 /// The block in steady sliding, with a velocity of a thousandth of the disc's beside it.
