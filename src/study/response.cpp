@@ -67,7 +67,7 @@ std::vector<Portrait> study_phase(const Machine& machine, const std::vector<doub
     const double winding = at.parameters[0] * at.load / (at.rig.stiffness * v);
     const double duration = winding + static_cast<double>(options.cycles) * cycle;
     SimulationOptions simulation{.duration = duration, .rate = static_cast<double>(options.samples) / cycle};
-    if (options.settle.start == StartFrom::sliding) simulation.start = start_in_sliding(at);
+    simulation.start = start_of(at, options.settle.start);
     portrait.start = motion_of(at, simulation, options.settle.sharpness);
     if (repeats) portrait.cycle = settled_motion(at, portrait.settled, 1, options.samples, options.settle);
     out.push_back(std::move(portrait));

@@ -88,7 +88,6 @@ class Settling {
   Settled run();
 
  private:
-  SimulationOptions simulation(double duration) const;
   bool judge(const SimulatedMotion& motion, double duration);
   bool judge_cycles(const std::vector<SeenCycle>& cycles);
   bool judge_swings(const SimulatedMotion& motion, double since);
@@ -101,19 +100,14 @@ class Settling {
   Settled out_;
 };
 
-SimulationOptions Settling::simulation(double duration) const {
-  SimulationOptions simulation{.duration = duration, .rate = 0};
-  if (options_.start == StartFrom::sliding) simulation.start = start_in_sliding(machine_);
-  return simulation;
-}
-
 Settled Settling::run() {
-  const bool winds_up = options_.start == StartFrom::stick;
+  const bool winds_up = options_.start != StartFrom::sliding;
   const double most_cycles = options_.longest_cycles * cycle_, most_swings = options_.longest_swings * period_;
   for (double duration = winds_up ? 4 * cycle_ + 4 * period_ : 20 * period_;; duration *= 4) {
     SimulatedMotion motion;
     try {
-      motion = motion_of(machine_, simulation(duration), options_.sharpness);
+      motion = motion_of(machine_, {.duration = duration, .rate = 0, .start = start_of(machine_, options_.start)},
+                         options_.sharpness);
     } catch (const InputError& error) {
       out_.seen = error.problem();
       return out_;
@@ -251,9 +245,17 @@ SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& optio
                             .start = options.start.value_or(BlockStart{0, machine.disc_velocity()})});
 }
 
-BlockStart start_in_sliding(const Machine& machine) {
+std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
   constexpr double kPush = 1e-3;
-  return {steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
+  switch (start) {
+    case StartFrom::stick:
+      break;
+    case StartFrom::sliding:
+      return BlockStart{steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
+    case StartFrom::rest:
+      return BlockStart{};
+  }
+  return std::nullopt;
 }
 
 Settled settle(const Machine& machine, const SettleOptions& options) {
@@ -301,7 +303,7 @@ SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, s
   SimulationOptions simulation{.duration = static_cast<double>(cycles) * period,
                                .rate = static_cast<double>(samples) / period,
                                .settle = settled.begin};
-  if (options.start == StartFrom::sliding) simulation.start = start_in_sliding(machine);
+  simulation.start = start_of(machine, options.start);
   return motion_of(machine, simulation, options.sharpness);
 }
 

@@ -91,6 +91,31 @@ TEST(Settled, FromSteadySlidingVibrationGrowsIntoTheSameCycle) {
   EXPECT_NEAR(grown.peak_to_peak, wound.peak_to_peak, 1e-6 * wound.peak_to_peak);
 }
 
+TEST(Settled, SmoothedLawTendsToTheLawWithLocatedEvents) {
+  const Machine machine = uradnicek_machine(330, 0.5e-3);
+  const Settled exact = settle(machine);
+  double last = 1;
+  for (const double sharpness : {1e5, 1e6, 1e7, 1e8}) {  // s/m
+    const Settled smoothed = settle(machine, {.sharpness = sharpness});
+    EXPECT_EQ(smoothed.regime, Regime::stick_slip);
+    const double difference = smoothed.frequency / exact.frequency - 1;
+    EXPECT_GT(difference, 0);
+    EXPECT_LT(difference, 0.4 * last);
+    last = difference;
+    EXPECT_NEAR(smoothed.peak_to_peak / exact.peak_to_peak, 1, 2.5 * difference);
+  }
+  EXPECT_LT(last, 2e-3);
+  EXPECT_EQ(settle(uradnicek_machine(330, 12e-3), {.sharpness = 5e5}).regime, Regime::sliding);
+  EXPECT_THROW(settle(published_machine(BaseLaw::fractional), {.sharpness = 5e5}), InputError);
+}
+
+TEST(Settled, FromRestOverTheLossOfStabilityVibrationDiesOutThoughStickSlipIsThere) {
+  const Machine machine = uradnicek_machine(330, 8e-3);  // loss of stability at 6.4, stick vanishes at 9.6 mm/s
+  EXPECT_EQ(settle(machine).regime, Regime::stick_slip);
+  EXPECT_EQ(settle(machine, {.start = StartFrom::rest}).regime, Regime::sliding);
+  EXPECT_EQ(settle(machine, {.start = StartFrom::sliding}).regime, Regime::sliding);
+}
+
 TEST(Settled, MotionBeginsAtTheBreakAwayOfASettledCycle) {
   const Machine machine = published_machine();
   const Settled settled = settle(machine);

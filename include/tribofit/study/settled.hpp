@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,7 @@ struct Settled {
 enum class StartFrom {
   stick,    ///< unloaded and carried by the disc: winds up, breaks away
   sliding,  ///< steady sliding, with a velocity a thousandth of the disc's beside it
+  rest,     ///< unloaded and at rest, x = x' = 0, as [U] and [C] begin
 };
 
 struct SettleOptions {
@@ -63,8 +65,8 @@ SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& optio
 /// cannot be. Cost: below 1 ms where it settles at once.
 Settled settle(const Machine& machine, const SettleOptions& options = {});
 
-/// The block in steady sliding, with a velocity of a thousandth of the disc's beside it.
-BlockStart start_in_sliding(const Machine& machine);
+/// Where the block begins; nothing: unloaded and carried by the disc.
+std::optional<BlockStart> start_of(const Machine& machine, StartFrom start);
 
 /// Whether a machine that begins in stick still sticks after four of its longest cycles. A slip of two and a half
 /// natural periods is none that ends: where a law without memory does not return to the speed of the disc in its first
