@@ -28,10 +28,12 @@ Machine machine_with(const PublishedTest& test, BaseLaw law, double stiffness, d
 
 /// Amplitude of the line at `turns` whole turns over the signal.
 double amplitude_of_line(const std::vector<double>& signal, double turns) {
-  std::complex<double> sum = 0;
+  std::complex<double> sum = 0, at = 1;
   const double n = static_cast<double>(signal.size());
-  for (std::size_t i = 0; i < signal.size(); ++i) {
-    sum += signal[i] * std::polar(1.0, -2 * std::numbers::pi * turns * static_cast<double>(i) / n);
+  const std::complex<double> turn = std::polar(1.0, -2 * std::numbers::pi * turns / n);
+  for (const double x : signal) {
+    sum += x * at;
+    at *= turn;
   }
   return 2 * std::abs(sum) / n;
 }

@@ -81,8 +81,8 @@ std::string begun_at_rest(const Machine& machine) {
   const std::string growth = fmt::format("growth {:+.4f} /s: ", std::abs(r.growth_rate) < 1e-6 ? 0.0 : r.growth_rate);
   if (!std::isnan(r.first_stick))
     return growth + fmt::format("sticks after {:.0f} s, ", r.first_stick) + described(r.settled);
-  return growth + fmt::format("no stick; swings of {:.2f} mm are {:.2f} mm after a minute", r.first_swing / kMm,
-                              r.swing_after_a_minute / kMm);
+  return growth + fmt::format("no stick in 10 minutes; swings of {:.2f} mm are {:.2f} mm after a minute",
+                              r.first_swing / kMm, r.swing_after_a_minute / kMm);
 }
 
 void portraits(const std::vector<double>& decays) {
