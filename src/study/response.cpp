@@ -17,7 +17,7 @@ namespace {
 double harmonic_of(std::span<const double> period, std::size_t n) {
   std::complex<double> sum = 0;
   const double step = -2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(period.size());
-  for (std::size_t i = 0; i < period.size(); ++i) sum += std::polar(period[i], step * static_cast<double>(i));
+  for (std::size_t i = 0; i < period.size(); ++i) sum += period[i] * std::polar(1.0, step * static_cast<double>(i));
   return 2 * std::abs(sum) / static_cast<double>(period.size());
 }
 
