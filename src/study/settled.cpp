@@ -40,7 +40,7 @@ std::vector<SeenCycle> cycles_of(const SimulatedMotion& motion) {
   for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
     const double begin = begins[k]->break_away_time, end = begins[k + 1]->break_away_time;
     while (turn != motion.turning_points.end() && turn->time < begin) ++turn;
-    double lowest = INFINITY, highest = -INFINITY;
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (; turn != motion.turning_points.end() && turn->time < end; ++turn) {
       lowest = std::min(lowest, turn->displacement);
       highest = std::max(highest, turn->displacement);

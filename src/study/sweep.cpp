@@ -74,6 +74,7 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
   });
   const auto over_draws = [&](const auto& list, const auto& number) {
     std::vector<double> values;
+    values.reserve(list.size());
     for (const auto& one : list) values.push_back(number(one));
     return range_of(std::move(values));
   };
