@@ -185,7 +185,7 @@ std::string render_study(const StudiedMachine& of, const Response& study, const 
     text += style.heading("Spectra of settled motion");
     Table table({"harmonic", "frequency Hz", "force N", "displacement mm", "velocity mm/s"});
     for (const std::size_t n : thinned(std::min<std::size_t>(study.harmonics.size(), 8), 8)) {
-      const Harmonic& h = study.harmonics[n];
+      const ResponseLine& h = study.harmonics[n];
       table.add({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),
                  significant(1e3 * h.displacement, 4), significant(1e3 * h.velocity, 4)});
     }

@@ -100,7 +100,7 @@ void write_study(const std::string& folder, const Response& study) {
   WholeFile& lines = files.add("harmonics.csv");
   lines.write("harmonic,frequency_hz,force_N,displacement_mm,velocity_mm_s\n");
   for (std::size_t n = 0; n < study.harmonics.size(); ++n) {
-    const Harmonic& h = study.harmonics[n];
+    const ResponseLine& h = study.harmonics[n];
     write_line(lines, {fmt::format("{}", n + 1)}, {h.frequency, h.force, 1e3 * h.displacement, 1e3 * h.velocity});
   }
   files.commit();

@@ -100,7 +100,7 @@ std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& st
 
 std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options) {
   Json harmonics = Json::array(), curve = Json::array();
-  for (const Harmonic& h : study.harmonics) {
+  for (const ResponseLine& h : study.harmonics) {
     harmonics.push_back({{"frequency_hz", number(h.frequency)},
                          {"force_N", number(h.force)},
                          {"displacement_mm", number(h.displacement / kMillimetre)},

@@ -27,7 +27,7 @@ TEST(Response, EveryHarmonicObeysTheForceBalanceOfTheRig) {
   // A jump of friction (at re-stick, at most N mu_s) lies up to a sample off, which is an error of as much on every
   // line.
   const double jump = 2 * machine.load * machine.parameters[0] / 16384;
-  for (const Harmonic& h : response.harmonics) {
+  for (const ResponseLine& h : response.harmonics) {
     const double w = 2 * std::numbers::pi * h.frequency;
     const double impedance = std::hypot(machine.rig.stiffness - machine.rig.mass * w * w, machine.rig.damping * w);
     EXPECT_NEAR(h.displacement, h.force / impedance, 1e-4 * h.displacement + jump / impedance) << h.frequency;

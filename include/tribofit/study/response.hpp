@@ -7,7 +7,7 @@
 namespace tribofit {
 
 /// One line of the spectra of settled motion.
-struct Harmonic {
+struct ResponseLine {
   double frequency = 0;     ///< [Hz]
   double force = 0;         ///< amplitude of the friction force N mu [N]
   double displacement = 0;  ///< amplitude of x [m]
@@ -22,7 +22,7 @@ struct Response {
   std::vector<double> frequency;        ///< of the curve [Hz]
   std::vector<double> amplitude;        ///< A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) [C] [m]
   Settled settled;
-  std::vector<Harmonic> harmonics;  ///< fundamental first; empty where nothing vibrates
+  std::vector<ResponseLine> harmonics;  ///< fundamental first; empty where nothing vibrates
 };
 
 /// The spectra are those of whole settled cycles, so their lines stand at multiples of the response frequency and
