@@ -123,18 +123,19 @@ void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit
   fit.stiffness = fit.stick_slope_stiffness;
 }
 
-void add_systematic(const Instruments& instruments, const NormalForce& load, RigFit& fit) {
+void add_systematic(const Instruments& instruments, const NormalForce& load, const Eigen::VectorXd& per_delay,
+                    RigFit& fit) {
   const auto of = [](const std::optional<Declared>& d) { return d ? d->uncertainty : 0.0; };
   const auto part = [](const std::optional<Declared>& d) {
     return d && d->value != 0 ? d->uncertainty / std::abs(d->value) : 0.0;
   };
   const double scale = std::hypot(load.nominal ? part(instruments.rig.load) : 0, part(instruments.force_sensor.gain),
                                   part(instruments.vibrometer.gain));
-  const double delay = of(instruments.vibrometer.delay), c = fit.damping.value, k = fit.stiffness.value;
+  const double delay = of(instruments.vibrometer.delay);
   const double below = fit.mass_below_declared ? of(instruments.force_sensor.mass_below) : 0;
-  fit.mass.systematic = std::hypot(scale * fit.mass.value, delay * c, below);
-  fit.damping.systematic = std::hypot(scale * c, delay * k);
-  fit.stiffness.systematic = std::abs(scale * k);
+  fit.mass.systematic = std::hypot(scale * fit.mass.value, delay * per_delay(0), below);
+  fit.damping.systematic = std::hypot(scale * fit.damping.value, delay * per_delay(1));
+  fit.stiffness.systematic = std::hypot(scale * fit.stiffness.value, delay * per_delay(2));
 }
 
 /// Natural frequency and damping ratio by the delta method.
@@ -253,7 +254,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
   fit.smoothing = balance.width;
   if (!solution.solved) {
     fit.reason = fit.cycles < 3 ? "there are fewer than three whole cycles: no error could be given"
-                                : "the motion does not tell mass, damping and stiffness from one another";
+                                : "the block moves too little to tell mass, damping and stiffness from one another";
     return fit;
   }
   set_values(solution, fit);
@@ -262,7 +263,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
   judge(solution, fit);
   add_derived(fit);
   add_mass_below(instruments, fit);
-  add_systematic(instruments, load, fit);
+  add_systematic(instruments, load, solution.per_delay, fit);
   rig::add_messages(motion, segmentation, instruments, fit);
   return fit;
 }

@@ -38,16 +38,16 @@ const char* damping_unit(const RigFit& fit) {
 }
 
 std::string delay_text(const RigFit& fit) {
-  return fmt::format(
-      "friction is recorded {:.3g} +- {:.1g} ms {} v_b; k times that comes off the damping, which would be "
-      "{:.3g} {} without it",
-      1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error, fit.delay.value > 0 ? "later than" : "before",
-      1e-3 * fit.damping_without_both, damping_unit(fit));
+  return fmt::format("friction is recorded {:.3g} +- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
+                     1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
+                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.damping_without_both,
+                     damping_unit(fit));
 }
 
 /// The damping in N s/mm, as tables show it.
 std::string damping_text(const RigFit& fit) {
-  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error, damping_unit(fit));
+  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error,
+                     damping_unit(fit));
 }
 
 std::string why_negative_damping(const RigFit& fit) {
@@ -57,10 +57,7 @@ std::string why_negative_damping(const RigFit& fit) {
                        fit.high_pass.value);
   }
   if (late) return delay_text(fit);
-  return fmt::format(
-      "a friction channel {:.3g} ms late would do it (c is lowered by k times the delay), so would a "
-      "high-pass of the vibrometer",
-      1e3 * -fit.damping.value / fit.stiffness.value);
+  return "a high-pass of the vibrometer or a friction channel that is late does this, but neither shows clearly";
 }
 
 }  // namespace
@@ -100,7 +97,8 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
         "drifts back so), or one on v_b undone too far",
         -fit.high_pass.value, fit.high_pass.std_error));
   } else if (late) {
-    out.push_back(delay_text(fit) + "; a delay or a slower force sensor does this: declare it with --instruments");
+    out.push_back("the damping is wrong: " + delay_text(fit) +
+                  "; a delay or a slower force sensor does this: declare it with --instruments");
   }
   if (motion.high_pass > 0) {
     out.push_back(fmt::format("a high-pass of {:.3g} Hz on v_b was undone; what its corner is off by is fitted along",
@@ -116,15 +114,13 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
     return;
   }
   if (fit.mass_below.determined) {
-    out.push_back(
-        fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
-                    "below the force sensor",
-                    fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
+    out.push_back(fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
+                              "below the force sensor",
+                              fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
     return;
   }
   out.push_back(
-      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; "
-      "declare "
+      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; declare "
       "force_sensor.mass_below or rig.ping_frequency with --instruments");
 }
 
@@ -154,7 +150,8 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
 
 }  // namespace
 
-void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments, RigFit& fit) {
+void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments,
+                  RigFit& fit) {
   if (segmentation.kind == MotionKind::always_sticking) {
     if (fit.stiffness.determined) {
       fit.messages.push_back("the stiffness is from the slope of friction while the disc winds the spring up");

@@ -64,6 +64,12 @@ BalanceSolution solve_balance(const Balance& balance, std::vector<BalanceColumn>
   out.values = inverse * side;
   out.noise_share = rows * noise.diagonal().cwiseProduct(raw_inverse.diagonal());
   out.rmse = std::sqrt(std::max(0.0, squares - 2 * out.values.dot(side) + out.values.dot(raw * out.values)) / rows);
+  if (out.columns.back() != kJerk) {
+    Eigen::VectorXd late = Eigen::VectorXd::Zero(p);
+    const Eigen::MatrixXd slope = selection({kJerk}, out.values.head(3));
+    for (const Eigen::MatrixXd& block : balance.blocks) late -= chosen.transpose() * block.transpose() * block * slope;
+    out.per_delay = inverse * late;
+  }
   out.influence.resize(n, p);
   for (Eigen::Index b = 0; b < n; ++b) {
     Eigen::MatrixXd without;

@@ -14,6 +14,8 @@ struct BalanceSolution {
   Eigen::VectorXd values;
   Eigen::MatrixXd influence;    ///< blocks x values: jackknife pseudo-values about zero
   Eigen::VectorXd noise_share;  ///< of what each column has for itself, how much is noise
+  /// How much a force recorded one second late moves the values [1/s], to first order; without kJerk among the columns.
+  Eigen::VectorXd per_delay;
   double rmse = 0;
 };
 
