@@ -40,14 +40,12 @@ const char* damping_unit(const RigFit& fit) {
 std::string delay_text(const RigFit& fit) {
   return fmt::format("friction is recorded {:.3g} +- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
                      1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
-                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.damping_without_both,
-                     damping_unit(fit));
+                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.damping_without_both, damping_unit(fit));
 }
 
 /// The damping in N s/mm, as tables show it.
 std::string damping_text(const RigFit& fit) {
-  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error,
-                     damping_unit(fit));
+  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error, damping_unit(fit));
 }
 
 std::string why_negative_damping(const RigFit& fit) {
@@ -114,13 +112,15 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
     return;
   }
   if (fit.mass_below.determined) {
-    out.push_back(fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
-                              "below the force sensor",
-                              fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
+    out.push_back(
+        fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
+                    "below the force sensor",
+                    fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
     return;
   }
   out.push_back(
-      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; declare "
+      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; "
+      "declare "
       "force_sensor.mass_below or rig.ping_frequency with --instruments");
 }
 
@@ -150,8 +150,7 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
 
 }  // namespace
 
-void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments,
-                  RigFit& fit) {
+void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments, RigFit& fit) {
   if (segmentation.kind == MotionKind::always_sticking) {
     if (fit.stiffness.determined) {
       fit.messages.push_back("the stiffness is from the slope of friction while the disc winds the spring up");
