@@ -25,6 +25,7 @@
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/kinematics/spectrum.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 
@@ -93,6 +94,18 @@ struct RigIdentification {
 /// The stages in order: read, move, segment, balance the forces. Needs no law: of `options`, reading, instruments and
 /// motion are used.
 RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& options = {});
+
+/// A trace beside the motions that its laws and its rig predict.
+struct TwinIdentification {
+  Identification trace;  ///< its `fits`: the best bare law, then the best law with the effects asked for
+  RigFit rig;
+  Twin twin;
+};
+
+/// The stages in order: read, move, segment, fit, balance the forces, simulate. The bare laws of `options` are fitted
+/// and the better one has a twin; with options.effects the better law with all of them has one beside it.
+TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions& options = {},
+                                 const TwinOptions& more = {});
 
 /// The stages in order: read, move, segment, fit.
 Identification identify(const std::string& path, const IdentifyOptions& options = {});

@@ -190,8 +190,9 @@ void try_further_terms(const Balance& balance, const BalanceSolution& solution, 
   };
   fit.delay = value(4, -1);
   if (!corner_is_free) fit.high_pass = value(3, 1 / (kTwoPi * all.values(2)));
-  // v_b = v_m + w integral(v_m): the coefficient of v_m is c + m w.
-  fit.damping_without_both = all.values(1) - (corner_is_free ? 0 : all.values(0) * kTwoPi * fit.high_pass.value);
+  // v_b = v_m + w integral(v_m): the coefficients of v_m and of its integral are c + m w and k + c w.
+  const double w = corner_is_free ? 0 : kTwoPi * fit.high_pass.value, m = all.values(0), c = all.values(1) - m * w;
+  fit.without_both = {m, c, all.values(2) - c * w};
 }
 
 /// Whether the values are those of a rig, and if not, why.

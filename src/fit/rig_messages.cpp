@@ -21,7 +21,7 @@ double t_of(const RigValue& v) {
 /// Whether a further term is there and moves the damping by enough to be spoken of.
 bool counts(const RigValue& term, const RigFit& fit) {
   return term.determined && t_p_value(t_of(term), fit.degrees_of_freedom) < kChance &&
-         std::abs(fit.damping_without_both - fit.damping.value) >
+         std::abs(fit.without_both.damping - fit.damping.value) >
              std::max(kMatters * std::abs(fit.damping.value), 2 * fit.damping.std_error);
 }
 
@@ -40,7 +40,7 @@ const char* damping_unit(const RigFit& fit) {
 std::string delay_text(const RigFit& fit) {
   return fmt::format("friction is recorded {:.3g} +- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
                      1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
-                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.damping_without_both, damping_unit(fit));
+                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.without_both.damping, damping_unit(fit));
 }
 
 /// The damping in N s/mm, as tables show it.
@@ -88,7 +88,7 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
         "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on v_b that is not undone (a force "
         "goes with the integral of the displacement, which no rig does); it would be {:.3g} {} without: undo it, or "
         "declare it as vibrometer.high_pass",
-        fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.damping_without_both, damping_unit(fit)));
+        fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.without_both.damping, damping_unit(fit)));
   } else if (sag_first) {
     out.push_back(fmt::format(
         "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on the force (a charge amplifier "

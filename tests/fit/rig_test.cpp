@@ -146,7 +146,7 @@ TEST(RigFit, AHighPassLeftInMakesDampingNegativeUntilItIsUndone) {
   EXPECT_LT(kept.damping.upper95, 0);
   EXPECT_THAT(kept.reason, HasSubstr("high-pass"));
   EXPECT_NEAR(kept.high_pass.value, 0.5, 0.01);  // the balance sees it without the plateau
-  EXPECT_NEAR(kept.damping_without_both, truth(r).damping, 0.1 * truth(r).damping);
+  EXPECT_NEAR(kept.without_both.damping, truth(r).damping, 0.1 * truth(r).damping);
   EXPECT_THROW(kept.to_rig(), std::logic_error);
 }
 
@@ -158,7 +158,7 @@ TEST(RigFit, ADelayBetweenTheChannelsIsSeenAndSaid) {
   const RigFit late = rig_of(r);
   EXPECT_NEAR(late.delay.value, 0.5e-3, 0.03e-3);
   EXPECT_LT(late.damping.value, 0.9 * rig.damping);
-  EXPECT_NEAR(late.damping_without_both, rig.damping, 0.1 * rig.damping);
+  EXPECT_NEAR(late.without_both.damping, rig.damping, 0.1 * rig.damping);
   EXPECT_TRUE(late.damping_doubtful);
   EXPECT_THAT(all(late.messages), HasSubstr("later than v_b"));
   // Friction early, declared as a vibrometer that is late.

@@ -1,0 +1,263 @@
+#include "tribofit/study/twin.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "motion_measures.hpp"
+#include "tribofit/fit/parallel.hpp"
+#include "tribofit/oscillator/sensors.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kOff = 3;               // standard errors from which a measure counts as off
+constexpr std::size_t kFewest = 8;       // simulations
+constexpr double kMostSamples = 4e7;     // over all simulations of a column
+constexpr double kGrid = 1e-3;           // on which recorded conditions are followed [s]
+const double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// A channel as a function of time since the record's first sample: means over kGrid with straight lines between.
+std::function<double(double)> follow(const std::vector<double>& channel, double step) {
+  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kGrid / step)));
+  const auto means = std::make_shared<std::vector<double>>();
+  for (std::size_t begin = 0; begin < channel.size(); begin += length) {
+    const std::size_t end = std::min(begin + length, channel.size());
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += channel[i];
+    means->push_back(sum / static_cast<double>(end - begin));
+  }
+  const double grid = static_cast<double>(length) * step;
+  return [means, grid](double t) {
+    const double place = std::clamp(t / grid - 0.5, 0.0, static_cast<double>(means->size() - 1));
+    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1), next = std::min(k + 1, means->size() - 1);
+    return (*means)[k] + (place - static_cast<double>(k)) * ((*means)[next] - (*means)[k]);
+  };
+}
+
+SpeedProfile speed_of(const Motion& motion, double radius) {
+  std::vector<double> times, speeds;
+  const std::function<double(double)> velocity = follow(motion.disc_velocity, motion.step);
+  for (double t = 0; t < motion.duration(); t += kGrid) {
+    times.push_back(t);
+    speeds.push_back(velocity(t) / radius);
+  }
+  return piecewise_linear_speed(std::move(times), std::move(speeds));
+}
+
+/// The machine's drive at the record's own conditions.
+Drive drive_of(const Machine& machine, const Motion& motion) {
+  Drive drive = machine.drive();
+  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, machine.radius);
+  if (!motion.load.empty() && motion.friction_kind == FrictionKind::coefficient) {
+    drive.load = follow(motion.load, motion.step);
+  }
+  if (!motion.temperature.empty()) {
+    drive.temperature = follow(motion.temperature, motion.step);
+    double sum = 0;
+    for (const double x : motion.temperature) sum += x;
+    drive.mean_temperature = sum / static_cast<double>(motion.temperature.size());
+  }
+  return drive;
+}
+
+/// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
+double noise_colour(const Motion& motion, const Segmentation& segmentation) {
+  constexpr std::size_t kPiece = 400, kSticks = 50;
+  constexpr double kMost = 0.97;
+  double squares = 0, products = 0;
+  std::size_t used = 0;
+  for (const Cycle& cycle : segmentation.cycles) {
+    const std::size_t n = std::min(kPiece, cycle.stick.size() / 2), begin = cycle.stick.begin + cycle.stick.size() / 4;
+    if (n < 20 || ++used > kSticks) continue;
+    const double middle = 0.5 * static_cast<double>(n - 1);
+    double sum = 0, slope = 0, spread = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double t = static_cast<double>(i) - middle;
+      sum += motion.friction[begin + i], slope += t * motion.friction[begin + i], spread += t * t;
+    }
+    double before = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double t = static_cast<double>(i) - middle;
+      const double r = motion.friction[begin + i] - sum / static_cast<double>(n) - slope / spread * t;
+      squares += r * r, products += r * before;
+      before = r;
+    }
+  }
+  return squares > 0 ? std::clamp(products / squares, 0.0, kMost) : 0;
+}
+
+/// One simulated record as the measured one is read.
+MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter& scatter, Sensors sensors,
+                                  const Motion& motion, std::uint64_t seed) {
+  const Drive drive = drive_of(machine, motion);
+  SimulationOptions options;
+  options.duration = motion.duration();
+  options.rate = 1 / motion.step;
+  options.scatter = scatter;
+  options.seed = seed;
+  options.tolerance = 1e-8;
+  if (drive.speed.constant) options.settle = settling_time(machine.rig, drive, machine.parameters);
+  const SimulatedMotion simulated = simulate(machine.rig, drive, machine.model, machine.parameters, options);
+  sensors.seed = seed + 0x9e3779b97f4a7c15u;
+  Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
+  trace.conditions.radius = {machine.radius, "twin"};
+  if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
+  const Motion twin = compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false,
+                                                            .undo_speed_ripple = false});
+  const Segmentation cycles = find_cycles(twin);
+  if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
+  return measure_motion(twin, cycles);
+}
+
+/// Mean of one measure over the simulations, and how far it may be from what the true numbers would give.
+TwinMeasure::Simulated simulated_value(const std::vector<MotionMeasures>& simulations,
+                                       std::vector<Measure> MotionMeasures::*list, std::size_t k) {
+  double sum = 0, squares = 0, within = 0, n = 0;
+  for (const MotionMeasures& of : simulations) {
+    if ((of.*list).empty() || !std::isfinite((of.*list)[k].value)) continue;
+    const Measure& m = (of.*list)[k];
+    sum += m.value, squares += m.value * m.value, n += 1;
+    if (std::isfinite(m.std_error)) within += m.std_error * m.std_error;
+  }
+  if (2 * n < static_cast<double>(simulations.size())) return {kNone, kNone, kNone};
+  const double mean = sum / n, spread = std::max(0.0, squares / n - mean * mean) * n / (n - 1);
+  return {mean, std::sqrt(std::max(0.0, spread - within / n) + spread / n), 0};
+}
+
+/// In standard errors; what is the same to rounding is no difference.
+double difference_of(const Measure& measured, const TwinMeasure::Simulated& simulated) {
+  const double difference = simulated.value - measured.value;
+  const double error = std::hypot(std::isfinite(measured.std_error) ? measured.std_error : 0, simulated.std_error);
+  if (!(std::abs(difference) > 1e-9 * std::abs(measured.value))) return std::isfinite(difference) ? 0 : kNone;
+  return difference / error;
+}
+
+/// Root mean square over the loop.
+double portrait_distance(const std::vector<Measure>& measured, const std::vector<MotionMeasures>& simulations) {
+  double squares = 0, n = 0;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const double d = difference_of(measured[k], simulated_value(simulations, &MotionMeasures::portrait, k));
+    if (!std::isfinite(d)) continue;
+    squares += d * d, n += 1;
+  }
+  return n > 0 ? std::sqrt(squares / n) : kNone;
+}
+
+std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& of, const Sensors& sensors, const Motion& motion,
+                                            std::size_t count, const TwinOptions& options,
+                                            const std::function<void()>& done) {
+  const std::vector<Machine> machines = draws_of(of.machine, of.covariance, count, options.seed);
+  std::vector<MotionMeasures> out(machines.size());
+  run_tasks(machines.size(), options.threads, [&](std::size_t k) {
+    out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k);
+    done();
+  });
+  return out;
+}
+
+void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures>& simulations, Twin& twin) {
+  double squares = 0, n = 0;
+  bool missing = false;
+  const auto count = [&](double d) {
+    if (std::isfinite(d)) squares += d * d, n += 1;
+    missing |= !std::isfinite(d);
+  };
+  for (std::size_t k = 0; k + 1 < twin.measures.size(); ++k) {
+    if (!std::isfinite(measured.values[k].value)) {
+      twin.measures[k].simulated.push_back({kNone, kNone, kNone});
+      continue;
+    }
+    TwinMeasure::Simulated value = simulated_value(simulations, &MotionMeasures::values, k);
+    value.difference = difference_of(measured.values[k], value);
+    count(value.difference);
+    twin.measures[k].simulated.push_back(value);
+  }
+  const double distance = portrait_distance(measured.portrait, simulations);
+  count(distance);
+  twin.measures.back().simulated.push_back({distance, kNone, distance});
+  twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNone);
+}
+
+void say_what_fails(Twin& twin) {
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
+    if (!std::isfinite(twin.rms_difference[c])) {
+      twin.messages.push_back(twin.columns[c] + ": the twin does not stick and slip as the record does");
+      continue;
+    }
+    const std::vector<std::string> off = twin.failures(c);
+    std::string names;
+    for (const std::string& name : off) names += (names.empty() ? "" : ", ") + name;
+    twin.messages.push_back(twin.columns[c] + (off.empty() ? ": the twin moves as the record does, within its errors"
+                                                           : ": the twin fails over " + names));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> Twin::failures(std::size_t column) const {
+  std::vector<std::pair<double, std::string>> off;
+  for (const TwinMeasure& m : measures) {
+    const double d = std::abs(m.simulated.at(column).difference);
+    if (!(d <= kOff) && std::isfinite(m.measured)) off.emplace_back(-d, m.name);
+  }
+  std::stable_sort(off.begin(), off.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto& [size, name] : off) names.push_back(std::move(name));
+  return names;
+}
+
+Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
+                   const RigFit& rig, const TwinOptions& options) {
+  Twin twin;
+  if (segmentation.kind != MotionKind::stick_slip) {
+    twin.reason = "the block does not stick and slip: there is no cycle to compare";
+    return twin;
+  }
+  std::vector<IdentifiedMachine> machines;
+  for (const Fit& fit : fits) {
+    machines.push_back(identified_machine(fit, rig, motion, segmentation));
+    if (!machines.back().reason.empty()) {
+      twin.reason = machines.back().reason;
+      return twin;
+    }
+    for (const std::string& note : machines.back().notes) twin.messages.push_back(fit.model.name() + ": " + note);
+  }
+  const MotionMeasures measured = measure_motion(motion, segmentation);
+  const bool force = motion.friction_kind == FrictionKind::force;
+  for (std::size_t k = 0; k < measured.values.size(); ++k) {
+    const MotionMeasureInfo& info = motion_measures()[k];
+    const Measure& m = measured.values[k];
+    twin.measures.push_back({info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
+  }
+  twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
+  const auto affordable = static_cast<std::size_t>(kMostSamples / static_cast<double>(motion.size()));
+  twin.simulations = std::max(kFewest, std::min(options.simulations, affordable));
+  Sensors sensors;
+  sensors.friction_noise = fits.empty() ? 0 : fits[0].floor.noise;
+  sensors.velocity_noise = motion.velocity_noise;
+  sensors.noise_colour = noise_colour(motion, segmentation);
+  std::mutex mutex;
+  std::size_t finished = 0;
+  for (std::size_t c = 0; c < machines.size(); ++c) {
+    const auto done = [&] {
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++finished;
+      if (!options.progress) return;
+      options.progress("simulating twins",
+                       static_cast<double>(finished) / static_cast<double>(machines.size() * twin.simulations));
+    };
+    const auto simulations = simulate_column(machines[c], sensors, motion, twin.simulations, options, done);
+    twin.columns.push_back(fits[c].model.name());
+    add_column(measured, simulations, twin);
+  }
+  say_what_fails(twin);
+  return twin;
+}
+
+}  // namespace tribofit
