@@ -45,7 +45,8 @@ struct Request {
 
 SettleOptions settle_options(const Request& r) {
   SettleOptions options;
-  options.start = r.from == "sliding" ? StartFrom::sliding : StartFrom::stick;
+  if (r.from == "sliding") options.start = StartFrom::sliding;
+  if (r.from == "rest") options.start = StartFrom::rest;
   if (!r.sharpness.empty()) {
     options.sharpness = parse_quantity(r.sharpness, Quantity::inverse_velocity, "--sharpness", "s/mm");
     if (!(options.sharpness > 0)) {
@@ -235,8 +236,8 @@ CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const st
   add_machine_numbers(*kind, r->machine);
   kind->add_option("--sharpness", r->sharpness,
                    "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
-  kind->add_option("--from", r->from, "Begin in stick (default) or in sliding")
-      ->check(CLI::IsMember({"stick", "sliding"}));
+  kind->add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
+      ->check(CLI::IsMember({"stick", "rest", "sliding"}));
   add_output_options(*kind, r->settings);
   kind->callback([r, kind, run, &status] {
     run(*r, *kind);

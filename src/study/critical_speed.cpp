@@ -45,7 +45,7 @@ class Search {
   }
 
  private:
-  bool sticks(double velocity) const { return keeps_sticking(at(machine_, velocity)); }
+  bool sticks(double velocity) const { return keeps_sticking(at(machine_, velocity), options_.sharpness); }
   bool is_stable(double velocity) const { return steady_sliding(at(machine_, velocity)).is_stable(); }
   /// Sliding is unstable, and vibration of any size grows until it sticks: none without a stick lies between.
   bool returns(double velocity) const {

@@ -57,7 +57,8 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
   if (out.reason.empty() && (!fit.converged || fit.parameters.empty())) {
     out.reason = "no law could be fitted" + (fit.messages.empty() ? "" : ": " + fit.messages.front());
   }
-  if (out.reason.empty() && !radius.known()) out.reason = "the friction radius is not known: give it with --radius 15mm";
+  if (out.reason.empty() && !radius.known())
+    out.reason = "the friction radius is not known: give it with --radius 15mm";
   const double speed = radius.known() ? mean_speed(motion, radius.value) : 0;
   if (out.reason.empty() && !(speed > 0)) {
     out.reason = "the speed of the disc is not known: give it with --speed 4rpm";
@@ -67,7 +68,8 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
   out.machine = {rig.to_rig(), fit.model, fit.values(), by_load ? rig.load : 1, radius.value, speed};
   out.covariance.friction = fit.covariance;
   out.covariance.rig.assign(rig.covariance.begin(), rig.covariance.end());
-  const bool finite = std::all_of(fit.covariance.begin(), fit.covariance.end(), [](double x) { return std::isfinite(x); });
+  const bool finite =
+      std::all_of(fit.covariance.begin(), fit.covariance.end(), [](double x) { return std::isfinite(x); });
   if (!finite || fit.covariance.size() != fit.parameters.size() * fit.parameters.size()) {
     out.covariance.friction.clear();
     out.notes.push_back("the errors of the law are not known: it is taken as exact");

@@ -29,7 +29,8 @@ std::vector<Turn> turns_of(const Motion& motion, const Segmentation& s) {
   for (const Cycle& cycle : s.cycles) {
     if (!(cycle.period > 0) || cycle.stick.size() == 0) continue;
     const double begin = (cycle.break_away_time - first) / motion.step, length = cycle.period / motion.step;
-    if (begin >= 0 && begin + length <= static_cast<double>(motion.size() - 1)) turns.push_back({begin, begin + length});
+    if (begin >= 0 && begin + length <= static_cast<double>(motion.size() - 1))
+      turns.push_back({begin, begin + length});
   }
   return turns;
 }

@@ -18,7 +18,8 @@ struct MotionMeasureInfo {
 /// one.
 struct MotionMeasures {
   std::vector<Measure> values;  ///< as motion_measures() lists them
-  /// Mean slip in the plane of displacement since break-away and v_b, at equal parts of the slip: x [m], then v_b [m/s].
+  /// Mean slip in the plane of displacement since break-away and v_b, at equal parts of the slip: x [m], then v_b
+  /// [m/s].
   std::vector<Measure> portrait;
 };
 

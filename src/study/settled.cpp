@@ -193,7 +193,9 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   const double last = swings.back(), change = last / swings[swings.size() - 3] - 1;
   out_.stick_time = 0;
   constexpr double kSmall = 0.05;
-  if (change < 0 && last < kSmall * first && steady_sliding(machine_).is_stable()) {
+  constexpr double kNothing = 1e-9;  // of the static deflection: rounding
+  const bool at_rest = last < kNothing * machine_.parameters[0] * machine_.load / machine_.rig.stiffness;
+  if (at_rest || (change < 0 && last < kSmall * first && steady_sliding(machine_).is_stable())) {
     out_.regime = Regime::sliding;
     out_.frequency = std::numeric_limits<double>::quiet_NaN();
     out_.stick_time = std::numeric_limits<double>::quiet_NaN();
@@ -265,14 +267,13 @@ Settled settle(const Machine& machine, const SettleOptions& options) {
   return Settling(machine, options).run();
 }
 
-bool keeps_sticking(const Machine& machine) {
+bool keeps_sticking(const Machine& machine, double sharpness) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
   constexpr double kCycles = 4, kMostPeriods = 2000, kStill = 1e-9;
   // The first slip tells of most machines.
   double duration = machine.model.effects().empty() ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {
-    const SimulatedMotion motion =
-        simulate(machine.rig, machine.drive(), machine.model, machine.parameters, {.duration = duration, .rate = 0});
+    const SimulatedMotion motion = motion_of(machine, {.duration = duration, .rate = 0}, sharpness);
     const std::optional<double> since = open_slip(motion);
     const std::vector<double> swings = swings_since(motion, since.value_or(duration));
     const std::size_t n = swings.size(), cycles = cycles_of(motion).size();

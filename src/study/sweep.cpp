@@ -46,7 +46,9 @@ std::vector<Settled> sweep(const Machine& machine, std::string_view variable, st
 SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options) {
   SpeedStudy out;
   out.own = settle(machine, options.settle);
-  out.critical = critical_speed(machine);
+  CriticalSpeedOptions search;
+  search.sharpness = options.settle.sharpness;
+  out.critical = critical_speed(machine, search);
   out.velocity = options.velocity.empty() ? default_velocities(machine, out.critical) : options.velocity;
   SettleOptions up = options.settle, down = options.settle;
   up.start = StartFrom::stick;
@@ -62,7 +64,7 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
                                          : draws_of(machine, options.covariance, options.draws, options.seed);
   std::vector<CriticalSpeed> criticals(draws.size());
   std::vector<Settled> settled(draws.size());
-  CriticalSpeedOptions around;  // other machines are not far
+  CriticalSpeedOptions around = search;  // other machines are not far
   constexpr double kFar = 3;
   around.lowest =
       std::min(out.critical.lowest, out.critical.linear.empty() ? INFINITY : out.critical.linear.front() / kFar);

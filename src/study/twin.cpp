@@ -16,10 +16,10 @@
 namespace tribofit {
 namespace {
 
-constexpr double kOff = 3;               // standard errors from which a measure counts as off
-constexpr std::size_t kFewest = 8;       // simulations
-constexpr double kMostSamples = 4e7;     // over all simulations of a column
-constexpr double kGrid = 1e-3;           // on which recorded conditions are followed [s]
+constexpr double kOff = 3;            // standard errors from which a measure counts as off
+constexpr std::size_t kFewest = 8;    // simulations
+constexpr double kMostSamples = 4e7;  // over all simulations of a column
+constexpr double kGrid = 1e-3;        // on which recorded conditions are followed [s]
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A channel as a function of time since the record's first sample: means over kGrid with straight lines between.
@@ -35,7 +35,8 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   const double grid = static_cast<double>(length) * step;
   return [means, grid](double t) {
     const double place = std::clamp(t / grid - 0.5, 0.0, static_cast<double>(means->size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1), next = std::min(k + 1, means->size() - 1);
+    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1),
+               next = std::min(k + 1, means->size() - 1);
     return (*means)[k] + (place - static_cast<double>(k)) * ((*means)[next] - (*means)[k]);
   };
 }
@@ -108,8 +109,8 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
   Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
-  const Motion twin = compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false,
-                                                            .undo_speed_ripple = false});
+  const Motion twin =
+      compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   return measure_motion(twin, cycles);
@@ -212,8 +213,8 @@ std::vector<std::string> Twin::failures(std::size_t column) const {
   return names;
 }
 
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
-                   const RigFit& rig, const TwinOptions& options) {
+Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits, const RigFit& rig,
+                   const TwinOptions& options) {
   Twin twin;
   if (segmentation.kind != MotionKind::stick_slip) {
     twin.reason = "the block does not stick and slip: there is no cycle to compare";
@@ -233,7 +234,8 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   for (std::size_t k = 0; k < measured.values.size(); ++k) {
     const MotionMeasureInfo& info = motion_measures()[k];
     const Measure& m = measured.values[k];
-    twin.measures.push_back({info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
+    twin.measures.push_back(
+        {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }
   twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
   const auto affordable = static_cast<std::size_t>(kMostSamples / static_cast<double>(motion.size()));

@@ -40,11 +40,11 @@ struct RigFit {
   RigValue mass_below;                        ///< from a declared ping frequency: k/omega_p^2 less `mass` [kg]
   RigValue delay;                             ///< friction recorded later than v_b, as the balance sees it [s]
   RigValue high_pass;                         ///< of the velocity, not undone, as the balance sees it [Hz]
-  Rig without_both;  ///< mass, damping and stiffness with delay and high-pass taken into account
-  bool damping_doubtful = false;              ///< one of the two is there and moves c; a message says which
-  double residual_rmse = 0;                   ///< of the balance after smoothing [N or N per N of load]
-  double smoothing = 0;                       ///< width of the test functions [s]
-  std::size_t cycles = 0;                     ///< units of evidence
+  Rig without_both;               ///< mass, damping and stiffness with delay and high-pass taken into account
+  bool damping_doubtful = false;  ///< one of the two is there and moves c; a message says which
+  double residual_rmse = 0;       ///< of the balance after smoothing [N or N per N of load]
+  double smoothing = 0;           ///< width of the test functions [s]
+  std::size_t cycles = 0;         ///< units of evidence
   std::vector<std::string> messages;
 
   /// The rig, damping not below zero. Throws std::logic_error unless determined.

@@ -27,6 +27,7 @@ struct CriticalSpeedOptions {
   /// sticks, at most a thousand times its own.
   double lowest = 0, highest = 0;
   double tolerance = 1e-7;  ///< of stick_vanishes and stick_returns, relative
+  double sharpness = 0;     ///< of the smoothed law in which stick vanishes [s/m]; sliding stays that of the law itself
 };
 
 /// Both ways to the critical speed. Stability is scanned on a logarithmic grid and located by bisection to 1e-10;

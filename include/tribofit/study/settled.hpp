@@ -71,7 +71,7 @@ std::optional<BlockStart> start_of(const Machine& machine, StartFrom start);
 /// Whether a machine that begins in stick still sticks after four of its longest cycles. A slip of two and a half
 /// natural periods is none that ends: where a law without memory does not return to the speed of the disc in its first
 /// swing, it never does. Cost: a few of its cycles.
-bool keeps_sticking(const Machine& machine);
+bool keeps_sticking(const Machine& machine, double sharpness = 0);
 
 /// Swings of the displacement [m] from turning point to turning point, over `periods` natural periods, of a block that
 /// passes its place in steady sliding at `velocity` [m/s]; up to the first stick, where there is one.
