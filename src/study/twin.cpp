@@ -16,10 +16,11 @@
 namespace tribofit {
 namespace {
 
-constexpr double kOff = 3;            // standard errors from which a measure counts as off
-constexpr std::size_t kFewest = 8;    // simulations
-constexpr double kMostSamples = 4e7;  // over all simulations of a column
-constexpr double kGrid = 1e-3;        // on which recorded conditions are followed [s]
+constexpr std::size_t kBreakAway = 3;    // among the measures
+constexpr double kOff = 3;               // standard errors from which a measure counts as off
+constexpr std::size_t kFewest = 8;       // simulations
+constexpr double kMostSamples = 4e7;     // over all simulations of a column
+constexpr double kGrid = 1e-3;           // on which recorded conditions are followed [s]
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A channel as a function of time since the record's first sample: means over kGrid with straight lines between.
@@ -35,8 +36,7 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   const double grid = static_cast<double>(length) * step;
   return [means, grid](double t) {
     const double place = std::clamp(t / grid - 0.5, 0.0, static_cast<double>(means->size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1),
-               next = std::min(k + 1, means->size() - 1);
+    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1), next = std::min(k + 1, means->size() - 1);
     return (*means)[k] + (place - static_cast<double>(k)) * ((*means)[next] - (*means)[k]);
   };
 }
@@ -109,41 +109,64 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
   Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
-  const Motion twin =
-      compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false});
+  const Motion twin = compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false,
+                                                            .undo_speed_ripple = false});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   return measure_motion(twin, cycles);
 }
 
-/// Mean of one measure over the simulations, and how far it may be from what the true numbers would give.
-TwinMeasure::Simulated simulated_value(const std::vector<MotionMeasures>& simulations,
-                                       std::vector<Measure> MotionMeasures::*list, std::size_t k) {
-  double sum = 0, squares = 0, within = 0, n = 0;
-  for (const MotionMeasures& of : simulations) {
-    if ((of.*list).empty() || !std::isfinite((of.*list)[k].value)) continue;
-    const Measure& m = (of.*list)[k];
-    sum += m.value, squares += m.value * m.value, n += 1;
-    if (std::isfinite(m.std_error)) within += m.std_error * m.std_error;
+/// What the simulations predict for one measure of a record of this length.
+class Predictions {
+ public:
+  Predictions(const std::vector<MotionMeasures>& simulations, const Measure& break_away)
+      : simulations_(simulations), break_away_(break_away.value) {}
+
+  /// With its error and the difference in those. `given_break_away`: at the mean break-away that the record has, by a
+  /// straight line through the simulations; else their mean.
+  TwinMeasure::Simulated of(std::vector<Measure> MotionMeasures::*list, std::size_t k, const Measure& measured,
+                            bool given_break_away) const {
+    std::vector<double> x, y;
+    double within = 0;
+    for (const MotionMeasures& m : simulations_) {
+      if ((m.*list).empty() || !std::isfinite((m.*list)[k].value)) continue;
+      x.push_back(given_break_away ? m.values[kBreakAway].value - break_away_ : 0);
+      y.push_back((m.*list)[k].value);
+      if (std::isfinite((m.*list)[k].std_error)) within += std::pow((m.*list)[k].std_error, 2);
+    }
+    const auto n = static_cast<double>(y.size());
+    if (n < 4 || 2 * n < static_cast<double>(simulations_.size())) return {kNone, kNone, kNone};
+    double mx = 0, my = 0, sxx = 0, sxy = 0, syy = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) mx += x[i] / n, my += y[i] / n;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      sxx += (x[i] - mx) * (x[i] - mx), sxy += (x[i] - mx) * (y[i] - my), syy += (y[i] - my) * (y[i] - my);
+    }
+    const double slope = sxx > 0 ? sxy / sxx : 0, variance = std::max(0.0, syy - slope * sxy) / (n - 1 - (sxx > 0));
+    const double leverage = 1 + 1 / n + (sxx > 0 ? mx * mx / sxx : 0);
+    // A record that scatters more than its twins knows its own mean less well than they do.
+    const double own = std::isfinite(measured.std_error) ? std::pow(measured.std_error, 2) : 0;
+    TwinMeasure::Simulated out;
+    out.value = my - slope * mx;
+    out.std_error = std::sqrt(variance * leverage);
+    const double difference = out.value - measured.value;
+    if (std::abs(difference) > kRounding * std::abs(measured.value)) {
+      out.difference = difference / std::sqrt(variance * leverage + std::max(0.0, own - within / n));
+    }
+    return out;
   }
-  if (2 * n < static_cast<double>(simulations.size())) return {kNone, kNone, kNone};
-  const double mean = sum / n, spread = std::max(0.0, squares / n - mean * mean) * n / (n - 1);
-  return {mean, std::sqrt(std::max(0.0, spread - within / n) + spread / n), 0};
-}
 
-/// In standard errors; what is the same to rounding is no difference.
-double difference_of(const Measure& measured, const TwinMeasure::Simulated& simulated) {
-  const double difference = simulated.value - measured.value;
-  const double error = std::hypot(std::isfinite(measured.std_error) ? measured.std_error : 0, simulated.std_error);
-  if (!(std::abs(difference) > 1e-9 * std::abs(measured.value))) return std::isfinite(difference) ? 0 : kNone;
-  return difference / error;
-}
+ private:
+  static constexpr double kRounding = 1e-9;
 
-/// Root mean square over the loop.
-double portrait_distance(const std::vector<Measure>& measured, const std::vector<MotionMeasures>& simulations) {
+  const std::vector<MotionMeasures>& simulations_;
+  double break_away_;
+};
+
+/// Root mean square of the differences over the loop.
+double portrait_distance(const std::vector<Measure>& measured, const Predictions& predictions) {
   double squares = 0, n = 0;
   for (std::size_t k = 0; k < measured.size(); ++k) {
-    const double d = difference_of(measured[k], simulated_value(simulations, &MotionMeasures::portrait, k));
+    const double d = predictions.of(&MotionMeasures::portrait, k, measured[k], true).difference;
     if (!std::isfinite(d)) continue;
     squares += d * d, n += 1;
   }
@@ -163,6 +186,7 @@ std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& of, const S
 }
 
 void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures>& simulations, Twin& twin) {
+  const Predictions predictions(simulations, measured.values[kBreakAway]);
   double squares = 0, n = 0;
   bool missing = false;
   const auto count = [&](double d) {
@@ -174,12 +198,11 @@ void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures
       twin.measures[k].simulated.push_back({kNone, kNone, kNone});
       continue;
     }
-    TwinMeasure::Simulated value = simulated_value(simulations, &MotionMeasures::values, k);
-    value.difference = difference_of(measured.values[k], value);
+    const auto value = predictions.of(&MotionMeasures::values, k, measured.values[k], k != kBreakAway);
     count(value.difference);
     twin.measures[k].simulated.push_back(value);
   }
-  const double distance = portrait_distance(measured.portrait, simulations);
+  const double distance = portrait_distance(measured.portrait, predictions);
   count(distance);
   twin.measures.back().simulated.push_back({distance, kNone, distance});
   twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNone);
@@ -213,8 +236,8 @@ std::vector<std::string> Twin::failures(std::size_t column) const {
   return names;
 }
 
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits, const RigFit& rig,
-                   const TwinOptions& options) {
+Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
+                   const RigFit& rig, const TwinOptions& options) {
   Twin twin;
   if (segmentation.kind != MotionKind::stick_slip) {
     twin.reason = "the block does not stick and slip: there is no cycle to compare";
@@ -234,8 +257,7 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   for (std::size_t k = 0; k < measured.values.size(); ++k) {
     const MotionMeasureInfo& info = motion_measures()[k];
     const Measure& m = measured.values[k];
-    twin.measures.push_back(
-        {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
+    twin.measures.push_back({info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }
   twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
   const auto affordable = static_cast<std::size_t>(kMostSamples / static_cast<double>(motion.size()));

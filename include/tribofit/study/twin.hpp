@@ -19,8 +19,8 @@ struct TwinMeasure {
   double measured = 0, measured_std_error = 0;
   struct Simulated {
     double value = 0;
-    double std_error = 0;   ///< from the uncertainty of law and rig, and the number of simulations
-    double difference = 0;  ///< simulated less measured, in standard errors of the difference
+    double std_error = 0;   ///< of one record of this length, with the uncertainty of law and rig
+    double difference = 0;  ///< simulated less measured, in standard errors
   };
   std::vector<Simulated> simulated;  ///< one a column
 };
@@ -48,11 +48,12 @@ struct TwinOptions {
 /// Simulates each machine at the record's own conditions (speed of the disc, load, length, rate, noise, break-away
 /// scatter), takes the simulated records through the same segmentation, and compares.
 ///
-/// Each simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own. The
-/// standard error of a simulated value is that of the draws (their spread less what the cycles of one record scatter)
-/// and of the finite number of simulations; that of the measured value comes from its cycles. The two are added as if
-/// independent, although the law was fitted to the same record: what the fit has already matched (break-away) comes out
-/// below one standard error, and a difference beyond three is not chance.
+/// Each simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own; it is a
+/// record that the fit could have been made to. What the record owes to the levels at which it happened to break away
+/// is no error of the twin: the simulated value is the one at the mean break-away of the record, by a straight line
+/// through the simulations, and its standard error that of one more record beside this line (Student's t with the number
+/// of simulations less two). To it comes what the measured mean is known less well than those of the simulations. Of
+/// break-away itself the mean of the simulations is compared. A difference beyond three is not chance.
 ///
 /// The phase portrait is the mean slip in the plane of displacement and velocity; its `value` and `difference` are the
 /// root mean square over the loop of the differences in standard errors, its measured value is zero.
