@@ -333,25 +333,26 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
   options.published_protocol = false;
   Identification& trace = out.trace = prepare(input, options, options.motion, Purpose::rig);
   require_formulas(options.effects, trace);
-  if (trace.analysed) out.rig = identify_rig(trace.motion, trace.segmentation, options.instruments);
-  if (trace.analysed && !out.rig.determined) {
-    trace.warnings.push_back("no rig can be had: " + out.rig.reason);
-    trace.analysed = false;
-  }
   std::vector<Fit> best;
   const auto take_best = [&] {
     if (trace.analysed) fit_all(options, trace);
-    if (trace.analysed) best.push_back(trace.fits[trace.best]);
+    if (!trace.analysed) return;
+    best.push_back(trace.fits[trace.best]);
+    out.rigs.push_back(rig_beside(best.back(), trace.motion, trace.segmentation, options.instruments));
+    if (out.rigs.back().determined) return;
+    trace.warnings.push_back("no rig can be had: " + out.rigs.back().reason);
+    trace.analysed = false;
   };
-  const bool with_effects = !of_friction(options.effects).empty();
   options.effects.clear();
   take_best();
   options.effects = given.effects;
-  if (with_effects) take_best();
+  if (!of_friction(given.effects).empty()) take_best();
   trace.fits = std::move(best);
   trace.best = trace.fits.empty() ? 0 : trace.fits.size() - 1;
   if (trace.analysed) {
-    out.twin = compare_twins(trace.motion, trace.segmentation, trace.fits, out.rig, more);
+    TwinOptions inner = more;
+    inner.threads = options.threads;
+    out.twin = compare_twins(trace.motion, trace.segmentation, trace.fits, out.rigs, inner);
   } else {
     out.twin.reason = trace.warnings.back();
   }

@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_merge(app, status);
   add_diagnose(app, status);
   add_rig(app, status);
+  add_twin(app, status);
   add_effects(app, status);
   add_simulate(app, status);
   add_study(app, status);

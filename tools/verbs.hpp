@@ -11,6 +11,7 @@ void add_manifest(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
 void add_diagnose(CLI::App& app, int& status);
 void add_rig(CLI::App& app, int& status);
+void add_twin(CLI::App& app, int& status);
 void add_effects(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_study(CLI::App& app, int& status);

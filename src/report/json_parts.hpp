@@ -28,6 +28,7 @@ Json stick_slip_json(const Identification& trace);
 /// In the units people read, which depend on whether friction is a force (`motion`).
 Json parameter_json(const FitParameter& parameter, const Motion& motion);
 Json fits_json(std::span<const Fit> fits, const Motion& motion);
+Json rig_json(const RigFit& rig);
 Json comparisons_json(std::span<const Fit> fits, std::size_t best);
 
 /// The whole result of one trace.

@@ -111,6 +111,8 @@ Json value_json(const RigValue& v, double si) {
           {"systematic_error", v.systematic > 0 ? number(v.systematic / si) : Json(nullptr)}};
 }
 
+}  // namespace
+
 Json rig_json(const RigFit& rig) {
   Json json = {{"determined", rig.determined},
                {"reason", text_or_null(rig.reason)},
@@ -138,8 +140,6 @@ Json rig_json(const RigFit& rig) {
   json["messages"] = rig.messages;
   return json;
 }
-
-}  // namespace
 
 std::string render_rig(const RigIdentification& result, const TerminalOptions& options) {
   const Style style(options.colour, options.width);

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <string_view>
+
+#include "kinematics/corrections.hpp"
 
 namespace tribofit {
 namespace {
@@ -32,22 +36,32 @@ double mean_speed(const Motion& motion, double radius) {
   return sum / static_cast<double>(motion.disc_velocity.size()) / radius;
 }
 
-/// What of the law belongs to the rig.
-void settle_rig(const Fit& fit, const RigFit& rig, IdentifiedMachine& out) {
-  const std::vector<std::string> keys = fit.model.effect_keys();
-  const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
-  if ((has("channel-delay") || has("force-bandwidth")) && rig.without_both.mass > 0 && rig.without_both.stiffness > 0) {
-    out.machine.rig = rig.without_both;
-    out.machine.rig.damping = std::max(0.0, out.machine.rig.damping);
-    out.notes.push_back("the rig is that with the delay between the channels taken out");
+bool has(const Fit& fit, std::string_view key) {
+  return fit.model.offset_of(key) < fit.model.parameters().size();
+}
+
+/// How much later than v_b the fit has friction [s].
+double lateness(const Fit& fit) {
+  const std::vector<double> p = fit.values();
+  double late = 0;
+  if (has(fit, "channel-delay")) late += p[fit.model.offset_of("channel-delay")];
+  if (has(fit, "force-bandwidth")) {  // group delay of a second-order low-pass, corner and damping ratio
+    const std::size_t k = fit.model.offset_of("force-bandwidth");
+    late += 2 * p[k + 1] / (2 * std::numbers::pi * p[k]);
   }
-  if (!has("sensor-inertia")) return;
-  const double below = out.machine.parameters[fit.model.offset_of("sensor-inertia")];
-  out.machine.rig.mass += rig.per_unit_load ? below / rig.load : below;
-  out.notes.push_back("the mass that the law finds below the force sensor is added to that of the rig");
+  return late;
 }
 
 }  // namespace
+
+RigFit rig_beside(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
+                  const Instruments& instruments) {
+  const double late = fit.parameters.empty() ? 0 : lateness(fit);
+  if (late == 0) return identify_rig(motion, segmentation, instruments);
+  Motion aligned = motion;
+  kinematics::shift_earlier(aligned.friction, late, motion.step);
+  return identify_rig(aligned, segmentation, instruments);
+}
 
 IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Motion& motion,
                                      const Segmentation& segmentation) {
@@ -74,7 +88,11 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
     out.covariance.friction.clear();
     out.notes.push_back("the errors of the law are not known: it is taken as exact");
   }
-  settle_rig(fit, rig, out);
+  if (has(fit, "sensor-inertia")) {
+    const double below = out.machine.parameters[fit.model.offset_of("sensor-inertia")];
+    out.machine.rig.mass += rig.per_unit_load ? below / rig.load : below;
+    out.notes.push_back("the mass that the law finds below the force sensor is added to that of the rig");
+  }
   out.scatter = {fit.floor.scatter, wander_of(segmentation, fit.floor.scatter)};
   return out;
 }

@@ -237,15 +237,16 @@ std::vector<std::string> Twin::failures(std::size_t column) const {
 }
 
 Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
-                   const RigFit& rig, const TwinOptions& options) {
+                   std::span<const RigFit> rigs, const TwinOptions& options) {
   Twin twin;
   if (segmentation.kind != MotionKind::stick_slip) {
     twin.reason = "the block does not stick and slip: there is no cycle to compare";
     return twin;
   }
   std::vector<IdentifiedMachine> machines;
-  for (const Fit& fit : fits) {
-    machines.push_back(identified_machine(fit, rig, motion, segmentation));
+  for (std::size_t c = 0; c < fits.size(); ++c) {
+    const Fit& fit = fits[c];
+    machines.push_back(identified_machine(fit, rigs[c], motion, segmentation));
     if (!machines.back().reason.empty()) {
       twin.reason = machines.back().reason;
       return twin;

@@ -31,7 +31,7 @@ struct Twin {
   std::vector<TwinMeasure> measures;   ///< the last is the phase portrait
   std::vector<double> rms_difference;  ///< over the measures, in standard errors, one a column
   std::vector<std::string> messages;
-  std::string reason;           ///< why there is no twin; empty where there is one
+  std::string reason;  ///< why there is no twin; empty where there is one
   std::size_t simulations = 0;  ///< behind each column
 
   /// Names of the measures in which a column is off by more than three standard errors, the worst first.
@@ -45,7 +45,7 @@ struct TwinOptions {
   std::function<void(std::string_view, double)> progress = {};  ///< what is being done and the part done
 };
 
-/// Simulates each machine at the record's own conditions (speed of the disc, load, length, rate, noise, break-away
+/// Simulates each law on the rig beside it (`rigs`, as many as `fits`) at the record's own conditions (speed of the disc, load, length, rate, noise, break-away
 /// scatter), takes the simulated records through the same segmentation, and compares.
 ///
 /// Each simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own; it is a
@@ -58,7 +58,7 @@ struct TwinOptions {
 /// The phase portrait is the mean slip in the plane of displacement and velocity; its `value` and `difference` are the
 /// root mean square over the loop of the differences in standard errors, its measured value is zero.
 /// Cost: about 1 us a sample and simulation.
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits, const RigFit& rig,
-                   const TwinOptions& options = {});
+Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
+                   std::span<const RigFit> rigs, const TwinOptions& options = {});
 
 }  // namespace tribofit

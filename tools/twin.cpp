@@ -1,0 +1,65 @@
+#include "tribofit/report/twin.hpp"
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "console.hpp"
+#include "inputs.hpp"
+#include "options.hpp"
+#include "settings.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/whole_file.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1;
+
+constexpr const char* kFooter =
+    "Fits the law and the rig, simulates the same conditions for as long as the record, takes the simulated\n"
+    "record through the same steps and lays the motions side by side. With --effect there is a twin of the bare\n"
+    "law and one of the law with the effects.\n\n"
+    "Examples:\n"
+    "  identify twin --radius 15mm --load 50N trace.csv\n"
+    "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
+
+int run(const Settings& s, const std::vector<std::string>& arguments) {
+  const IdentifyOptions options = options_from(s);
+  const Input input = only_input(s, options.read, "twin");
+  TwinIdentification result;
+  {
+    ProgressLine line;
+    TwinOptions more;
+    more.seed = s.seed;
+    more.progress = [&line](std::string_view what, double part) { line.show(what, part); };
+    result = identify_twin(input.trace, options, more);
+  }
+  Identification& trace = result.trace;
+  trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
+  trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
+  if (!s.quiet && s.json != "-") print(render_twin(result, terminal_options(s, arguments_for(input, arguments))));
+  if (result.twin.reason.empty()) return kDone;
+  complain(trace.path + ": there is no twin: " + result.twin.reason);
+  return kFailed;
+}
+
+}  // namespace
+
+void add_twin(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("twin", "The motion that law and rig predict beside the measured one");
+  verb->footer(kFooter);
+  const auto settings = std::make_shared<Settings>();
+  add_input_options(*verb, *settings);
+  add_model_options(*verb, *settings);
+  add_result_options(*verb, *settings);
+  verb->callback([settings, verb, &status] {
+    refuse_empty_values(*verb);
+    check_seed(*settings);
+    status = run(*settings, own_options(*verb));
+  });
+}
