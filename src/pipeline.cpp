@@ -333,6 +333,12 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
   options.published_protocol = false;
   Identification& trace = out.trace = prepare(input, options, options.motion, Purpose::rig);
   require_formulas(options.effects, trace);
+  if (trace.analysed && trace.segmentation.kind != MotionKind::stick_slip) {
+    trace.warnings.push_back(trace.segmentation.kind == MotionKind::always_sticking
+                                 ? "the block never slips: there is no motion to compare"
+                                 : "the block never sticks: there are no cycles to compare");
+    trace.analysed = false;
+  }
   std::vector<Fit> best;
   const auto take_best = [&] {
     if (trace.analysed) fit_all(options, trace);

@@ -29,6 +29,8 @@ constexpr const char* kFooter =
     "  identify --radius 15mm trace.csv\n"
     "  identify --radius 15mm --effect viscous --csv out/ trace.csv\n"
     "  identify diagnose --radius 15mm trace.csv\n"
+    "  identify rig --radius 15mm --load 50N trace.csv    mass, damping and stiffness behind it\n"
+    "  identify twin --radius 15mm --load 50N trace.csv   the motion that law and rig predict\n"
     "  identify runs/                     every trace of a folder, results in runs-results/\n"
     "  identify --radius 15mm --columns time=t,mu=COF,v_b=Velocity:mm/s trace.csv\n\n"
     "Exit status: 0 done; 1 data read but no analysis possible, or one of several traces failed;\n"
