@@ -76,6 +76,20 @@ std::vector<double> swings_since(const SimulatedMotion& motion, double begin, do
   return sizes;
 }
 
+/// Swings below this are rounding of the displacement [m].
+double rest_of(const Machine& machine) {
+  constexpr double kRoundings = 256;
+  const double displacement = std::abs(steady_sliding(machine).displacement);
+  return kRoundings * std::numeric_limits<double>::epsilon() * displacement;
+}
+
+/// Whether a motion that slid for `length` [s] without swinging has come to steady sliding: that is stable, and the
+/// time was several times that in which deviations from it fall by e.
+bool creeps_to_rest(const Machine& machine, double length) {
+  constexpr double kTimes = 5;
+  return length * steady_sliding(machine).growth_rate() < -kTimes;
+}
+
 bool alike(double a, double b, double tolerance) {
   return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
 }
@@ -91,6 +105,7 @@ class Settling {
   bool judge(const SimulatedMotion& motion, double duration);
   bool judge_cycles(const std::vector<SeenCycle>& cycles);
   bool judge_swings(const SimulatedMotion& motion, double since);
+  bool slides();
   void measure(const SeenCycle& cycle);
   double fastest_of_vibration(const TurningPoint& from) const;
 
@@ -166,8 +181,7 @@ bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
   measure(mean);
   out_.seen = fmt::format(
       "stick-slip that does not repeat itself: over the last {} cycles of {:.3g} s the period goes from {:.6g} to "
-      "{:.6g} "
-      "s, peak-to-peak from {:.6g} to {:.6g} mm",
+      "{:.6g} s, peak-to-peak from {:.6g} to {:.6g} mm",
       late.size(), out_.simulated, least.period, most.period, 1e3 * least.peak_to_peak, 1e3 * most.peak_to_peak);
   return false;
 }
@@ -180,30 +194,34 @@ double Settling::fastest_of_vibration(const TurningPoint& from) const {
   return motion.slips.empty() ? machine_.disc_velocity() : motion.slips.back().peak_speed;
 }
 
+bool Settling::slides() {
+  out_.regime = Regime::sliding;
+  out_.frequency = out_.stick_time = std::numeric_limits<double>::quiet_NaN();
+  out_.peak_to_peak = out_.energy = 0;
+  out_.peak_speed = machine_.disc_velocity();
+  return true;
+}
+
 bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   const std::vector<double> swings = swings_since(motion, since);
-  if (swings.size() < 5) {
+  const double still = rest_of(machine_), length = out_.simulated - since;
+  if (swings.size() < 5 || *std::max_element(swings.begin(), swings.end()) < still) {
+    // What does not swing creeps to its place, unless it runs away from it.
+    if (creeps_to_rest(machine_, length)) return slides();
     out_.seen = fmt::format("sliding without a stick, {} swings in {:.3g} s", swings.size(), out_.simulated);
-    const bool overdamped = steady_sliding(machine_).is_stable() && machine_.rig.damping_ratio() >= 1;
-    if (overdamped) out_.regime = Regime::sliding;
-    return overdamped;
+    return false;
   }
   const std::vector<TurningPoint>& turns = motion.turning_points;
   const double first = *std::max_element(swings.begin(), swings.end());
   const double last = swings.back(), change = last / swings[swings.size() - 3] - 1;
-  out_.stick_time = 0;
-  constexpr double kSmall = 0.05;
-  constexpr double kNothing = 1e-9;  // of the static deflection: rounding
-  const bool at_rest = last < kNothing * machine_.parameters[0] * machine_.load / machine_.rig.stiffness;
-  if (at_rest || (change < 0 && last < kSmall * first && steady_sliding(machine_).is_stable())) {
-    out_.regime = Regime::sliding;
-    out_.frequency = std::numeric_limits<double>::quiet_NaN();
-    out_.stick_time = std::numeric_limits<double>::quiet_NaN();
-    out_.peak_to_peak = out_.energy = 0;
-    out_.peak_speed = machine_.disc_velocity();
+  // What is left of a thousandth need not shrink any more: it may be rounding.
+  constexpr double kSmall = 0.05, kGone = 1e-3;
+  const bool dies_out = (change < 0 && last < kSmall * first) || last < std::max(kGone * first, still);
+  if (dies_out && steady_sliding(machine_).is_stable()) {
     out_.begin = turns.back().time;
-    return true;
+    return slides();
   }
+  out_.stick_time = 0;
   const TurningPoint& end = turns.back();
   out_.frequency = 1 / (end.time - turns[turns.size() - 3].time);
   out_.peak_to_peak = last;
@@ -267,22 +285,44 @@ Settled settle(const Machine& machine, const SettleOptions& options) {
   return Settling(machine, options).run();
 }
 
+namespace {
+
+/// Whether these cycles of a motion that still sticks go on for ever: a bare law begins each at the same break-away,
+/// others must not shrink one after the other, as those do in which a fast disc has set the block swinging and it comes
+/// near the speed of the disc for a while.
+bool goes_on(const std::vector<SeenCycle>& cycles, bool bare) {
+  if (bare) return !cycles.empty();
+  constexpr double kShrinks = 1e-4;
+  const std::size_t n = cycles.size();
+  if (n < 4) return false;
+  for (std::size_t k = n - 3; k < n; ++k) {
+    if (cycles[k].peak_to_peak > (1 - kShrinks) * cycles[k - 1].peak_to_peak) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool keeps_sticking(const Machine& machine, double sharpness) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
-  constexpr double kCycles = 4, kMostPeriods = 2000, kStill = 1e-9;
+  const bool bare = machine.model.effects().empty();
+  constexpr double kCycles = 4, kStill = 1e-9;
+  const double most = std::max(kCycles * cycle, (bare ? 2000 : 500) * period);
   // The first slip tells of most machines.
-  double duration = machine.model.effects().empty() ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
+  double duration = bare ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {
     const SimulatedMotion motion = motion_of(machine, {.duration = duration, .rate = 0}, sharpness);
     const std::optional<double> since = open_slip(motion);
-    const std::vector<double> swings = swings_since(motion, since.value_or(duration));
-    const std::size_t n = swings.size(), cycles = cycles_of(motion).size();
-    const bool slides = since && duration - *since > kLongestSlip * period && n >= 4;
-    // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
-    if (slides && (swings[n - 1] < (1 + kStill) * swings[n - 3] || duration > kMostPeriods * period)) return false;
-    // A bare law begins each cycle at the same break-away.
-    if (cycles >= (machine.model.effects().empty() ? 1U : 3U)) return true;
-    if (!slides && duration >= kCycles * cycle) return true;
+    if (since && duration - *since > kLongestSlip * period) {
+      const std::vector<double> swings = swings_since(motion, *since);
+      const std::size_t n = swings.size();
+      // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
+      const bool dies_out =
+          n >= 4 ? swings[n - 1] < (1 + kStill) * swings[n - 3] : creeps_to_rest(machine, duration - *since);
+      if (dies_out || duration >= most) return false;
+    } else if (goes_on(cycles_of(motion), bare) || (duration >= kCycles * cycle && (bare || duration >= most))) {
+      return true;
+    }
     duration = std::max(kCycles * cycle, 4 * duration);
   }
 }

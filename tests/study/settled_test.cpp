@@ -72,6 +72,34 @@ TEST(Settled, AboveTheCriticalSpeedVibrationDiesOut) {
   EXPECT_EQ(settled.peak_to_peak, 0);
 }
 
+TEST(Settled, WhatHardlySwingsSlidesWithAllItsMeasures) {
+  // Nearly critical, overdamped, and by friction that rises with speed.
+  const Machine published = published_machine();
+  for (const Machine& machine :
+       {with_value(with_value(published, "damping-ratio", 0.99), "velocity", 0.4), with_value(published, "ratio", 1.6),
+        with_value(published, "damping-ratio", 3), with_value(published, "damping-ratio", 100)}) {
+    for (const StartFrom start : {StartFrom::stick, StartFrom::sliding}) {
+      const Settled settled = settle(machine, {.start = start});
+      EXPECT_EQ(settled.regime, Regime::sliding) << settled.seen;
+      EXPECT_EQ(settled.peak_to_peak, 0);
+      EXPECT_EQ(settled.energy, 0);
+      EXPECT_EQ(settled.peak_speed, machine.disc_velocity());
+      EXPECT_TRUE(std::isnan(settled.frequency));
+    }
+  }
+}
+
+TEST(Settled, RoundingIsNoVibration) {
+  // Damped by friction that rises with speed: after twenty periods nothing is left of the push but rounding.
+  Machine machine = published_machine();
+  machine.model = FrictionModel(BaseLaw::exponential, {make_effect("viscous")});
+  machine.parameters.push_back(2);
+  for (double v = 0.038; v < 0.06; v += 0.0005) {
+    const Settled settled = settle(with_value(machine, "velocity", v), {.start = StartFrom::sliding});
+    EXPECT_EQ(settled.regime, Regime::sliding) << v << ": " << settled.peak_to_peak;
+  }
+}
+
 TEST(Settled, FrictionThatGoesWithTheAngleDoesNotSettleAndSaysWhatWasSeen) {
   Machine machine = published_machine();
   machine.model = FrictionModel(BaseLaw::exponential, {make_effect("runout")});
@@ -132,6 +160,24 @@ TEST(Settled, RefusesMachinesThatCannotBe) {
   EXPECT_THROW(settle(with_value(published_machine(), "speed", 0)), InputError);
   EXPECT_THROW(settle(with_value(published_machine(), "load", 0)), InputError);
   EXPECT_THROW(settle(with_value(published_machine(), "alpha", -1)), InputError);
+}
+
+TEST(Variables, TwoAtOnceAreBothThoseOfTheMachineInEitherOrder) {
+  const Machine machine = published_machine();
+  const auto check = [&](const char* a, double va, const char* b, double vb) {
+    for (const Machine& both : {with_values(machine, a, va, b, vb), with_values(machine, b, vb, a, va)}) {
+      EXPECT_NEAR(value_of(both, a), va, 1e-12 * va) << a << ", " << b;
+      EXPECT_NEAR(value_of(both, b), vb, 1e-12 * vb) << a << ", " << b;
+    }
+  };
+  check("velocity", 0.01, "radius", 0.03);
+  check("damping-ratio", 0.1, "mass", 2);
+  check("damping-ratio", 0.1, "stiffness", 5e3);
+  check("ratio", 0.4, "mu_s", 0.8);
+  check("velocity", 0.01, "ratio", 0.4);
+  EXPECT_THROW(with_values(machine, "velocity", 1, "speed", 1), InputError);
+  EXPECT_THROW(with_values(machine, "mu_k", 0.1, "ratio", 0.4), InputError);
+  EXPECT_THROW(with_values(machine, "damping", 1, "damping-ratio", 1), InputError);
 }
 
 TEST(Variables, ComeBackAsTheyWereSet) {

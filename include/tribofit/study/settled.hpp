@@ -58,7 +58,8 @@ SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& optio
 /// Stick-slip is settled when period and peak-to-peak of three cycles agree (a law without memory is so from the first
 /// re-stick on). Without stick, motion is settled when swings stay alike, and dies out when they shrink below a
 /// twentieth of the first while steady sliding is stable: the flow of a law without memory is planar, so swings that
-/// shrink once shrink always, and only a vibration smaller than that could still be hidden.
+/// shrink once shrink always, and only a vibration smaller than that could still be hidden. What hardly swings at all
+/// (strongly damped, or friction that rises with speed) slides after five times the slowest decay of a deviation.
 /// Machines whose friction goes with time, angle or distance need not settle: `seen` then says what the last cycles
 /// were, and the measures are their means.
 /// A motion that cannot be integrated is not settled either, and `seen` is why. Throws InputError for machines that
@@ -68,9 +69,10 @@ Settled settle(const Machine& machine, const SettleOptions& options = {});
 /// Where the block begins; nothing: unloaded and carried by the disc.
 std::optional<BlockStart> start_of(const Machine& machine, StartFrom start);
 
-/// Whether a machine that begins in stick still sticks after four of its longest cycles. A slip of two and a half
-/// natural periods is none that ends: where a law without memory does not return to the speed of the disc in its first
-/// swing, it never does. Cost: a few of its cycles.
+/// Whether a machine that begins in stick goes on sticking. A slip of two and a half natural periods in which the block
+/// swings less and less, or creeps to steady sliding, is none that ends: where a law without memory does not return to
+/// the speed of the disc in its first swing, it never does. With effects the cycles must not shrink any more, else they
+/// are the end of a start at the speed of the disc. Cost: a few of its cycles.
 bool keeps_sticking(const Machine& machine, double sharpness = 0);
 
 /// Swings of the displacement [m] from turning point to turning point, over `periods` natural periods, of a block that
