@@ -78,12 +78,15 @@ std::string critical_text(const StudiedMachine& of, const SpeedStudy& study, con
     text += "  " + wrapped(sentence, style.width, 4) + "\n";
   };
   for (const double v : c.linear) {
-    line(v == c.linear.back() ? "steady sliding loses its stability below" : "steady sliding changes its stability at",
-         v, v == c.linear.back() ? study.linear_range : Range{std::nan(""), std::nan("")});
+    const bool last = v == c.linear.back();
+    const char* what =
+        c.stable_at_highest ? "steady sliding loses its stability below" : "steady sliding is unstable from";
+    line(last ? what : "steady sliding changes its stability at", v,
+         last ? study.linear_range : Range{std::nan(""), std::nan("")});
   }
   if (c.linear.empty()) {
     text += fmt::format("  steady sliding is {} at all speeds from {} to {} mm/s\n",
-                        study.growth_rate.front() < 0 ? "stable" : "unstable", significant(1e3 * c.lowest, 3),
+                        c.stable_at_highest ? "stable" : "unstable", significant(1e3 * c.lowest, 3),
                         significant(1e3 * c.highest, 3));
   }
   line("on the way up stick vanishes at", c.stick_vanishes, study.vanishes_range);
@@ -91,7 +94,10 @@ std::string critical_text(const StudiedMachine& of, const SpeedStudy& study, con
   if (!std::isnan(c.stick_vanishes) && std::isnan(c.stick_returns)) {
     text += "  on the way down it does not come back: sliding goes on\n";
   }
-  if (c.below_range) text += fmt::format("  nothing sticks at {} mm/s and above\n", significant(1e3 * c.lowest, 3));
+  if (c.below_range) {
+    text += fmt::format("  nothing sticks from {} to {} mm/s\n", significant(1e3 * c.lowest, 3),
+                        significant(1e3 * c.highest, 3));
+  }
   if (c.above_range) {
     text += fmt::format("  it still sticks at {} mm/s, the highest speed searched\n", significant(1e3 * c.highest, 3));
   }

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
+#include <limits>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
@@ -28,6 +31,19 @@ double turning_of(const std::function<bool(double)>& yes, double low, double hig
   return 0.5 * (low + high);
 }
 
+/// The highest of speeds in equal ratios at which `yes` holds, and the next above it: {0, lowest} where it does at
+/// none.
+std::pair<double, double> highest_where(const std::function<bool(double)>& yes, double low, double high) {
+  constexpr int kPoints = 60;
+  double above = high;
+  for (int i = kPoints - 1; i >= 0; --i) {
+    const double now = i == 0 ? low : low * std::pow(high / low, static_cast<double>(i) / kPoints);
+    if (yes(now)) return {now, above};
+    above = now;
+  }
+  return {0, low};
+}
+
 class Search {
  public:
   Search(const Machine& machine, const CriticalSpeedOptions& options) : machine_(machine), options_(options) {}
@@ -35,11 +51,15 @@ class Search {
   CriticalSpeed run() {
     set_range();
     out_.linear = changes_of_stability();
-    out_.below_range = !sticks(out_.lowest);
+    out_.stable_at_highest = is_stable(out_.highest);
     out_.above_range = sticks(out_.highest);
-    if (out_.below_range || out_.above_range) return out_;
-    out_.stick_vanishes =
-        turning_of([&](double v) { return sticks(v); }, out_.lowest, out_.highest, options_.tolerance);
+    if (out_.above_range) return out_;
+    const auto sticks_at = [&](double v) { return sticks(v); };
+    double low = out_.lowest, high = out_.highest;
+    if (!sticks(low)) std::tie(low, high) = highest_where(sticks_at, low, high);
+    out_.below_range = low == 0;
+    if (out_.below_range) return out_;
+    out_.stick_vanishes = turning_of(sticks_at, low, high, options_.tolerance);
     out_.stick_returns = way_down();
     return out_;
   }
@@ -99,8 +119,10 @@ class Search {
     const double begin = lost * (1 - kBelow);
     if (begin <= out_.lowest || is_stable(begin)) return std::numeric_limits<double>::quiet_NaN();
     if (returns(begin)) return lost;
-    if (!returns(out_.lowest)) return std::numeric_limits<double>::quiet_NaN();
-    return turning_of([&](double v) { return returns(v); }, out_.lowest, begin, options_.tolerance);
+    const auto returns_at = [&](double v) { return returns(v); };
+    double low = out_.lowest, high = begin;
+    if (!returns(low)) std::tie(low, high) = highest_where(returns_at, low, high);
+    return low > 0 ? turning_of(returns_at, low, high, options_.tolerance) : std::numeric_limits<double>::quiet_NaN();
   }
 
   const Machine& machine_;

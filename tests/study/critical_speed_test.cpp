@@ -46,6 +46,55 @@ TEST(CriticalSpeed, StickVanishesWhereTheSlipFromBreakAwayJustReachesTheDisc) {
   EXPECT_LE(critical.stick_returns, critical.linear.back() * (1 + 1e-9));
 }
 
+Machine with_effect(const std::string& key, double value) {
+  Machine machine = published_machine();
+  machine.model = FrictionModel(BaseLaw::exponential, {make_effect(key)});
+  machine.parameters.push_back(value);
+  return machine;
+}
+
+TEST(CriticalSpeed, IsFoundWhereSlowSlidingIsStableToo) {
+  // exp(-(alpha v)^2) is flat at rest: c = 2 N (mu_s - mu_k) alpha^2 v exp(-(alpha v)^2) has two roots, and nothing
+  // sticks below the first.
+  const Machine machine = with_effect("stribeck-exponent", 2);
+  const CriticalSpeed critical = critical_speed(machine);
+  ASSERT_EQ(critical.linear.size(), 2U);
+  const double drop = machine.load * (machine.parameters[0] - machine.parameters[1]), alpha = machine.parameters[2];
+  for (const double v : critical.linear) {
+    EXPECT_NEAR(2 * drop * alpha * alpha * v * std::exp(-std::pow(alpha * v, 2)), machine.rig.damping,
+                1e-4 * machine.rig.damping);
+  }
+  EXPECT_TRUE(critical.stable_at_highest);
+  EXPECT_FALSE(critical.below_range);
+  const auto sticks = [&](double v) { return settle(with_value(machine, "velocity", v)).sticks; };
+  EXPECT_FALSE(sticks(critical.lowest));
+  EXPECT_TRUE(sticks(critical.stick_vanishes * (1 - 1e-5)));
+  EXPECT_FALSE(sticks(critical.stick_vanishes * (1 + 1e-5)));
+  EXPECT_LE(critical.stick_returns, critical.linear.back() * (1 + 1e-9));
+  EXPECT_GT(critical.stick_returns, critical.linear.front());
+}
+
+TEST(CriticalSpeed, DoesNotTakeAStartAtTheSpeedOfAFastDiscForStickSlip) {
+  // A creeping contact is within half the speed of the disc for some swings after such a start, which die out.
+  const Machine machine = with_effect("contact-spin", 3e-3);
+  EXPECT_TRUE(keeps_sticking(with_value(machine, "velocity", 0.05)));
+  for (const double v : {0.5, 5.0}) {
+    EXPECT_FALSE(keeps_sticking(with_value(machine, "velocity", v)));
+    EXPECT_EQ(settle(with_value(machine, "velocity", v)).regime, Regime::sliding);
+  }
+}
+
+TEST(CriticalSpeed, NothingSticksWhereSlidingIsOverdampedOrFrictionRises) {
+  for (const Machine& machine :
+       {with_value(published_machine(), "damping-ratio", 10), with_value(published_machine(), "ratio", 1.5)}) {
+    const CriticalSpeed critical = critical_speed(machine);
+    EXPECT_TRUE(critical.below_range);
+    EXPECT_TRUE(critical.linear.empty());
+    EXPECT_TRUE(critical.stable_at_highest);
+    EXPECT_TRUE(std::isnan(critical.stick_vanishes));
+  }
+}
+
 TEST(CriticalSpeed, SaysWhereItLiesOutsideTheRange) {
   const CriticalSpeed above = critical_speed(uradnicek_machine(250, 0.5e-3), {.lowest = 1e-4, .highest = 2e-4});
   EXPECT_TRUE(above.above_range);
