@@ -16,7 +16,7 @@ namespace tribofit {
 namespace {
 
 Machine cell_of(const MapRequest& request, double x, double y) {
-  return with_value(with_value(request.machine, request.x.variable.name, x), request.y.variable.name, y);
+  return with_values(request.machine, request.x.variable.name, x, request.y.variable.name, y);
 }
 
 void check_axis(const MapRequest& request, const MapAxis& axis) {
@@ -42,6 +42,7 @@ void check_map(const MapRequest& request) {
   }
   check_axis(request, request.x);
   check_axis(request, request.y);
+  cell_of(request, request.x.values.front(), request.y.values.front());  // two that can be set at once
 }
 
 void compute_map(const MapRequest& request, const std::vector<bool>& done, int threads,

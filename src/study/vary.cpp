@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -105,6 +106,30 @@ Machine with_value(Machine machine, std::string_view name, double value) {
     refuse("parameter", name, variables_of(machine));
   }
   return machine;
+}
+
+namespace {
+
+/// The number by which a variable is varied, where that is another one.
+std::string_view set_by(std::string_view name) {
+  if (name == "velocity") return "speed";
+  if (name == "damping-ratio") return "damping";
+  if (name == "ratio") return "mu_k";
+  return name;
+}
+
+}  // namespace
+
+Machine with_values(Machine machine, std::string_view first, double first_value, std::string_view second,
+                    double second_value) {
+  if (set_by(first) == set_by(second)) {
+    throw InputError("'" + std::string(first) + "' and '" + std::string(second) + "' set the same number",
+                     "name two different ones");
+  }
+  if (set_by(first) != first) {
+    return with_value(with_value(std::move(machine), second, second_value), first, first_value);
+  }
+  return with_value(with_value(std::move(machine), first, first_value), second, second_value);
 }
 
 const std::vector<MeasureInfo>& measures() {

@@ -30,6 +30,12 @@ Variable variable_named(const Machine& machine, std::string_view name);
 double value_of(const Machine& machine, std::string_view name);            ///< SI
 Machine with_value(Machine machine, std::string_view name, double value);  ///< SI
 
+/// Two at once, in whichever order they stand: `velocity`, `damping-ratio` and `ratio` are set after what they are made
+/// of, so that both values are those of the machine returned. Throws InputError for two that set the same number
+/// (velocity and speed, damping-ratio and damping, ratio and mu_k).
+Machine with_values(Machine machine, std::string_view first, double first_value, std::string_view second,
+                    double second_value);
+
 /// A measure of settled motion, as studies print it.
 struct MeasureInfo {
   std::string name;  ///< frequency, stick-time, peak-to-peak, energy, peak-speed
