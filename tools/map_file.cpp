@@ -29,7 +29,7 @@ std::string head_of(const MapRequest& request) {
     text += fmt::format("; {}={}..{}:{}", axis->variable.name, axis->values.front(), axis->values.back(),
                         axis->values.size());
   }
-  for (const std::string& effect : m.model.effect_names()) text += " " + effect;
+  for (const Effect& effect : m.model.effects()) text += "; " + describe(effect).equation;
   return text;
 }
 
