@@ -1,5 +1,6 @@
 #include "tribofit/study/response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -66,7 +67,9 @@ std::vector<Portrait> study_phase(const Machine& machine, const std::vector<doub
     // The spring is wound up first.
     const double winding = at.parameters[0] * at.load / (at.rig.stiffness * v);
     const double duration = winding + static_cast<double>(options.cycles) * cycle;
-    SimulationOptions simulation{.duration = duration, .rate = static_cast<double>(options.samples) / cycle};
+    constexpr double kMostSamples = 1e6;  // a slow disc winds the spring up for thousands of periods
+    SimulationOptions simulation{
+        .duration = duration, .rate = std::min(static_cast<double>(options.samples) / cycle, kMostSamples / duration)};
     simulation.start = start_of(at, options.settle.start);
     portrait.start = motion_of(at, simulation, options.settle.sharpness);
     if (repeats) portrait.cycle = settled_motion(at, portrait.settled, 1, options.samples, options.settle);

@@ -40,7 +40,7 @@ struct Portrait {
 
 struct PortraitOptions {
   std::size_t cycles = 6;      ///< of the start
-  std::size_t samples = 1000;  ///< a cycle
+  std::size_t samples = 1000;  ///< a cycle; of the start fewer where that would be more than a million
   SettleOptions settle = {};
 };
 
