@@ -204,10 +204,8 @@ void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
   group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
   group(law, "--effect", r.effects,
         "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
-      ->take_all()
-      ->expected(1);
+      ->allow_extra_args(false);
   group(law, "--formula", r.formulas,
         "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
-      ->take_all()
-      ->expected(1);
+      ->allow_extra_args(false);
 }

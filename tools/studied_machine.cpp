@@ -5,11 +5,12 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "inputs.hpp"
 #include "options.hpp"
-#include "tribofit/fit/rig.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/study/identified.hpp"
 
 using namespace tribofit;
 
@@ -59,7 +60,7 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
   IdentifyOptions options = options_from(of_trace);
   const Input input = only_input(of_trace, options.read, "study");
   options.read = input.trace.read;
-  const Identification trace = identify(input.trace.path, options);
+  Identification trace = identify(input.trace.path, options);
   const auto refuse = [&](const std::string& reason) {
     throw std::runtime_error(input.trace.path + ": no machine can be identified: " + reason);
   };
@@ -67,21 +68,17 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
     refuse(trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
   const Fit& fit = trace.fits[trace.best];
   if (!fit.converged) refuse("the fit of the law did not converge");
-  const RigFit rig = identify_rig(trace.motion, trace.segmentation, options.instruments);
-  if (!rig.determined) refuse(rig.reason);
-  const double velocity = trace.motion.constant_disc_velocity;
-  if (!(velocity > 0)) refuse("the disc does not turn at one constant speed forwards");
+  if (!(trace.motion.constant_disc_velocity > 0)) refuse("the disc does not turn at one constant speed forwards");
+  const bool placed = trace.motion.conditions.radius.known();
+  if (!placed) trace.motion.conditions.radius.value = 1;
+  const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, options.instruments);
+  IdentifiedMachine found = identified_machine(fit, rig, trace.motion, trace.segmentation);
+  if (!found.reason.empty()) refuse(found.reason);
 
   StudiedMachine out;
-  out.machine.rig = rig.to_rig();
-  out.machine.model = fit.model;
-  out.machine.parameters = fit.values();
-  out.machine.load = rig.load;
-  const Condition& radius = trace.motion.conditions.radius;
-  out.machine.radius = radius.known() ? radius.value : 1;
-  out.machine.speed = velocity / out.machine.radius;
-  out.covariance.friction = fit.covariance;
-  out.covariance.rig.assign(rig.covariance.begin(), rig.covariance.end());
+  out.machine = std::move(found.machine);
+  out.covariance = std::move(found.covariance);
+  out.notes = std::move(found.notes);
   out.machine = with_typed(std::move(out.machine), typed);
   forget_typed(typed, out.covariance);
   out.source = "identified from " + input.trace.path;
@@ -90,8 +87,7 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
         "no normal force is known: forces, mass, damping, stiffness and energy are per newton of it "
         "(state --load)");
   }
-  if (!radius.known())
-    out.notes.push_back("no radius is known: speeds of the disc are omega r, rotational ones mean nothing");
+  if (!placed) out.notes.push_back("no radius is known: speeds of the disc are omega r, rotational ones mean nothing");
   return out;
 }
 

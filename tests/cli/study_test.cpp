@@ -47,6 +47,21 @@ TEST(StudyCommand, WhatWouldMoreDampingDo) {
   EXPECT_GT(before["linear_ci95_mm_s"][1], before["linear_mm_s"][0]);
 }
 
+TEST(StudyCommand, AMassThatTheLawFindsBelowTheSensorSwingsWithTheBlock) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify("simulate --radius 15mm --duration 8s --rate 5kHz --noise-mu 0.003 --noise-v 0.02mm/s "
+                          "--mass-below 0.3kg --out trace.csv")
+                .status,
+            0);
+  // The effect stands just before the file: it must not take that for another one.
+  const Outcome outcome =
+      shop.identify("study phase --radius 15mm --load 50N --json a.json --effect sensor-inertia trace.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json machine = json::parse(contents(shop / "a.json"))["study"]["machine"];
+  EXPECT_NEAR(machine["mass_kg"], 0.85, 0.02);
+  EXPECT_THAT(machine["notes"].dump(), HasSubstr("below the force sensor"));
+}
+
 TEST(StudyCommand, EveryKindWritesItsTables) {
   const Workshop shop;
   ASSERT_EQ(shop.identify("study phase --radius 15mm --at 6mm/s,500mm/s --csv p --json p.json").status, 0);
@@ -87,6 +102,16 @@ TEST(StudyCommand, RowsOfAnotherMapAreNotUsed) {
   EXPECT_EQ(contents(shop / "m/map.csv"), contents(shop / "n/map.csv"));
 }
 
+TEST(StudyCommand, RowsOfAnotherFormulaAreNotUsed) {
+  const Workshop shop;  // its name and numbers are the same
+  const std::string other = " --formula 'h = a*v/b; a=0.001, b=1mm/s'",
+                    formula = " --formula 'h = a*v*v/b/b; a=0.001, b=1mm/s'";
+  shop.shell(std::string("timeout -s KILL 0.5 '" TRIBOFIT_IDENTIFY "' ") + kMap + other + " --csv m");
+  ASSERT_EQ(shop.identify(kMap + formula + " --csv m").status, 0);
+  ASSERT_EQ(shop.identify(kMap + formula + " --csv n").status, 0);
+  EXPECT_EQ(contents(shop / "m/map.csv"), contents(shop / "n/map.csv"));
+}
+
 TEST(StudyCommand, MachinesAndAxesThatCannotBeAreNamed) {
   const Workshop shop;
   const auto refused = [&](const std::string& arguments, int status, const std::string& text) {
@@ -103,6 +128,7 @@ TEST(StudyCommand, MachinesAndAxesThatCannotBeAreNamed) {
   refused("study speed --range 5mm/s..1mm/s", 3, "does not rise");
   refused("study map --x stifness --y mass", 3, "did you mean 'stiffness'");
   refused("study map --x mass --y mass", 3, "both axes");
+  refused("study map --x velocity --y speed", 3, "set the same number");
   refused("study map --x mass=-1kg..1kg:5 --y load", 3, "mass = -1 kg");
   refused("study map --x mass --y load --measure loudness", 3, "there is no measure 'loudness'");
   refused("study sensitivity --vary colour", 3, "there is no parameter 'colour'");
