@@ -97,7 +97,7 @@ RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& o
 
 /// A trace beside the motions that its laws and its rig predict.
 struct TwinIdentification {
-  Identification trace;  ///< its `fits`: the best bare law, then the best law with the effects asked for
+  Identification trace;      ///< its `fits`: the best bare law, then the best law with the effects asked for
   std::vector<RigFit> rigs;  ///< beside each of them, see rig_beside()
   Twin twin;
 };

@@ -30,8 +30,8 @@ std::string table_of(const Twin& twin, const Style& style) {
   std::vector<bool> left = {true, false};
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     header.insert(header.end(), {column_name(twin, c), "off by"});
-    total.insert(total.end(), {"", std::isfinite(twin.rms_difference[c]) ? fmt::format("{:.1f}", twin.rms_difference[c])
-                                                                         : "-"});
+    total.insert(total.end(),
+                 {"", std::isfinite(twin.rms_difference[c]) ? fmt::format("{:.1f}", twin.rms_difference[c]) : "-"});
     left.insert(left.end(), {false, false});
   }
   header.push_back("unit");
@@ -101,14 +101,18 @@ std::string result_sentence(const Twin& twin) {
                        twin.rms_difference[0], twin.rms_difference[last]);
   }
   if (agrees(twin)) {
-    return text + fmt::format("The twin of the {} law moves as the record does: nothing is off by more than three standard "
-                              "errors.", twin.columns[last]);
+    return text + fmt::format(
+                      "The twin of the {} law moves as the record does: nothing is off by more than three standard "
+                      "errors.",
+                      twin.columns[last]);
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
   std::string names;
   for (const std::string& name : twin.failures(last)) names += (names.empty() ? "" : ", ") + name;
-  return text + fmt::format("The twin of the {} law fails over {} (the worst first): the law, the rig or the record holds "
-                            "something else.", twin.columns[last], names);
+  return text + fmt::format(
+                    "The twin of the {} law fails over {} (the worst first): the law, the rig or the record holds "
+                    "something else.",
+                    twin.columns[last], names);
 }
 
 Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
@@ -159,7 +163,8 @@ std::string render_twin(const TwinIdentification& result, const TerminalOptions&
     text += style.heading("Measured motion and its twin");
     text += table_of(twin, style);
     const std::string how = fmt::format(
-        "off by: simulated less measured, in standard errors; {} simulations with law and rig drawn within their errors, at "
+        "off by: simulated less measured, in standard errors; {} simulations with law and rig drawn within their "
+        "errors, at "
         "the mean break-away of the record; the phase portrait is a distance of the loops",
         twin.simulations);
     text += "  " + wrapped(how, style.width, 2) + "\n";

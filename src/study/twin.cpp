@@ -11,16 +11,17 @@
 
 #include "motion_measures.hpp"
 #include "tribofit/fit/parallel.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kBreakAway = 3;    // among the measures
-constexpr double kOff = 3;               // standard errors from which a measure counts as off
-constexpr std::size_t kFewest = 8;       // simulations
-constexpr double kMostSamples = 4e7;     // over all simulations of a column
-constexpr double kGrid = 1e-3;           // on which recorded conditions are followed [s]
+constexpr std::size_t kBreakAway = 3;  // among the measures
+constexpr double kOff = 3;             // standard errors from which a measure counts as off
+constexpr std::size_t kFewest = 8;     // simulations
+constexpr double kMostSamples = 4e7;   // over all simulations of a column
+constexpr double kGrid = 1e-3;         // on which recorded conditions are followed [s]
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A channel as a function of time since the record's first sample: means over kGrid with straight lines between.
@@ -36,7 +37,8 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   const double grid = static_cast<double>(length) * step;
   return [means, grid](double t) {
     const double place = std::clamp(t / grid - 0.5, 0.0, static_cast<double>(means->size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1), next = std::min(k + 1, means->size() - 1);
+    const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1),
+               next = std::min(k + 1, means->size() - 1);
     return (*means)[k] + (place - static_cast<double>(k)) * ((*means)[next] - (*means)[k]);
   };
 }
@@ -102,15 +104,14 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
   options.rate = 1 / motion.step;
   options.scatter = scatter;
   options.seed = seed;
-  options.tolerance = 1e-8;
   if (drive.speed.constant) options.settle = settling_time(machine.rig, drive, machine.parameters);
   const SimulatedMotion simulated = simulate(machine.rig, drive, machine.model, machine.parameters, options);
   sensors.seed = seed + 0x9e3779b97f4a7c15u;
   Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
-  const Motion twin = compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false,
-                                                            .undo_speed_ripple = false});
+  const Motion twin =
+      compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   return measure_motion(twin, cycles);
@@ -179,7 +180,10 @@ std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& of, const S
   const std::vector<Machine> machines = draws_of(of.machine, of.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
-    out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k);
+    try {
+      out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k);
+    } catch (const InputError&) {  // numbers that cannot be simulated: one prediction less
+    }
     done();
   });
   return out;
@@ -258,7 +262,8 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   for (std::size_t k = 0; k < measured.values.size(); ++k) {
     const MotionMeasureInfo& info = motion_measures()[k];
     const Measure& m = measured.values[k];
-    twin.measures.push_back({info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
+    twin.measures.push_back(
+        {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }
   twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
   const auto affordable = static_cast<std::size_t>(kMostSamples / static_cast<double>(motion.size()));

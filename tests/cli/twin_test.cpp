@@ -45,8 +45,7 @@ TEST(TwinCommand, AHiddenEffectShowsAndFallsWhenItIsAdded) {
   ASSERT_EQ(bare.status, 0) << bare.err;
   EXPECT_THAT(bare.out, HasSubstr("fails over"));
   EXPECT_THAT(bare.out, HasSubstr("\n  identify diagnose --radius 15mm --load 50N trace.csv\n"));
-  const Outcome both =
-      shop.identify("twin --radius 15mm --load 50N --effect frictional-lag --json - trace.csv");
+  const Outcome both = shop.identify("twin --radius 15mm --load 50N --effect frictional-lag --json - trace.csv");
   ASSERT_EQ(both.status, 0) << both.err;
   const json twin = json::parse(both.out)["twin"];
   EXPECT_EQ(twin["columns"], json::array({"exponential", "exponential + frictional-lag"}));
@@ -66,8 +65,9 @@ TEST(TwinCommand, WhatCannotBeHadIsSaidWithStatusOne) {
   const Outcome nowhere = shop.identify("twin --load 50N trace.csv");
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_THAT(nowhere.err, HasSubstr("--radius"));
-  shop.shell("awk -F, 'NR==1 {print \"time_s,mu,v_r [mm/s]\"; next} {print $1 \",\" $2 \",\" (6.2831853 - $3)}' "
-             "trace.csv > relative.csv");
+  shop.shell(
+      "awk -F, 'NR==1 {print \"time_s,mu,v_r [mm/s]\"; next} {print $1 \",\" $2 \",\" (6.2831853 - $3)}' "
+      "trace.csv > relative.csv");
   const Outcome relative = shop.identify("twin --radius 15mm --load 50N relative.csv");
   EXPECT_EQ(relative.status, 1);
   EXPECT_THAT(relative.err, HasSubstr("--speed"));

@@ -9,8 +9,8 @@ namespace tribofit {
 
 struct TwinIdentification;  // pipeline.hpp
 
-/// What a person reads after `identify twin`: the laws and the rig in a line each, measured and simulated motion side by
-/// side with their difference in standard errors, where the twin fails, and the next command.
+/// What a person reads after `identify twin`: the laws and the rig in a line each, measured and simulated motion side
+/// by side with their difference in standard errors, where the twin fails, and the next command.
 std::string render_twin(const TwinIdentification& result, const TerminalOptions& options = {});
 
 /// The same for programs: {"tool", "trace", "conditions", "health", "stick_slip", "fits", "rig" (beside the bare law),

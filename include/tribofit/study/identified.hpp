@@ -26,10 +26,10 @@ struct IdentifiedMachine {
 RigFit rig_beside(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
                   const Instruments& instruments = {});
 
-/// Law and rig put together. Where no normal force is known, or friction is a force, the load is 1 N and the rig is that
-/// per newton. A mass below the force sensor that the fit found (sensor-inertia) is added to that of the rig, which is
-/// the one above it. The disc turns at its mean speed. Scatter of break-away and its correlation from cycle to cycle are
-/// those of the record.
+/// Law and rig put together. Where no normal force is known, or friction is a force, the load is 1 N and the rig is
+/// that per newton. A mass below the force sensor that the fit found (sensor-inertia) is added to that of the rig,
+/// which is the one above it. The disc turns at its mean speed. Scatter of break-away and its correlation from cycle to
+/// cycle are those of the record.
 IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Motion& motion,
                                      const Segmentation& segmentation);
 

@@ -31,7 +31,7 @@ struct Twin {
   std::vector<TwinMeasure> measures;   ///< the last is the phase portrait
   std::vector<double> rms_difference;  ///< over the measures, in standard errors, one a column
   std::vector<std::string> messages;
-  std::string reason;  ///< why there is no twin; empty where there is one
+  std::string reason;           ///< why there is no twin; empty where there is one
   std::size_t simulations = 0;  ///< behind each column
 
   /// Names of the measures in which a column is off by more than three standard errors, the worst first.
@@ -45,15 +45,16 @@ struct TwinOptions {
   std::function<void(std::string_view, double)> progress = {};  ///< what is being done and the part done
 };
 
-/// Simulates each law on the rig beside it (`rigs`, as many as `fits`) at the record's own conditions (speed of the disc, load, length, rate, noise, break-away
-/// scatter), takes the simulated records through the same segmentation, and compares.
+/// Simulates each law on the rig beside it (`rigs`, as many as `fits`) at the record's own conditions (speed of the
+/// disc, load, length, rate, noise, break-away scatter), takes the simulated records through the same segmentation, and
+/// compares.
 ///
 /// Each simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own; it is a
 /// record that the fit could have been made to. What the record owes to the levels at which it happened to break away
 /// is no error of the twin: the simulated value is the one at the mean break-away of the record, by a straight line
-/// through the simulations, and its standard error that of one more record beside this line (Student's t with the number
-/// of simulations less two). To it comes what the measured mean is known less well than those of the simulations. Of
-/// break-away itself the mean of the simulations is compared. A difference beyond three is not chance.
+/// through the simulations, and its standard error that of one more record beside this line (Student's t with the
+/// number of simulations less two). To it comes what the measured mean is known less well than those of the
+/// simulations. Of break-away itself the mean of the simulations is compared. A difference beyond three is not chance.
 ///
 /// The phase portrait is the mean slip in the plane of displacement and velocity; its `value` and `difference` are the
 /// root mean square over the loop of the differences in standard errors, its measured value is zero.
