@@ -103,12 +103,14 @@ TEST(StudyCommand, RowsOfAnotherMapAreNotUsed) {
 }
 
 TEST(StudyCommand, RowsOfAnotherFormulaAreNotUsed) {
-  const Workshop shop;  // its name and numbers are the same
-  const std::string other = " --formula 'h = a*v/b; a=0.001, b=1mm/s'",
-                    formula = " --formula 'h = a*v*v/b/b; a=0.001, b=1mm/s'";
-  shop.shell(std::string("timeout -s KILL 0.5 '" TRIBOFIT_IDENTIFY "' ") + kMap + other + " --csv m");
-  ASSERT_EQ(shop.identify(kMap + formula + " --csv m").status, 0);
-  ASSERT_EQ(shop.identify(kMap + formula + " --csv n").status, 0);
+  const Workshop shop;
+  const std::string map = "study map --x stiffness=8N/mm..20N/mm:20 --y mass=0.5kg..1.5kg:20 --quiet --threads 1";
+  // Name and numbers are the same.
+  const std::string other = map + " --formula 'h = a*v/b; a=0.001, b=1mm/s'";
+  const std::string formula = map + " --formula 'h = a*v*v/b/b; a=0.001, b=1mm/s'";
+  shop.shell("timeout -s KILL 0.5 '" TRIBOFIT_IDENTIFY "' " + other + " --csv m");
+  ASSERT_EQ(shop.identify(formula + " --csv m").status, 0);
+  ASSERT_EQ(shop.identify(formula + " --csv n").status, 0);
   EXPECT_EQ(contents(shop / "m/map.csv"), contents(shop / "n/map.csv"));
 }
 
