@@ -8,6 +8,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/study/settled.hpp"
 #include "tribofit/study/uncertainty.hpp"
+#include "tribofit/study/vary.hpp"
 
 namespace tribofit {
 namespace {
