@@ -319,7 +319,9 @@ bool keeps_sticking(const Machine& machine, double sharpness) {
       // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
       const bool dies_out =
           n >= 4 ? swings[n - 1] < (1 + kStill) * swings[n - 3] : creeps_to_rest(machine, duration - *since);
-      if (dies_out || duration >= most) return false;
+      if (dies_out) return false;
+      if (bare && goes_on(cycles_of(motion), bare)) return true;
+      if (duration >= most) return false;
     } else if (goes_on(cycles_of(motion), bare) || (duration >= kCycles * cycle && (bare || duration >= most))) {
       return true;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "machines.hpp"
 #include "tribofit/ingest/input_error.hpp"
