@@ -10,6 +10,7 @@
 
 #include "force_balance.hpp"
 #include "influence.hpp"
+#include "kinematics/corrections.hpp"
 #include "rig_messages.hpp"
 #include "rig_solution.hpp"
 #include "tribofit/segmentation/mean_error.hpp"
@@ -80,14 +81,18 @@ bool disc_is_known(const Motion& motion) {
 void compare_stick_slope(const Motion& motion, const Segmentation& segmentation, const NormalForce& load,
                          const Balance* balance, const Eigen::VectorXd& influence, RigFit& fit) {
   if (!disc_is_known(motion)) return;
+  // omega r that was read off the plateaus is off by some tenths of a per cent; each stick has its own.
+  const bool from_plateau = motion.conditions.speed.source == "plateau";
   std::vector<double> slopes, differences;
   std::vector<std::size_t> middles;
   for (const Cycle& cycle : segmentation.cycles) {
     if (!cycle.stick_complete) continue;
     const std::optional<Line> line = within_stick(motion, load, cycle.stick);
     if (!line) continue;
-    slopes.push_back(line->slope);
-    middles.push_back(cycle.stick.begin + cycle.stick.size() / 2);
+    const std::size_t middle = cycle.stick.begin + cycle.stick.size() / 2;
+    const double disc = motion.disc_velocity_at(middle), block = disc - cycle.plateau_velocity;
+    slopes.push_back(from_plateau && block / disc > 0 ? line->slope * disc / block : line->slope);
+    middles.push_back(middle);
   }
   if (slopes.size() < 3) return;
   const Measure mean = mean_of(slopes);
@@ -221,6 +226,31 @@ std::pair<Balance, BalanceSolution> solve(const Motion& motion, const Segmentati
   return {std::move(balance), std::move(solution)};
 }
 
+/// A delay is a further term only as long as it is short against the smoothing: a longer one is found by moving
+/// friction back by what was found and looking again.
+void refine_delay(const Motion& motion, const Segmentation& segmentation, double period, RigFit& fit) {
+  const auto is_clear = [&](const RigValue& delay) {
+    return delay.determined && std::abs(delay.value) > kClear * delay.std_error && std::abs(delay.value) > motion.step;
+  };
+  constexpr int kMostTimes = 4;
+  double total = fit.delay.value;
+  RigFit moved;
+  moved.delay = fit.delay;
+  for (int i = 0; i < kMostTimes && is_clear(moved.delay); ++i) {
+    Motion aligned = motion;
+    kinematics::shift_earlier(aligned.friction, total, motion.step);
+    const auto [balance, solution] = solve(aligned, segmentation, normal_force(aligned), period);
+    if (!solution.solved) return;
+    moved.delay = {};
+    try_further_terms(balance, solution, moved);
+    if (!moved.delay.determined) return;
+    total += moved.delay.value;
+    fit.delay = rig_value(total, moved.delay.std_error, fit.degrees_of_freedom);
+    fit.high_pass = moved.high_pass;
+    fit.without_both = moved.without_both;
+  }
+}
+
 }  // namespace
 
 Rig RigFit::to_rig() const {
@@ -261,6 +291,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
   set_values(solution, fit);
   compare_stick_slope(motion, segmentation, load, &balance, solution.influence.col(2), fit);
   try_further_terms(balance, solution, fit);
+  refine_delay(motion, segmentation, period, fit);
   judge(solution, fit);
   add_derived(fit);
   add_mass_below(instruments, fit);
