@@ -53,6 +53,9 @@ MapFile::MapFile(const std::string& folder, const MapRequest& request, bool agai
                      {folder, 0, ""});
   rows_path_ = folder + "/map.rows";
   map_path_ = folder + "/map.csv";
+  if (std::filesystem::is_directory(map_path_)) {
+    throw InputError("is a folder, and would be the table", "name another folder", {map_path_, 0, ""});
+  }
   head_ = head_of(request);
   if (!again) read_known();
   std::string text = head_ + "\n";

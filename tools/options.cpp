@@ -99,7 +99,8 @@ std::vector<std::string> own_options(const CLI::App& app) {
     if (option->count() == 0 || option->get_positional()) continue;
     if (name == "--json" || name == "--csv" || name == "--quiet") continue;
     if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
-    if (name == "--share" || name == "--vary") continue;  // of what is said of all runs together
+    const bool of_runs = app.get_option_no_throw("--share") != nullptr;
+    if (of_runs && (name == "--share" || name == "--vary")) continue;  // of what is said of all runs together
     if (name == "--compare") continue;
     if (option->get_items_expected_max() == 0) {
       const bool negated = option->results().front() == "false";

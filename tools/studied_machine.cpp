@@ -68,7 +68,9 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
     refuse(trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
   const Fit& fit = trace.fits[trace.best];
   if (!fit.converged) refuse("the fit of the law did not converge");
-  if (!(trace.motion.constant_disc_velocity > 0)) refuse("the disc does not turn at one constant speed forwards");
+  if (trace.motion.disc_velocity.empty() && !(trace.motion.constant_disc_velocity > 0)) {
+    refuse("the disc does not turn forwards, or its speed is not known");
+  }
   const bool placed = trace.motion.conditions.radius.known();
   if (!placed) trace.motion.conditions.radius.value = 1;
   const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, options.instruments);

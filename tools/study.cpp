@@ -52,6 +52,11 @@ SettleOptions settle_options(const Request& r) {
     if (!(options.sharpness > 0)) {
       throw InputError("--sharpness: '" + r.sharpness + "' is not greater than zero", "give it as e.g. 500s/mm");
     }
+    constexpr double kMost = 1e9;  // s/m: beyond it creep in stick is lost in rounding
+    if (options.sharpness > kMost) {
+      throw InputError("--sharpness: '" + r.sharpness + "' is more than 1e6 s/mm",
+                       "leave it out: stick and slip are then located as events");
+    }
   }
   return options;
 }
