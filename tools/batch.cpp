@@ -97,6 +97,7 @@ void refuse_overwriting_inputs(const Campaign& campaign, const BatchOptions& bat
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
+  if (!s.report.empty()) throw CLI::ValidationError("--report goes with one trace at a time; a batch has none yet");
   if (!s.json.empty()) throw CLI::ValidationError("--json goes with one trace at a time; --out has a file for each");
   if (!s.csv.empty()) throw CLI::ValidationError("--csv goes with one trace at a time");
   if (campaign.runs.size() > 1 && !s.second_file.empty()) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,12 +8,10 @@
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "settings.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/csv.hpp"
 #include "tribofit/report/diagnosis.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -76,18 +73,6 @@ void add_remarks(const Split& split, DiagnosedTraces& result) {
   }
 }
 
-/// Both outputs or none: the JSON is on the disc before the CSV gets its names, and gets its own after it.
-void write_results(const Settings& s, const DiagnosedTraces& result, const std::vector<std::string>& arguments) {
-  std::optional<WholeFile> json;
-  if (!s.json.empty()) {
-    json.emplace(s.json == "-" ? "/dev/stdout" : s.json);
-    json->write(to_json(result, {arguments}));
-    json->finish();
-  }
-  if (!s.csv.empty()) write_csv_folder(s.csv, result);
-  if (json) json->commit();
-}
-
 std::string reason_of(const DiagnosedTraces& result) {
   for (const Identification& trace : result.traces) {
     if (!trace.analysed && !trace.warnings.empty()) return trace.path + ": " + trace.warnings.back();
@@ -110,12 +95,13 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
     result = diagnose(traces_of(split.diagnosed), options, more);
   }
   add_remarks(split, result);
-  write_results(s, result, arguments);
+  const bool alone = split.diagnosed.size() == 1;
+  const std::vector<std::string> own = alone ? arguments_for(split.diagnosed.front(), arguments) : arguments;
+  const std::vector<std::string> inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
+  write_results(s, result, arguments, {own, inputs, !s.instruments.empty()});
   if (!s.quiet && s.json != "-") {
-    const bool alone = split.diagnosed.size() == 1;
-    TerminalOptions terminal =
-        terminal_options(s, alone ? arguments_for(split.diagnosed.front(), arguments) : arguments);
-    terminal.inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
+    TerminalOptions terminal = terminal_options(s, own);
+    terminal.inputs = inputs;
     print(render_diagnosis(result, terminal));
   }
   if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return kDone;
@@ -136,6 +122,7 @@ void add_diagnose(CLI::App& app, int& status) {
       ->group("Reading");
   add_model_options(*verb, *settings);
   add_output_options(*verb, *settings);
+  add_report_option(*verb, *settings);
   verb->callback([settings, verb, &status] {
     refuse_empty_values(*verb);
     check_seed(*settings);

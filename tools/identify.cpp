@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,13 +7,11 @@
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "settings.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/csv.hpp"
-#include "tribofit/report/json.hpp"
 #include "tribofit/report/terminal.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -35,24 +32,13 @@ void check_usage(const Settings& s, const std::vector<Input>& inputs) {
     };
     alone(!s.json.empty(), "--json");
     alone(!s.csv.empty(), "--csv");
+    alone(!s.report.empty(), "--report");
     alone(!s.second_file.empty(), "--with");
     alone(!s.continued_in.empty(), "--continue");
   }
   std::vector<std::string> files = input_files(s);
   for (const Input& input : inputs) files.push_back(input.trace.path);
   refuse_overwriting(s, files);
-}
-
-/// Both outputs or none: the JSON is on the disc before the CSV gets its names, and gets its own after it.
-void write_results(const Settings& s, const Identification& result, const std::vector<std::string>& arguments) {
-  std::optional<WholeFile> json;
-  if (!s.json.empty()) {
-    json.emplace(s.json == "-" ? "/dev/stdout" : s.json);
-    json->write(to_json(result, {arguments}));
-    json->finish();
-  }
-  if (!s.csv.empty()) write_csv_folder(s.csv, result);
-  if (json) json->commit();
 }
 
 int run_one(const Settings& s, const Input& input, const IdentifyOptions& options,
@@ -62,7 +48,7 @@ int run_one(const Settings& s, const Input& input, const IdentifyOptions& option
   Identification result = identify(input.trace.path, own);
   result.notes.insert(result.notes.end(), input.notes.begin(), input.notes.end());
   result.warnings.insert(result.warnings.begin(), input.warnings.begin(), input.warnings.end());
-  write_results(s, result, arguments);
+  write_results(s, result, arguments, {arguments_for(input, arguments), {}, !s.instruments.empty()});
   if (!s.quiet && s.json != "-") print(render_terminal(result, terminal_options(s, arguments_for(input, arguments))));
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
@@ -124,6 +110,7 @@ void add_identify(CLI::App& app, int& status) {
   add_input_options(app, *settings);
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
+  add_report_option(app, *settings);
   add_batch_options(app, *settings);
   add_pooling_options(app, *settings);
   app.parse_complete_callback([settings, &app] {  // runs before that of a verb

@@ -8,6 +8,7 @@
 #include "inputs.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/own_files.hpp"
+#include "tribofit/report/page.hpp"
 
 using namespace tribofit;
 
@@ -62,6 +63,10 @@ void add_output_options(CLI::App& app, Settings& s) {
   app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder")->group("Output");
 }
 
+void add_report_option(CLI::App& app, Settings& s) {
+  app.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)")->group("Output");
+}
+
 Effect effect_named(const std::string& name) {
   try {
     return make_effect(name);
@@ -97,7 +102,7 @@ std::vector<std::string> own_options(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name();
     if (option->count() == 0 || option->get_positional()) continue;
-    if (name == "--json" || name == "--csv" || name == "--quiet") continue;
+    if (name == "--json" || name == "--csv" || name == "--report" || name == "--quiet") continue;
     if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
     const bool of_runs = app.get_option_no_throw("--share") != nullptr;
     if (of_runs && (name == "--share" || name == "--vary")) continue;  // of what is said of all runs together
@@ -132,8 +137,23 @@ void check_seed(Settings& s) {
   throw CLI::ValidationError("--seed: '" + s.seed_text + "' is not a whole number from 0 to 18446744073709551615");
 }
 
+/// Wrong usage: a page that this build cannot write, or one onto another output.
+static void check_report(const Settings& s) {
+  if (s.report.empty()) return;
+  if (!has_report_page()) {
+    throw CLI::ValidationError(
+        "--report: this build leaves the page out; build where npm is installed (scripts/setup page), or use --json or "
+        "--csv");
+  }
+  if (s.report == s.json || same_file(s.report, s.json)) throw CLI::ValidationError("--report and --json are one file");
+}
+
 void refuse_overwriting(const Settings& s, const std::vector<std::string>& inputs) {
+  check_report(s);
   for (const std::string& input : inputs) {
+    if (!s.report.empty() && same_file(s.report, input)) {
+      throw CLI::ValidationError("--report would overwrite " + input);
+    }
     if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite " + input);
     if (s.csv.empty()) continue;
     const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();

@@ -15,6 +15,8 @@ void add_model_options(CLI::App& app, Settings& settings);
 void add_result_options(CLI::App& app, Settings& settings);
 /// The same with tables as CSV.
 void add_output_options(CLI::App& app, Settings& settings);
+/// The page of charts, for verbs that have one.
+void add_report_option(CLI::App& app, Settings& settings);
 /// What several runs have in common.
 void add_pooling_options(CLI::App& app, Settings& settings);
 

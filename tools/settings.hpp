@@ -22,7 +22,7 @@ struct Settings {
   int starts = 5, folds = 5;
   bool profile = false;
 
-  std::string json, csv;
+  std::string json, csv, report;
   std::string out, shard, pattern;  // a batch
   std::string compare;              // table of earlier values
   bool again = false;

@@ -107,17 +107,12 @@ void write_cycles(WholeFile& file, const Identification& result, const Membershi
 
 void write_curves(WholeFile& file, std::span<const Fit> fits) {
   constexpr std::size_t kPoints = 201;
-  constexpr double kReach = 1.25;  // of the fastest slip, so that the extrapolation is seen as such
   file.write(std::string(header_of("curves.csv")) + "\n");
   Row row(file);
   for (const Fit& fit : fits) {
-    std::vector<double> velocity(kPoints);
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(kPoints - 1);
-    }
     std::string effects;
     for (const std::string& name : fit.model.effect_names()) effects += (effects.empty() ? "" : "+") + name;
-    const Curve curve = law_curve(fit, velocity);
+    const Curve curve = curve_of(fit, kPoints);
     for (std::size_t i = 0; i < curve.velocity.size(); ++i) {
       row << to_string(fit.model.law()) << effects << to_string(fit.protocol) << curve.velocity[i] / kMillimetre
           << curve.mu[i] << curve.lower95[i] << curve.upper95[i] << (curve.velocity[i] <= fit.fastest ? "1" : "0");

@@ -293,6 +293,10 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
   return text;
 }
 
+std::string diagnose_command(const DiagnosedTraces& result, const TerminalOptions& options) {
+  return command(diagnose_again(options), options, result);
+}
+
 std::string formula_command(const DiagnosedTraces& result, const TerminalOptions& options) {
   if (result.diagnosis.formula.empty()) return "";
   std::vector<std::string> words = final_model(result, options);

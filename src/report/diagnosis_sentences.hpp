@@ -43,6 +43,9 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
 /// The command to type next, with the user's own options.
 Suggestion next_after_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options);
 
+/// The diagnosis itself as a command, with the user's own options.
+std::string diagnose_command(const DiagnosedTraces& result, const TerminalOptions& options);
+
 /// The command that adds the formula of what remains; empty where there is none.
 std::string formula_command(const DiagnosedTraces& result, const TerminalOptions& options);
 

@@ -99,7 +99,7 @@ Json warnings_json(const std::vector<Identification>& traces) {
 
 }  // namespace
 
-std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
+Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options) {
   const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   Json json = {{"tool", tool_json(options)}};
@@ -114,7 +114,11 @@ std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
     for (Json& fit : json["fits"]) mark_as_shared(fit["parameters"]);
     for (Json& effect : json["diagnosis"]["effects"]) mark_as_shared(effect["parameters"]);
   }
-  return text_of(json);
+  return json;
+}
+
+std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
+  return text_of(diagnosed_json(result, options));
 }
 
 }  // namespace tribofit

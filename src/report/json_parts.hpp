@@ -33,6 +33,8 @@ Json comparisons_json(std::span<const Fit> fits, std::size_t best);
 
 /// The whole result of one trace.
 Json identification_json(const Identification& result, const JsonOptions& options);
+/// The whole result of a diagnosis.
+Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options);
 
 std::string text_of(const Json& json);
 

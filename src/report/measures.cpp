@@ -48,6 +48,15 @@ std::size_t evidence_of(const Identification& trace) {
   return observe(trace.motion, trace.segmentation, {}, 1).cycles;
 }
 
+Curve curve_of(const Fit& fit, std::size_t points) {
+  constexpr double kReach = 1.25;
+  std::vector<double> velocity(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(points - 1);
+  }
+  return law_curve(fit, velocity);
+}
+
 Membership membership(const Identification& trace, const Fit* fit, std::size_t before) {
   const std::vector<Cycle>& cycles = trace.segmentation.cycles;
   Membership out;

@@ -40,6 +40,10 @@ struct LawComparison {
 /// The best fit against each other fit of the same protocol; empty where there is nothing to compare.
 std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t best);
 
+/// The law of a fit with its band at `points` speeds from rest to a quarter beyond the fastest slip, so that the
+/// extrapolation is seen as such.
+Curve curve_of(const Fit& fit, std::size_t points);
+
 /// Cycle and held-out fold of every sample.
 struct Membership {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);

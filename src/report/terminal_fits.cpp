@@ -10,48 +10,11 @@
 
 #include "measures.hpp"
 #include "numbers.hpp"
+#include "parameter_cells.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
 namespace {
-
-std::string_view equation(BaseLaw law) {
-  switch (law) {
-    case BaseLaw::exponential:
-      return "mu = mu_k + (mu_s - mu_k) exp(-alpha v)";
-    case BaseLaw::fractional:
-      return "mu = mu_k + (mu_s - mu_k) / (1 + beta v)";
-    case BaseLaw::coulomb:
-      break;
-  }
-  return "mu = mu_k in slip, mu_s at break-away";
-}
-
-std::string flags_of(const Fit& fit, std::size_t index) {
-  const FitParameter& p = fit.parameters[index];
-  std::string flags;
-  const auto add = [&](std::string_view flag) { flags += (flags.empty() ? "" : ", ") + std::string(flag); };
-  if (p.at_bound) add("at bound");
-  if (p.value == p.start && fit.protocol == Protocol::joint) add("unmoved");
-  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
-                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
-  if (correlated) add("correlated");
-  if (!p.determined) add("not determined");
-  return flags;
-}
-
-std::string bracket(double lower, double upper, int places) {
-  if (!std::isfinite(lower) && !std::isfinite(upper)) return "-";
-  return "[" + fixed(lower, places) + ", " + fixed(upper, places) + "]";
-}
-
-/// Decimal places of a parameter's value: those its standard error allows, else five significant digits.
-int places_of(const FitParameter& p) {
-  const double error = shown(p, p.std_error);
-  if (std::isfinite(error) && error > 0) return places_for(error);
-  const double value = std::abs(shown(p, p.value));
-  return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
-}
 
 /// How much of each parameter a table shows, from everything to what a narrow terminal can hold.
 enum class Detail { all, no_start, no_share, interval_only };
@@ -141,46 +104,23 @@ std::string one_fit(const Identification& r, const Fit& fit, const TerminalOptio
   return text;
 }
 
-/// The joint fit of the same law. It may carry effects that the published protocol does not know.
-const Fit* partner_of(const Identification& r, const Fit& fit) {
-  for (const Fit& other : r.fits) {
-    if (other.protocol == Protocol::joint && other.model.law() == fit.model.law()) return &other;
-  }
-  return nullptr;
-}
-
-/// Whether a value lies outside the other's 95 % interval.
-bool differs(const FitParameter& published, const FitParameter& joint) {
-  return published.value < joint.lower95 || published.value > joint.upper95;
-}
-
 /// What the published protocol makes of the same data, and by how much it is off the joint fit.
 std::string protocol_lines(const Identification& r, const Style& style) {
   Table table({"law", "parameter", "published", "joint", "difference", "unit"},
               {true, true, false, false, false, true});
-  bool compared = false, different = false;
+  const std::vector<ProtocolRow> rows = protocol_rows(r);
+  for (const ProtocolRow& row : rows) table.add(row.cells);
+  const bool different = std::any_of(rows.begin(), rows.end(), [](const ProtocolRow& row) { return row.differs; });
   std::string notes;
   for (const Fit& fit : r.fits) {
-    if (fit.protocol != Protocol::published) continue;
+    if (fit.protocol != Protocol::published || (!fit.parameters.empty() && fit.converged)) continue;
     const Fit* joint = partner_of(r, fit);
     if (joint == nullptr || !joint->converged) continue;
-    for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
-      const FitParameter& a = fit.parameters[k];
-      const FitParameter& b = joint->parameters[k];
-      const int places = places_of(b);
-      compared = true;
-      different = different || differs(a, b);
-      table.add({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
-                 fixed(shown(b, b.value), places),
-                 b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
-                 shown_unit(b, r.motion)});
-    }
-    if (!fit.parameters.empty() && fit.converged) continue;
     for (const std::string& message : fit.messages)
       notes += "  " + wrapped(fit.model.name() + ": " + message, style.width, 2) + "\n";
   }
   std::string text = style.heading("Published protocol beside the joint fit");
-  if (!compared) return notes.empty() ? "" : text + notes;
+  if (rows.empty()) return notes.empty() ? "" : text + notes;
   if (!different) return text + "  agrees within the 95 % intervals of the joint fit\n" + notes;
   text += table.text(2, style.dim, style.off);
   text +=
@@ -196,20 +136,7 @@ std::string protocol_lines(const Identification& r, const Style& style) {
 
 std::string comparison_lines(const Identification& r, const Style& style) {
   std::string text;
-  for (const LawComparison& c : compare_laws(r.fits, r.best)) {
-    const std::string first = r.fits[c.first].model.name(), second = r.fits[c.second].model.name();
-    const std::string figures =
-        fmt::format("held-out RMSE {} against {}, p {}", significant(r.fits[c.first].error.held_out_rmse, 3),
-                    significant(r.fits[c.second].error.held_out_rmse, 3),
-                    c.comparison.p_value < 1e-4 ? "< 0.0001" : "= " + significant(c.comparison.p_value, 2));
-    const bool clear = c.comparison.p_value < 0.05;
-    const std::string line =
-        clear ? fmt::format("{} predicts data it has not seen better than {} ({})",
-                            c.comparison.first_better ? first : second, c.comparison.first_better ? second : first,
-                            figures)
-              : fmt::format("{} and {} cannot be told apart with these data ({})", first, second, figures);
-    text += "  " + wrapped(line, style.width, 2) + "\n";
-  }
+  for (const std::string& line : comparison_sentences(r)) text += "  " + wrapped(line, style.width, 2) + "\n";
   return text.empty() ? "" : style.heading("Which law") + text;
 }
 

@@ -1,0 +1,83 @@
+// Elements and tables. Text of the data always goes in as text, never as markup.
+
+/** An element with properties and children (strings become text). */
+function make(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name === "className" || name.startsWith("on") || name === "textContent") element[name] = value;
+    else if (value !== null && value !== undefined) element.setAttribute(name, value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** A number with up to `digits` significant digits, as a person writes it; "-" where it is not known. */
+function number(value, digits = 4) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("-", "−");
+  const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return value.toFixed(Math.min(places, 12)).replace("-", "−");
+}
+
+/** A value with its standard error to the same place. */
+function withError(value, error, unit = "") {
+  if (!Number.isFinite(value)) return "–";
+  if (!Number.isFinite(error) || !(error > 0)) return number(value) + unit;
+  const places = Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error))));
+  return `${value.toFixed(places)} ± ${error.toFixed(places)}${unit}`;
+}
+
+/** A share as a percentage: with as many nines as it deserves, never rounded up to the whole. */
+function percent(share) {
+  if (share === null || !Number.isFinite(share)) return "–";
+  let places = Math.abs(share) < 0.1 ? 1 : 0;
+  if (share < 1) while (places < 4 && (100 * share).toFixed(places).startsWith("100")) ++places;
+  return `${(100 * share).toFixed(places).replace("-", "−")} %`;
+}
+
+/** A table; columns named in `numeric` are set to the right. */
+function table(caption, header, rows, numeric = []) {
+  const align = (k) => (numeric.includes(k) ? { className: "number" } : {});
+  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, content);
+  return make("div", { className: "scroll", tabindex: "0", role: "region", "aria-label": caption || "table" },
+    make("table", {}, caption ? make("caption", {}, caption) : null,
+      make("thead", {}, make("tr", {}, ...header.map((name, k) => cell("th", name, k, { scope: "col" })))),
+      make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((content, k) => cell("td", content, k)))))));
+}
+
+/** Facts as a list of names and values. */
+function facts(pairs) {
+  return make("dl", { className: "facts" }, ...pairs.filter(([, value]) => value)
+    .map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value))));
+}
+
+function save(name, content) {
+  const url = URL.createObjectURL(content);
+  const link = make("a", { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/** The numbers of a chart behind a switch: made when it is opened, cut after `most` rows, whole as CSV. */
+function numbersOf(name, header, rowsOf) {
+  const most = 500;
+  const details = make("details", { className: "numbers" }, make("summary", {}, "Numbers of this chart"));
+  details.addEventListener("toggle", () => {
+    if (!details.open || details.childElementCount > 1) return;
+    const rows = rowsOf();
+    const text = (value) => (typeof value === "number" ? String(Number(value.toPrecision(9))) : value ?? "");
+    const quoted = (value) => (/[",\n]/.test(text(value)) ? `"${text(value).replace(/"/g, '""')}"` : text(value));
+    const csv = () => [header, ...rows].map((row) => row.map(quoted).join(",")).join("\n") + "\n";
+    const numeric = header.map((_, k) => k).filter((k) => rows.some((row) => typeof row[k] === "number"));
+    details.append(
+      make("button", { type: "button", onclick: () => save(`${name}.csv`, new Blob([csv()], { type: "text/csv" })) },
+        `Save all ${rows.length} rows as CSV`),
+      table("", header, rows.slice(0, most).map((row) => row.map(text)), numeric));
+    if (rows.length > most) details.append(make("p", { className: "soft" }, `The first ${most} rows are shown.`));
+  });
+  return details;
+}
