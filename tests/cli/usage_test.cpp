@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command.hpp"
+#include "tribofit/report/page.hpp"
 
 namespace {
 
@@ -15,6 +16,11 @@ struct Wrong {
   std::string name, arguments;
   std::string says;
 };
+
+/// What is said of --report: that this build cannot, where it leaves the page out and it would come to that.
+std::string report_says(const std::string& text) {
+  return tribofit::has_report_page() || text == "one trace" ? text : "leaves the page out";
+}
 
 class WrongUsage : public ::testing::TestWithParam<Wrong> {};
 
@@ -40,6 +46,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"Threads", "--threads -1 a.csv", "--threads"},
                       Wrong{"JsonOfTwo", "--json r.json a.csv b.csv", "one trace"},
                       Wrong{"CsvOfTwo", "--csv out a.csv b.csv", "one trace"},
+                      Wrong{"ReportOfTwo", "--report r.html a.csv b.csv", report_says("one trace")},
+                      Wrong{"ReportOfABatch", "--report r.html --out results a.csv b.csv", "one trace"},
+                      Wrong{"ReportOntoTheTrace", "--report a.csv a.csv", report_says("overwrite")},
+                      Wrong{"ReportOntoTheJson", "--report x --json x a.csv", report_says("one file")},
+                      Wrong{"DiagnoseReportOverwrites", "diagnose --report a.csv a.csv", report_says("overwrite")},
                       Wrong{"JsonOntoTheTrace", "--json a.csv a.csv", "overwrite"},
                       Wrong{"EmptyRadius", "--radius '' a.csv", "--radius is given an empty"},
                       Wrong{"EmptyJson", "--json '' a.csv", "--json is given an empty"},

@@ -91,6 +91,9 @@ function chart(parent, spec) {
   numbersOf(spec.id, spec.header, spec.rows || (() => rowsOf(spec.traces))));
   parent.append(figure);
   const item = { ...spec, plot, figure, layout: { ...basicLayout, height: spec.height || 340, ...spec.layout } };
+  // The library writes the present range into the layout it is given.
+  item.ranges = Object.fromEntries(Object.entries(spec.layout).filter(([, part]) => part && part.range)
+    .map(([name, part]) => [name, [...part.range]]));
   if (matchMedia("(pointer: coarse)").matches) item.layout.dragmode = false; // a finger scrolls the page
   addLegend(legend, item);
   addTools(tools, item);
@@ -141,9 +144,9 @@ function addLegend(legend, item) {
       onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), trace.legendgroup));
   }
   for (const [name, fill] of item.keys || []) {
-    const key = make("span", { className: "soft" }, "\u25a0 ", name);
-    key.firstChild.replaceWith(make("span", { style: `background:${fill};border:1px solid #999;padding:0 .6em` }, ""), " ");
-    legend.append(key);
+    const key = make("span", { className: "key" });
+    key.style.background = fill;
+    legend.append(make("span", { className: "soft" }, key, name));
   }
 }
 
@@ -179,8 +182,7 @@ function showAll(item) {
   const change = {};
   for (const letter of "xy") {
     for (const name of axesOf(item, letter)) {
-      const given = (item.layout[name] || {}).range;
-      if (given) change[`${name}.range`] = [...given];
+      if (item.ranges[name]) change[`${name}.range`] = [...item.ranges[name]];
       else change[`${name}.autorange`] = true;
     }
   }

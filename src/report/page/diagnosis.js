@@ -25,7 +25,7 @@ function ladderChart(parent, diagnosis, unit) {
     text: `floor ${number(diagnosis.floor_rmse, 3)}${of}` }];
   gone.forEach((share, k) => {
     if (!Number.isFinite(share)) return;
-    annotations.push({ x: k, y: diagnosis.ladder[k].held_out_rmse, yanchor: "bottom", yshift: 12, showarrow: false,
+    annotations.push({ x: k, y: diagnosis.ladder[k].held_out_rmse, yanchor: "bottom", yshift: 22, bgcolor: "#fff", showarrow: false,
       text: `${percent(share)} gone` });
   });
   chart(parent, { id: "ladder", title: "The ladder: error on data not seen, as effects are added",
@@ -89,7 +89,7 @@ function candidatesTable(parent, diagnosis) {
   const value = (p) => `${p.name} = ${withError(p.value, p.std_error, p.unit === "1" ? "" : ` ${p.unit}`)}`;
   const rows = effectsInOrder(diagnosis).map((e) => [e.key, e.status, number(e.held_out_rmse, 3),
     percent(e.error_reduction), e.p_value === null ? "–" : e.p_value < 1e-4 ? "< 0.0001" : number(e.p_value, 2),
-    e.status === "missing" || e.status === "equivalent" ? e.parameters.map(value).join("; ") : "", e.reason]);
+    e.status === "missing" || e.status === "equivalent" ? e.parameters.map(value).join("; ") : "", prose(e.reason)]);
   parent.append(make("details", { open: "" }, make("summary", {}, "What became of each effect"),
     table("", ["effect", "status", "held-out RMSE", "error taken away", "p", "parameters", "why"], rows, [2, 3, 4])));
 }
@@ -101,11 +101,11 @@ function diagnosisSection(parent, diagnosis, unit) {
   section.append(pair);
   if (diagnosis.ladder.length > 0) ladderChart(pair, diagnosis, unit);
   if (diagnosis.where.length > 0) whereChart(pair, diagnosis);
-  const next = make("div", {}, make("h3", {}, "Next experiment"), make("p", {}, diagnosis.next_experiment || "None is needed."));
+  const next = make("div", {}, make("h3", {}, "Next experiment"), make("p", {}, prose(diagnosis.next_experiment || "None is needed.")));
   if (diagnosis.formula) {
     next.append(make("h3", {}, "A closed form of what remains, for --formula"), make("pre", {}, diagnosis.formula));
   }
-  for (const message of diagnosis.messages) next.append(make("p", {}, message));
+  for (const message of diagnosis.messages) next.append(make("p", {}, prose(message)));
   section.append(next);
   if (diagnosis.confirmations.length > 0) {
     section.append(table("Tried on runs that took no part, parameters frozen",

@@ -9,17 +9,17 @@ function header(main) {
   main.append(make("h1", {}, pageData.title),
     make("p", { className: "soft" }, `${pageData.kind === "diagnosis" ? "Diagnosis" : "Friction law"} by ` +
       `${result.tool.name} ${result.tool.version}`),
-    make("p", { className: "verdict" }, pageData.verdict));
-  for (const warning of result.warnings) main.append(make("p", { className: "warning" }, make("strong", {}, "Warning: "), warning));
+    make("p", { className: "verdict" }, prose(pageData.verdict)));
+  for (const warning of result.warnings) main.append(make("p", { className: "warning" }, make("strong", {}, "Warning: "), prose(warning)));
   if (traces.length !== 1) return;
   const t = traces[0], c = conditions[0], s = lists(result.stick_slip)[0];
   const from = (source) => (source ? ` (${source})` : "");
   const measured = (value, error, unit) => (value === null || !Number.isFinite(value) ? "" : withError(value, error, unit));
   main.append(facts([
-    ["Record", `${t.samples.toLocaleString("en").replace(/,/g, " ")} samples, ${number(t.duration_s)} s at ${number(t.rate_hz / 1000)} kHz`],
-    ["Radius", c.radius_mm === null ? "" : `${number(c.radius_mm)} mm${from(c.radius_source)}`],
-    ["Disc speed", c.speed_rpm === null ? "" : `${number(c.speed_rpm)} rpm${from(c.speed_source)}`],
-    ["Load", c.load_N === null ? "" : `${number(c.load_N)} N${from(c.load_source)}`],
+    ["Record", `${t.samples.toLocaleString("en").replace(/,/g, " ")} samples, ${brief(t.duration_s)} s at ${brief(t.rate_hz / 1000)} kHz`],
+    ["Radius", c.radius_mm === null ? "" : `${brief(c.radius_mm)} mm${from(c.radius_source)}`],
+    ["Disc speed", c.speed_rpm === null ? "" : `${brief(c.speed_rpm)} rpm${from(c.speed_source)}`],
+    ["Load", c.load_N === null ? "" : `${brief(c.load_N)} N${from(c.load_source)}`],
     ["Cycles with a stick and a slip", s.motion === "stick-slip" ? String(s.cycles) : s.motion],
     ["Frequency", measured(s.frequency_hz.value, s.frequency_hz.std_error, " Hz")],
     ["Amplitude of v_r", measured(s.amplitude_mm_s, s.amplitude_std_error_mm_s, " mm/s")],
@@ -41,7 +41,7 @@ function healthTable(parent) {
   const health = pageData.result.health, several = health.some((item) => item.trace !== undefined);
   const rank = { problem: 0, warning: 1, ok: 2 }, sign = { problem: "✕ problem", warning: "! warning", ok: "✓ ok" };
   const rows = [...health].sort((a, b) => rank[a.status] - rank[b.status])
-    .map((item) => [...(several ? [pageData.result.traces[item.trace].path] : []), item.check, sign[item.status], item.message]);
+    .map((item) => [...(several ? [pageData.result.traces[item.trace].path] : []), item.check, sign[item.status], prose(item.message)]);
   parent.append(table("Health of the data", [...(several ? ["trace"] : []), "check", "status", "what was found"], rows));
 }
 
@@ -65,10 +65,10 @@ function parameterTables(parent) {
           `Relative error mean ${percent(e.mean_relative)}, largest ${percent(e.max_relative)}; ` +
           `${percent(fit.explained)} of the error above the floor is explained.`));
     }
-    for (const c of fit.correlations) {
+    for (const c of fit.messages.some((m) => m.includes("correlated")) ? [] : fit.correlations) {
       parent.append(make("p", { className: "soft" }, `${c.parameters.join(" and ")} are correlated by ${number(c.value, 3)}.`));
     }
-    for (const message of fit.messages) parent.append(make("p", { className: "soft" }, `Note: ${message}`));
+    for (const message of fit.messages) parent.append(make("p", { className: "soft" }, `Note: ${prose(message)}`));
   });
   parent.append(make("p", { className: "soft" }, systematic
     ? "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the declared instruments, not part of them."
@@ -78,16 +78,13 @@ function parameterTables(parent) {
       ["law", "parameter", "published", "joint", "difference", "unit", "remarks"], pageData.protocols, [2, 3, 4]),
     make("p", { className: "soft" }, "The published protocol takes mu_s and mu_k from the extremes of each cycle, which noise widens."));
   }
-  for (const sentence of pageData.laws || []) parent.append(make("p", {}, sentence));
+  for (const sentence of pageData.laws || []) parent.append(make("p", {}, `${prose(sentence)}.`));
 }
 
 /** Everything drawn of one trace, into sections that the page has once. */
 function traceCharts(sections, trace, id, peak) {
   if (trace.cycles) cyclesChart(sections.trace, trace, id);
-  const pair = () => {
-    const box = make("div", { className: "pair" });
-    return box;
-  };
+  const pair = () => make("div", { className: "pair" });
   const zooms = pair();
   sections.trace.append(zooms);
   if (trace.break_away) zoomChart(zooms, trace, trace.break_away, `${id}-break-away`, "Break-away");
@@ -116,7 +113,7 @@ function runSection(main) {
   section.append(table("Input", ["file", "samples", "duration [s]", "checksum of the rows (FNV-1a)"],
     traces.map((t) => [t.path, String(t.samples), number(t.duration_s), t.checksum]), [1, 2]));
   const notes = traces.flatMap((t) => t.notes);
-  if (notes.length > 0) section.append(make("h3", {}, "How the input was read"), make("ul", {}, ...notes.map((n) => make("li", {}, n))));
+  if (notes.length > 0) section.append(make("h3", {}, "How the input was read"), make("ul", {}, ...notes.map((n) => make("li", {}, prose(n)))));
   section.append(make("p", {}, `Next, ${pageData.next.reason}:`), make("pre", {}, pageData.next.command),
     make("p", { className: "soft" }, `${result.tool.name} ${result.tool.version}. Charts by plotly.js (MIT licence).`));
   main.append(section);

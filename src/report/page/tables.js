@@ -21,6 +21,16 @@ function number(value, digits = 4) {
   return value.toFixed(Math.min(places, 12)).replace("-", "−");
 }
 
+/** Up to four digits without trailing zeros, for conditions. */
+function brief(value) {
+  return String(Number(value.toPrecision(4)));
+}
+
+/** Text of the program as a page has it. */
+function prose(text) {
+  return text.replace(/\+\/?-/g, "±").replace(/^[a-z]/, (letter) => letter.toUpperCase());
+}
+
 /** A value with its standard error to the same place. */
 function withError(value, error, unit = "") {
   if (!Number.isFinite(value)) return "–";
@@ -32,8 +42,9 @@ function withError(value, error, unit = "") {
 /** A share as a percentage: with as many nines as it deserves, never rounded up to the whole. */
 function percent(share) {
   if (share === null || !Number.isFinite(share)) return "–";
-  let places = Math.abs(share) < 0.1 ? 1 : 0;
-  if (share < 1) while (places < 4 && (100 * share).toFixed(places).startsWith("100")) ++places;
+  if (Math.abs(share) < 0.1) return `${number(100 * share, 2)} %`;
+  let places = 0;
+  if (share < 1) while (places < 6 && (100 * share).toFixed(places).startsWith("100")) ++places;
   return `${(100 * share).toFixed(places).replace("-", "−")} %`;
 }
 

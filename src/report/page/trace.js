@@ -17,7 +17,7 @@ function styleOf(name, models) {
 }
 
 function frictionTitle(trace) {
-  return trace.friction_unit === "N" ? "friction force [N]" : "friction coefficient μ [1]";
+  return trace.friction_unit === "N" ? "friction force [N]" : "friction μ [1]";
 }
 
 const rect = (x0, x1, fillcolor, more = {}) => ({ type: "rect", layer: "below", xref: "x", yref: "paper", x0, x1, y0: 0,
@@ -72,9 +72,8 @@ function cyclesChart(parent, trace, id) {
 function zoomChart(parent, trace, part, id, title) {
   const shapes = [{ type: "line", xref: "x", yref: "paper", x0: 0, x1: 0, y0: 0, y1: 1,
     line: { color: "#444", width: 1, dash: "dot" } }];
-  const around = { ...part };
   chart(parent, { id, title, note: `±5 ms about ${number(part.at, 6)} s; every sample${part.friction.x.length > 1000 ? ", reduced to what the eye can see" : ""}.`,
-    height: 400, traces: windowTraces(trace, around, (t) => (t - part.at) * 1000, "ms"),
+    height: 400, traces: windowTraces(trace, part, (t) => (t - part.at) * 1000, "ms"),
     layout: stacked("time from the event [ms]", frictionTitle(trace), velocityTitle(trace), { shapes }),
     header: ["line", "time_ms", `friction_${trace.friction_unit} or velocity_mm_s`] });
 }

@@ -1,0 +1,201 @@
+// Opens reports in Chromium as a reader would and uses them.
+// usage: node page_test.mjs DRIVER CHROMIUM IDENTIFY TRACE.csv FOLDER
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [driver, chromium, identify, example, folder] = process.argv.slice(2);
+const playwright = await import(pathToFileURL(driver));
+const hostileName = "a<img src=x onerror=document.title='taken'>&b<b>.csv";
+
+function makePages() {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const run = (...words) => execFileSync(identify, words, { cwd: folder, stdio: ["ignore", "ignore", "inherit"] });
+  copyFileSync(example, join(folder, hostileName));
+  run("--radius", "15mm", "--quiet", "--report", "trace.html", hostileName);
+  run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "32s", "--rate", "2kHz", "--effect",
+    "runout:A=0.05,phase=1", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "runout.csv");
+  run("diagnose", "--radius", "15mm", "--speed", "4rpm", "--quiet", "--report", "diagnosis.html", "runout.csv");
+}
+
+const browser = await playwright.chromium.launch({ executablePath: chromium,
+  args: process.getuid() === 0 ? ["--no-sandbox"] : [] });
+
+/** A page in which any complaint of the browser, and any address but the file's own, fails the test. */
+async function open(name, width) {
+  const context = await browser.newContext({ viewport: { width, height: 900 }, acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120000);
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(error.stack));
+  page.on("dialog", (dialog) => complaints.push(dialog.message()));
+  const address = pathToFileURL(join(folder, name)).href;
+  page.on("request", (request) => {
+    if (request.url() !== address && !/^(data|blob):/.test(request.url())) complaints.push(request.url());
+  });
+  const begin = performance.now();
+  await page.goto(address);
+  await page.waitForSelector(".plot .main-svg");
+  const first = performance.now() - begin;
+  await page.waitForFunction(() => document.documentElement.dataset.drawn === "all");
+  console.log(`${name} at ${width} px: first chart after ${first.toFixed(0)} ms, ` +
+    `all after ${(performance.now() - begin).toFixed(0)} ms`);
+  const close = async () => {
+    assert.deepEqual(complaints, [], `complaints of ${name} at ${width} px`);
+    await context.close();
+  };
+  return { page, close };
+}
+
+/** Each chart has a title, axes with units, and its numbers behind a switch. */
+async function checkCharts(page, least) {
+  const charts = await page.evaluate(() => [...document.querySelectorAll("figure")].map((figure) => {
+    const plot = figure.querySelector(".plot"), layout = plot._fullLayout;
+    figure.querySelector("details.numbers").open = true;
+    const axes = Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)).map((key) => layout[key]);
+    return { id: plot.id, title: figure.querySelector("h3").textContent, points: plot.data.length,
+      axes: axes.map((axis) => [axis.type, axis.title.text]), lines: plot.querySelectorAll("path").length };
+  }));
+  assert.ok(charts.length >= least, `${charts.length} charts`);
+  assert.equal(new Set(charts.map((chart) => chart.id)).size, charts.length, "ids are unique");
+  for (const chart of charts) {
+    assert.ok(chart.title && chart.points > 0 && chart.lines > 0, chart.id);
+    for (const [type, title] of chart.axes) {
+      if (type !== "category" && title !== "cycle") assert.match(title, /\[.+\]$/, `axis of ${chart.id}`);
+    }
+  }
+  await page.waitForFunction(() => [...document.querySelectorAll("details.numbers")]
+    .every((details) => details.querySelectorAll("tbody tr").length > 0));
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(wide <= 0, `${wide} px wider than the screen`);
+}
+
+const range = (page, id) => page.evaluate((name) => document.getElementById(name)._fullLayout.xaxis.range.slice(), id);
+
+async function checkHoverAndZoom(page) {
+  const plot = page.locator("#t1-cycles");
+  await plot.scrollIntoViewIfNeeded();
+  const box = await plot.locator(".nsewdrag").first().boundingBox();
+  const sample = await page.evaluate(() => {
+    const { data, _fullLayout } = document.getElementById("t1-cycles");
+    const k = Math.floor(data[0].x.length / 2);
+    return [_fullLayout.xaxis.l2p(data[0].x[k]), _fullLayout.yaxis.l2p(data[0].y[k])];
+  });
+  await page.mouse.move(box.x + sample[0] - 3, box.y + sample[1]);
+  await page.mouse.move(box.x + sample[0], box.y + sample[1]);
+  await page.waitForSelector("#t1-cycles .hoverlayer .hovertext");
+  assert.match(await page.locator("#t1-cycles .hoverlayer").textContent(), / s.*μ/);
+
+  const before = await range(page, "t1-cycles");
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height, { steps: 5 });
+  await page.mouse.up();
+  const part = (await range(page, "t1-cycles")).reduce((low, high) => high - low) / (before[1] - before[0]);
+  assert.ok(Math.abs(part - 0.2) < 0.02, `a drag over a fifth shows ${part}`);
+  await plot.focus();
+  await page.keyboard.press("0");
+  assert.deepEqual(await range(page, "t1-cycles"), before);
+  await page.keyboard.press("+");
+  await page.keyboard.press("ArrowRight");
+  const [low, high] = await range(page, "t1-cycles"), width = before[1] - before[0];
+  assert.ok(Math.abs((high - low) / width - 0.5) < 1e-6 && low > before[0] + 0.25 * width, "keys zoom and move");
+}
+
+async function checkLegend(page) {
+  const button = page.locator("figure:has(#t1-law) .legend button").filter({ hasText: "slowing down" });
+  const visible = () => page.evaluate(() => document.getElementById("t1-law").data
+    .filter((trace) => trace.legendgroup === "measured, slowing down").map((trace) => trace.visible ?? true));
+  assert.deepEqual(await visible(), [true, true, true]); // the line and both edges of its band
+  await button.click();
+  assert.equal(await button.getAttribute("aria-pressed"), "false");
+  assert.deepEqual(await visible(), ["legendonly", "legendonly", "legendonly"]);
+  await button.press("Enter");
+  assert.deepEqual(await visible(), [true, true, true]);
+}
+
+async function checkSaving(page) {
+  const saved = async (selector) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator(selector).first().click()]);
+    return readFileSync(await download.path());
+  };
+  const svg = (await saved('button[aria-label^="Save as SVG: Friction over"]')).toString();
+  assert.match(svg, /^<svg[\s\S]*Friction over relative velocity[\s\S]*<\/svg>$/);
+  const png = await saved('button[aria-label^="Save as PNG: Friction over"]');
+  assert.deepEqual([...png.subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
+  assert.equal(png.readUInt32BE(16), 2700);
+  const csv = (await saved("figure:has(#t1-spectrum) details button")).toString();
+  assert.match(csv, /^line,frequency_hz,amplitude_mm_s\namplitude,0,/);
+}
+
+async function checkNames(page) {
+  assert.equal(await page.locator("h1").textContent(), hostileName);
+  assert.ok((await page.title()).startsWith(hostileName));
+  assert.equal(await page.locator("img").count(), 0);
+}
+
+/** Zooming must not stutter: time of a redraw of the whole record. */
+async function timeZoom(page) {
+  const times = await page.evaluate(async () => {
+    const plot = document.getElementById("t1-record"), taken = [];
+    const [low, high] = plot._fullLayout.xaxis.range;
+    for (let k = 1; k <= 15; ++k) {
+      const begin = performance.now();
+      await Plotly.relayout(plot, { "xaxis.range": [low, high - (0.04 * k * (high - low))] });
+      taken.push(performance.now() - begin);
+    }
+    return taken.sort((a, b) => a - b);
+  });
+  console.log(`redraw of the whole record: median ${times[7].toFixed(0)} ms, longest ${times[14].toFixed(0)} ms`);
+}
+
+/** On paper everything is drawn, and no wider than the paper. */
+async function checkPrint(page) {
+  const pdf = await page.pdf({ format: "A4" });
+  assert.ok(pdf.length > 50000, `${pdf.length} bytes of PDF`);
+  writeFileSync(join(folder, "print.pdf"), pdf);
+}
+
+/** A script that is not the page's own does not run. */
+async function checkPolicy(page) {
+  await page.evaluate(() => {
+    const script = document.createElement("script");
+    script.textContent = "window.foreign = true";
+    document.body.append(script);
+  });
+  assert.equal(await page.evaluate(() => window.foreign), undefined);
+}
+
+makePages();
+try {
+  for (const width of [1280, 390]) {
+    const { page, close } = await open("trace.html", width);
+    await checkCharts(page, 12);
+    await checkNames(page);
+    if (width === 1280) {
+      await checkHoverAndZoom(page);
+      await checkLegend(page);
+      await checkSaving(page);
+      await timeZoom(page);
+      await checkPrint(page);
+    }
+    await close();
+  }
+  for (const width of [1280, 390]) {
+    const { page, close } = await open("diagnosis.html", width);
+    await checkCharts(page, 15);
+    assert.match(await page.locator(".verdict").textContent(), /runout/);
+    const ladder = await page.evaluate(() => document.getElementById("ladder").data[0].y);
+    assert.ok(ladder.length === 2 && ladder[1] < ladder[0] / 2, `the ladder falls: ${ladder}`);
+    await close();
+  }
+  const { page } = await open("trace.html", 1280);
+  await checkPolicy(page); // which the browser complains of
+  console.log("the page works");
+} finally {
+  await browser.close();
+}
