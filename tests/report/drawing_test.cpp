@@ -99,7 +99,7 @@ TEST(BandOverCycles, LeavesOutBinsThatHardlyAnyCycleReaches) {
 
 TEST(ExtremesInBins, KeepTheWorstSample) {
   ExtremesInBins bins(0, 1, 10);
-  for (int i = 0; i < 1000; ++i) bins.add(1e-3 * i, i == 555 ? 0.5 : 0.01);
+  for (int i = 0; i < 1000; ++i) bins.add(1e-3 * (i + 0.5), i == 555 ? 0.5 : 0.01);
   const DrawnExtremes drawn = bins.result();
   ASSERT_EQ(drawn.at.size(), 10u);
   EXPECT_EQ(drawn.largest[5], 0.5);

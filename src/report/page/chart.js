@@ -55,6 +55,9 @@ function swatch(trace) {
   const svg = draw("svg", { width: 34, height: 12, "aria-hidden": "true" });
   if (trace.type === "bar") {
     svg.append(draw("rect", { x: 6, y: 1, width: 22, height: 10, fill: trace.marker.color, stroke: "#000" }));
+    if (trace.marker.pattern && trace.marker.pattern.shape) {
+      svg.append(draw("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: "#fff", "stroke-width": 1.5 }));
+    }
     return svg;
   }
   const dashes = { solid: "", dash: "7 4", dot: "2 3", dashdot: "7 3 2 3", longdash: "12 4" };
@@ -220,8 +223,7 @@ function addTools(tools, item) {
 addEventListener("beforeprint", () => {
   while (waiting.length > 0) draw(waiting.shift());
   for (const item of drawn) {
-    item.width = item.plot.clientWidth;
-    Plotly.relayout(item.plot, { width: Math.min(item.width, 660), autosize: false });
+    Plotly.relayout(item.plot, { width: 640, autosize: false });
   }
 });
 addEventListener("afterprint", () => {

@@ -46,7 +46,7 @@ function whereChart(parent, diagnosis) {
   if (diagnosis.ladder.length > 1) traces.push(bars("final model", diagnosis.remaining, "red", "/"));
   chart(parent, { id: "where", title: "Where the error above the floor goes", note: pageData.where, traces,
     height: 120 + 34 * Math.max(diagnosis.where.length, 3),
-    layout: { barmode: "group", xaxis: axis("share of the error above the floor [%]", { rangemode: "tozero" }),
+    layout: { barmode: "group", xaxis: axis("share [%]", { rangemode: "tozero" }),
       yaxis: axis("", { type: "category", autorange: "reversed" }) },
     header: ["model", "variable", "share", "p_value"],
     rows: () => [...diagnosis.where.map((s) => [pageData.law, s.variable, s.share, s.p_value]),
@@ -90,7 +90,7 @@ function candidatesTable(parent, diagnosis) {
   const rows = effectsInOrder(diagnosis).map((e) => [e.key, e.status, number(e.held_out_rmse, 3),
     percent(e.error_reduction), e.p_value === null ? "–" : e.p_value < 1e-4 ? "< 0.0001" : number(e.p_value, 2),
     e.status === "missing" || e.status === "equivalent" ? e.parameters.map(value).join("; ") : "", prose(e.reason)]);
-  parent.append(make("details", { open: "" }, make("summary", {}, "What became of each effect"),
+  parent.append(make("details", { open: "", className: "effects" }, make("summary", {}, "What became of each effect"),
     table("", ["effect", "status", "held-out RMSE", "error taken away", "p", "parameters", "why"], rows, [2, 3, 4])));
 }
 
