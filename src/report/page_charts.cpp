@@ -215,6 +215,7 @@ Json curve_charts(const std::vector<DrawnModel>& models) {
     std::vector<double> velocity = curve.velocity;
     for (double& v : velocity) v /= kMillimetre;
     list.push_back({{"name", model.name},
+                    {"slowest", rounded(model.fit->slowest / kMillimetre)},
                     {"fastest", rounded(model.fit->fastest / kMillimetre)},
                     {"v", numbers_json(velocity)},
                     {"mu", numbers_json(curve.mu)},

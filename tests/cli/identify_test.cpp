@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "tribofit/report/page.hpp"
 
 namespace {
 
@@ -51,6 +52,19 @@ TEST_F(Identify, FindsTheTruthOfASimulatedTrace) {
   EXPECT_NEAR(result["stick_slip"]["frequency_hz"]["value"].get<double>(), 4.88, 0.1);
   EXPECT_NEAR(result["conditions"]["speed_rpm"].get<double>(), 4, 0.04);
   EXPECT_EQ(result["trace"]["samples"], 15000);
+}
+
+TEST_F(Identify, ReportIsOnePageBesideTheOtherOutputs) {
+  if (!tribofit::has_report_page()) GTEST_SKIP() << "this build leaves the page out";
+  const Outcome outcome = shop_.identify("--radius 15mm --quiet --report r.html --json r.json --csv out trace.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
+  const std::string page = contents(shop_ / "r.html");
+  EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+  EXPECT_LT(page.size(), 4000000u);
+  EXPECT_THAT(page, HasSubstr("\"command\":\"identify --radius 15mm trace.csv\""));
+  EXPECT_THAT(shop_.names(), ::testing::UnorderedElementsAre("trace.csv", "r.html", "r.json", "out"));
+  EXPECT_THAT(contents(shop_ / "r.json"), ::testing::Not(HasSubstr("--report")));
 }
 
 TEST_F(Identify, ResultsAreTheSameForAnyNumberOfThreads) {

@@ -46,7 +46,7 @@ function whereChart(parent, diagnosis) {
   if (diagnosis.ladder.length > 1) traces.push(bars("final model", diagnosis.remaining, "red", "/"));
   chart(parent, { id: "where", title: "Where the error above the floor goes", note: pageData.where, traces,
     height: 120 + 34 * Math.max(diagnosis.where.length, 3),
-    layout: { barmode: "group", xaxis: axis("share [%]", { rangemode: "tozero" }),
+    layout: { barmode: "group", xaxis: axis("share [%]", { range: [0, 105] }),
       yaxis: axis("", { type: "category", autorange: "reversed" }) },
     header: ["model", "variable", "share", "p_value"],
     rows: () => [...diagnosis.where.map((s) => [pageData.law, s.variable, s.share, s.p_value]),

@@ -9,11 +9,12 @@ function header(main) {
   main.append(make("h1", {}, pageData.title),
     make("p", { className: "soft" }, `${pageData.kind === "diagnosis" ? "Diagnosis" : "Friction law"} by ` +
       `${result.tool.name} ${result.tool.version}`),
-    make("p", { className: "verdict" }, prose(pageData.verdict)));
+    make("p", { className: "verdict" }, prose(pageData.verdict.replace("stands above", "stands below"))));
   for (const warning of result.warnings) main.append(make("p", { className: "warning" }, make("strong", {}, "Warning: "), prose(warning)));
   if (traces.length !== 1) return;
   const t = traces[0], c = conditions[0], s = lists(result.stick_slip)[0];
   const from = (source) => (source ? ` (${source})` : "");
+  const ms = (seconds) => (seconds === null ? null : 1000 * seconds);
   const measured = (value, error, unit) => (value === null || !Number.isFinite(value) ? "" : withError(value, error, unit));
   main.append(facts([
     ["Record", `${t.samples.toLocaleString("en").replace(/,/g, " ")} samples, ${brief(t.duration_s)} s at ${brief(t.rate_hz / 1000)} kHz`],
@@ -23,8 +24,8 @@ function header(main) {
     ["Cycles with a stick and a slip", s.motion === "stick-slip" ? String(s.cycles) : s.motion],
     ["Frequency", measured(s.frequency_hz.value, s.frequency_hz.std_error, " Hz")],
     ["Amplitude of v_r", measured(s.amplitude_mm_s, s.amplitude_std_error_mm_s, " mm/s")],
-    ["Stick time", measured(1000 * s.stick_time_s, 1000 * s.stick_time_std_error_s, " ms")],
-    ["Slip time", measured(1000 * s.slip_time_s, 1000 * s.slip_time_std_error_s, " ms")]]),
+    ["Stick time", measured(ms(s.stick_time_s), ms(s.stick_time_std_error_s), " ms")],
+    ["Slip time", measured(ms(s.slip_time_s), ms(s.slip_time_std_error_s), " ms")]]),
   make("p", { className: "soft" }, "± is one standard error, everywhere on this page."));
 }
 
@@ -39,7 +40,7 @@ function navigation(main) {
 
 function healthTable(parent) {
   const health = pageData.result.health, several = health.some((item) => item.trace !== undefined);
-  const rank = { problem: 0, warning: 1, ok: 2 }, sign = { problem: "✕ problem", warning: "! warning", ok: "✓ ok" };
+  const rank = { problem: 0, warning: 1, ok: 2 }, sign = { problem: "✕\u00a0problem", warning: "!\u00a0warning", ok: "✓\u00a0ok" };
   const rows = [...health].sort((a, b) => rank[a.status] - rank[b.status])
     .map((item) => [...(several ? [pageData.result.traces[item.trace].path] : []), item.check, sign[item.status], prose(item.message)]);
   parent.append(table("Health of the data", [...(several ? ["trace"] : []), "check", "status", "what was found"], rows));

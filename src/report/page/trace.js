@@ -88,22 +88,24 @@ function lawChart(parent, trace, id) {
     traces.push(...band(name, b.v, b.low, b.high, style.colour));
     traces.push(line(name, { x: b.v, y: b.middle }, style, hover("median", unit)));
   }
-  if (trace.measures) {
+  if (trace.measures && trace.measures.break_away_friction.y.some((y) => y !== null)) {
     const level = trace.measures.break_away_friction;
     traces.push(points("break-away of each cycle", { x: level.y.map(() => 0), y: level.y },
       { colour: "grey", symbol: "diamond", size: 5 }, hover("break-away", unit)));
   }
-  let fastest = 0;
+  let fastest = 0, slowest = Infinity;
   for (const curve of pageData.curves) {
     const style = styleOf(curve.name, trace.models);
     const more = trace.models.includes(curve.name) ? {} : { visible: "legendonly" };
     fastest = Math.max(fastest, curve.fastest);
+    slowest = Math.min(slowest, curve.slowest);
     traces.push(...band(curve.name, curve.v, curve.low, curve.high, style.colour, more));
     traces.push(line(curve.name, { x: curve.v, y: curve.mu }, { width: 2, ...style }, { ...hover("law", unit), ...more }));
   }
   traces.push(...residualTraces(trace));
   const right = 1.12 * fastest;
   const shapes = fastest > 0 ? [rect(fastest, 1.3 * fastest, beyondFill)] : [];
+  if (slowest > 0 && slowest < fastest) shapes.push(rect(-fastest, slowest, beyondFill));
   shapes.push(...[-2, 2].map((y) => ({ type: "line", xref: "paper", x0: 0, x1: 1, yref: "y2", y0: y, y1: y,
     line: { color: "#888", width: 1, dash: "dot" } })));
   const annotations = fastest > 0 ? [{ x: right, xanchor: "right", y: 1, yanchor: "top", xref: "x", yref: "paper",
