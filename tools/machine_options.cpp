@@ -194,7 +194,7 @@ void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
   const char* rig = kRigGroup;
   group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
   group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
-  group(rig, "--damping", r.damping, "of the block on its spring, e.g. 4.7Ns/m");
+  group(rig, "--damping", r.damping, "of the block on its spring, e.g. 0.0047Ns/mm");
   group(rig, "--damping-ratio", r.damping_ratio, "the same as c/(2 sqrt(k m)), e.g. 0.02");
   const char* law = "Friction (default: the published values at the nearest radius)";
   group(law, "--law", r.law, "exponential (default), fractional or coulomb");

@@ -56,6 +56,10 @@ MapFile::MapFile(const std::string& folder, const MapRequest& request, bool agai
   if (std::filesystem::is_directory(map_path_)) {
     throw InputError("is a folder, and would be the table", "name another folder", {map_path_, 0, ""});
   }
+  if (!again && std::filesystem::exists(map_path_)) {
+    throw InputError("a map stands here already", "name another folder, or replace it with --again",
+                     {map_path_, 0, ""});
+  }
   head_ = head_of(request);
   if (!again) read_known();
   std::string text = head_ + "\n";

@@ -9,6 +9,7 @@
 
 #include "inputs.hpp"
 #include "options.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/study/identified.hpp"
 
@@ -16,7 +17,20 @@ using namespace tribofit;
 
 namespace {
 
+/// An effect that does nothing until it has a size would be studied in vain.
+void refuse_effects_without_size(const std::vector<std::string>& effects) {
+  for (const std::string& text : effects) {
+    if (text.find('=') != std::string::npos) continue;
+    const EffectInfo info = describe(effect_named(text));
+    const Parameter& size = info.parameters.front();
+    if (size.start == size.neutral) {
+      throw CLI::ValidationError("--effect " + text + " has no size; write it as " + text + ":" + size.name + "=VALUE");
+    }
+  }
+}
+
 StudiedMachine given(const Settings& settings, MachineRequest typed) {
+  refuse_effects_without_size(typed.effects);
   if (!settings.radius.empty()) typed.radius = settings.radius;
   typed.speed = settings.speed;
   typed.load = settings.load;
@@ -73,7 +87,22 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
   }
   const bool placed = trace.motion.conditions.radius.known();
   if (!placed) trace.motion.conditions.radius.value = 1;
-  const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, options.instruments);
+  constexpr double kOther = 0.15;
+  if (std::abs(trace.motion.plateau_ratio - 1) > kOther) {
+    throw InputError("the plateau of stick is not that of --speed and --radius, which describe the record",
+                     "leave --speed out; --range and --at study other speeds", {input.trace.path, 0, ""});
+  }
+  RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, options.instruments);
+  const bool any_typed = !typed.mass.empty() || !typed.stiffness.empty() || !typed.damping.empty();
+  if (rig.per_unit_load && any_typed) {
+    throw InputError("no normal force is known, and a mass, stiffness or damping was given", "state --load");
+  }
+  const bool damping_typed = !typed.damping.empty() || !typed.damping_ratio.empty();
+  if (!rig.determined && !typed.mass.empty() && !typed.stiffness.empty() && damping_typed) {
+    rig.determined = true;  // all of it is given
+    rig.mass.value = rig.stiffness.value = rig.damping.value = 1;
+    rig.covariance = {};
+  }
   IdentifiedMachine found = identified_machine(fit, rig, trace.motion, trace.segmentation);
   if (!found.reason.empty()) refuse(found.reason);
 

@@ -72,9 +72,11 @@ std::vector<std::string> split(const std::string& text, const std::string& separ
   return parts;
 }
 
-/// A speed of the disc as omega r [m/s], from "6mm/s" or "4rpm".
+/// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".
 double velocity_from(const std::string& text, const Machine& machine, const std::string& option) {
-  const double velocity = machine.radius * disc_speed_from(text, machine.radius, option);
+  const bool bare = text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
+  const double velocity = bare ? parse_quantity(text, Quantity::velocity, option, "mm/s")
+                               : machine.radius * disc_speed_from(text, machine.radius, option);
   if (!(velocity > 0))
     throw InputError(option + ": '" + text + "' is not greater than zero", "give e.g. 6mm/s or 4rpm");
   return velocity;
@@ -137,7 +139,9 @@ void deliver(const Request& r, const std::string& text, const std::function<std:
   }
   if (!s.csv.empty() && csv) csv(s.csv);
   if (file) file->commit();
-  if (!s.quiet && s.json != "-") print(text);
+  if (s.quiet || s.json == "-") return;
+  print(text);
+  if (!s.csv.empty()) print("\nTables in " + s.csv + "\n");
 }
 
 /// What every kind begins with.
@@ -168,6 +172,7 @@ void run_speed(Request& r, const CLI::App& kind) {
   options.settle = b.settle;
   options.covariance = b.of.covariance;
   options.threads = r.settings.threads;
+  options.points = r.points;
   if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.of.machine);
   const SpeedStudy study = study_speed(b.of.machine, options);
   deliver(
@@ -244,6 +249,8 @@ CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const st
   kind->add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
       ->check(CLI::IsMember({"stick", "rest", "sliding"}));
   add_output_options(*kind, r->settings);
+  kind->get_option("--csv")->description("Write the tables of the study into this folder");
+  kind->get_option("TRACE")->description("One trace (CSV) from which the machine is identified");
   kind->callback([r, kind, run, &status] {
     run(*r, *kind);
     status = 0;
@@ -262,10 +269,11 @@ void add_study(CLI::App& app, int& status) {
   });
   study->footer(
       "A machine is a rig with its friction: identified from a trace, or given, or both (what is given beats what was\n"
-      "identified). Without either it is the published test at the radius given.\n\n"
+      "identified). Without either it is the published test at the radius given. Beside a trace --radius, --speed and\n"
+      "--load describe the record; --range and --at study other speeds.\n\n"
       "Examples:\n"
       "  identify study speed --radius 15mm --load 50N trace.csv\n"
-      "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv    what would more damping do?\n"
+      "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv  # what would more damping do?\n"
       "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
       "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
   const auto request = [] { return std::make_shared<Request>(); };

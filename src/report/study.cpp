@@ -186,10 +186,20 @@ std::string render_study(const StudiedMachine& of, const Response& study, const 
   text += fmt::format("  natural frequency {} Hz, damped {} Hz; response frequency {} Hz\n",
                       significant(study.natural_frequency, 5), significant(study.damped_natural_frequency, 5),
                       significant(study.settled.frequency, 5));
+  const Rig& rig = of.machine.rig;
+  text += "  " +
+          wrapped(fmt::format("A(omega) of a force of {} N ({}): {} mm at rest, {} mm at the natural frequency "
+                              "(--csv: response.csv)",
+                              significant(study.force, 4),
+                              study.harmonics.empty() ? "half the drop of friction" : "the fundamental of friction",
+                              significant(1e3 * study.force / rig.stiffness, 4),
+                              significant(1e3 * study.force / (rig.damping * rig.natural_frequency()), 4)),
+                  style.width, 2) +
+          "\n";
   text += seen_text(study.settled, style);
   if (!study.harmonics.empty()) {
     text += style.heading("Spectra of settled motion");
-    Table table({"harmonic", "frequency Hz", "force N", "displacement mm", "velocity mm/s"});
+    Table table({"harmonic", "frequency Hz", "friction N", "displacement mm", "velocity mm/s"});
     for (const std::size_t n : thinned(std::min<std::size_t>(study.harmonics.size(), 8), 8)) {
       const ResponseLine& h = study.harmonics[n];
       table.add({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),

@@ -80,6 +80,15 @@ bool agrees(const Twin& twin) {
          twin.failures(twin.columns.size() - 1).empty();
 }
 
+/// Means over cycles may agree while the law misses what goes up and down between them: its error is well above the
+/// floor.
+bool law_falls_short(const TwinIdentification& result) {
+  constexpr double kWell = 1.25;
+  if (result.trace.fits.empty()) return false;
+  const Fit& fit = result.trace.fits.back();
+  return fit.error.held_out_rmse > kWell * fit.floor.rmse;
+}
+
 Suggestion next_of(const TwinIdentification& result, const TerminalOptions& options) {
   const auto of_verb = [&](std::vector<std::string> words) {
     TerminalOptions known = options;
@@ -87,11 +96,13 @@ Suggestion next_of(const TwinIdentification& result, const TerminalOptions& opti
     return command_line(known, "", result.trace.path);
   };
   if (!result.twin.reason.empty()) return {"to see the trace, its health and its law", of_verb({})};
-  if (agrees(result.twin)) return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
+  if (agrees(result.twin) && !law_falls_short(result))
+    return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
   return {"to see where the law fails and which effect is missing", of_verb({"diagnose"})};
 }
 
-std::string result_sentence(const Twin& twin) {
+std::string result_sentence(const TwinIdentification& result) {
+  const Twin& twin = result.twin;
   if (!twin.reason.empty()) return "There is no twin: " + twin.reason + ".";
   const std::size_t last = twin.columns.size() - 1;
   std::string text;
@@ -101,10 +112,15 @@ std::string result_sentence(const Twin& twin) {
                        twin.rms_difference[0], twin.rms_difference[last]);
   }
   if (agrees(twin)) {
+    text += fmt::format(
+        "The twin of the {} law moves as the record does: nothing is off by more than three standard errors.",
+        twin.columns[last]);
+    if (!law_falls_short(result)) return text;
+    const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
-                      "The twin of the {} law moves as the record does: nothing is off by more than three standard "
-                      "errors.",
-                      twin.columns[last]);
+                      " But these are means over cycles: on data it has not seen the law leaves {:.1f} times the error "
+                      "of the floor, so that something is missing that comes and goes between them.",
+                      fit.error.held_out_rmse / fit.floor.rmse);
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
   std::string names;
@@ -173,9 +189,10 @@ std::string render_twin(const TwinIdentification& result, const TerminalOptions&
   for (const std::string& warning : trace.warnings) {
     text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
   }
-  text += "  " + wrapped(result_sentence(twin), style.width, 2) + "\n";
+  text += "  " + wrapped(result_sentence(result), style.width, 2) + "\n";
   const Suggestion next = next_of(result, options);
-  text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n  " + next.command + "\n";
+  text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n" +
+          folded_command(next.command, style.width) + "\n";
   return text;
 }
 

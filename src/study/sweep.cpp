@@ -10,13 +10,12 @@ namespace tribofit {
 
 namespace {
 
-std::vector<double> default_velocities(const Machine& machine, const CriticalSpeed& critical) {
-  constexpr std::size_t kCount = 40;
+std::vector<double> default_velocities(const Machine& machine, const CriticalSpeed& critical, std::size_t count) {
   const double own = machine.disc_velocity();
   double highest = 2 * own;
   for (const double v : critical.linear) highest = std::max(highest, 1.2 * v);
   if (!std::isnan(critical.stick_vanishes)) highest = std::max(highest, 1.2 * critical.stick_vanishes);
-  return spread(0.1 * own, highest, kCount, highest > 20 * own);
+  return spread(0.1 * own, highest, count, highest > 20 * own);
 }
 
 double last_or_nan(const std::vector<double>& values) {
@@ -49,7 +48,8 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
   CriticalSpeedOptions search;
   search.sharpness = options.settle.sharpness;
   out.critical = critical_speed(machine, search);
-  out.velocity = options.velocity.empty() ? default_velocities(machine, out.critical) : options.velocity;
+  out.velocity =
+      options.velocity.empty() ? default_velocities(machine, out.critical, options.points) : options.velocity;
   SettleOptions up = options.settle, down = options.settle;
   up.start = StartFrom::stick;
   down.start = StartFrom::sliding;

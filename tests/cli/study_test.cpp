@@ -77,26 +77,32 @@ TEST(StudyCommand, EveryKindWritesItsTables) {
 
 TEST(StudyCommand, AMapThatWasKilledEndsTheSame) {
   const Workshop shop;
-  ASSERT_EQ(shop.identify(std::string(kMap) + " --csv whole --threads 1").status, 0);
+  const std::string map = "study map --radius 15mm --x stiffness=8N/mm..20N/mm:120 --y mass=0.5kg..1.5kg:120 --quiet";
+  ASSERT_EQ(shop.identify(map + " --csv whole --threads 1").status, 0);
   const std::string whole = contents(shop / "whole/map.csv");
-  EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 3601);
+  EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 14401);
   bool was_cut = false;
   for (const char* after : {"0.05", "0.2", "0.1", "0.3"}) {
-    shop.shell(std::string("timeout -s KILL ") + after + " '" TRIBOFIT_IDENTIFY "' " + kMap + " --csv cut");
+    shop.shell(std::string("timeout -s KILL ") + after + " '" TRIBOFIT_IDENTIFY "' " + map + " --csv cut");
     was_cut =
         was_cut || (std::filesystem::exists(shop / "cut/map.rows") && !std::filesystem::exists(shop / "cut/map.csv"));
   }
   EXPECT_TRUE(was_cut);
   // A row that was cut off in the middle does not count.
   shop.shell("truncate -s -7 cut/map.rows 2>/dev/null");
-  ASSERT_EQ(shop.identify(std::string(kMap) + " --csv cut --threads 2").status, 0);
+  ASSERT_EQ(shop.identify(map + " --csv cut --threads 2").status, 0);
   EXPECT_EQ(contents(shop / "cut/map.csv"), whole);
   EXPECT_FALSE(std::filesystem::exists(shop / "cut/map.rows"));
+  // Nothing is written over without a word.
+  const Outcome again = shop.identify(map + " --csv cut");
+  EXPECT_EQ(again.status, 3);
+  EXPECT_THAT(again.err, HasSubstr("a map stands here already"));
 }
 
 TEST(StudyCommand, RowsOfAnotherMapAreNotUsed) {
   const Workshop shop;
-  shop.shell(std::string("timeout -s KILL 0.2 '" TRIBOFIT_IDENTIFY "' ") + kMap + " --load 40N --csv m");
+  shop.shell(std::string("timeout -s KILL 0.2 '" TRIBOFIT_IDENTIFY "' ") + kMap +
+             " --load 40N --csv m; rm -f m/map.csv");
   ASSERT_EQ(shop.identify(std::string(kMap) + " --csv m").status, 0);
   ASSERT_EQ(shop.identify(std::string(kMap) + " --csv n").status, 0);
   EXPECT_EQ(contents(shop / "m/map.csv"), contents(shop / "n/map.csv"));
@@ -108,7 +114,7 @@ TEST(StudyCommand, RowsOfAnotherFormulaAreNotUsed) {
   // Name and numbers are the same.
   const std::string other = map + " --formula 'h = a*v/b; a=0.001, b=1mm/s'";
   const std::string formula = map + " --formula 'h = a*v*v/b/b; a=0.001, b=1mm/s'";
-  shop.shell("timeout -s KILL 0.5 '" TRIBOFIT_IDENTIFY "' " + other + " --csv m");
+  shop.shell("timeout -s KILL 0.5 '" TRIBOFIT_IDENTIFY "' " + other + " --csv m; rm -f m/map.csv");
   ASSERT_EQ(shop.identify(formula + " --csv m").status, 0);
   ASSERT_EQ(shop.identify(formula + " --csv n").status, 0);
   EXPECT_EQ(contents(shop / "m/map.csv"), contents(shop / "n/map.csv"));
@@ -135,7 +141,16 @@ TEST(StudyCommand, MachinesAndAxesThatCannotBeAreNamed) {
   refused("study map --x mass --y load --measure loudness", 3, "there is no measure 'loudness'");
   refused("study sensitivity --vary colour", 3, "there is no parameter 'colour'");
   refused("study speed --sharpness 500s/mm --law fractional", 3, "smoothed law");
+  refused("study speed --effect viscous", 2, "has no size");
   EXPECT_THAT(shop.names(), IsEmpty());
+}
+
+TEST(StudyCommand, WhatDescribesTheRecordIsNoWish) {
+  const Workshop shop;
+  shop.write("trace.csv", good_trace());
+  const Outcome outcome = shop.identify("study speed --radius 15mm --speed 40rpm --load 50N trace.csv");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("--range and --at study other speeds"));
 }
 
 TEST(StudyCommand, MotionThatNeverSettlesSaysWhatWasSeen) {

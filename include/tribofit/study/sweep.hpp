@@ -38,7 +38,9 @@ struct SpeedStudy {
 };
 
 struct SpeedStudyOptions {
-  std::vector<double> velocity;  ///< omega r [m/s]; empty: 40 from a tenth of the machine's own to beyond the critical
+  /// omega r [m/s]; empty: `points` from a tenth of the machine's own to beyond the critical.
+  std::vector<double> velocity;
+  std::size_t points = 40;
   MachineCovariance covariance = {};
   std::size_t draws = 200;
   std::uint64_t seed = 1;
