@@ -20,9 +20,8 @@ namespace {
 /// What the rows depend on, to the last digit.
 std::string head_of(const MapRequest& request) {
   const Machine& m = request.machine;
-  std::string text =
-      fmt::format("# identify {} map of {}; m={} c={} k={} N={} r={} w={} law={}", version, "settled motion",
-                  m.rig.mass, m.rig.damping, m.rig.stiffness, m.load, m.radius, m.speed, m.model.name());
+  std::string text = fmt::format("# identify {} map of settled motion; m={} c={} k={} N={} r={} w={} law={}", version,
+                                 m.rig.mass, m.rig.damping, m.rig.stiffness, m.load, m.radius, m.speed, m.model.name());
   for (const double p : m.parameters) text += fmt::format(" {}", p);
   text += fmt::format("; sharpness={} start={}", request.settle.sharpness, static_cast<int>(request.settle.start));
   for (const MapAxis* axis : {&request.x, &request.y}) {

@@ -40,11 +40,7 @@ StudiedMachine given(const Settings& settings, MachineRequest typed) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
-/// Rows and columns of a covariance of three that are known exactly now.
+/// Rows and columns of a covariance that are known exactly now.
 void set_exact(std::vector<double>& covariance, std::size_t k) {
   const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
   for (std::size_t i = 0; k < n && i < n; ++i) covariance[i * n + k] = covariance[k * n + i] = 0;

@@ -1,13 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -156,8 +152,7 @@ Begun begin(Request& r, const CLI::App& kind) {
   refuse_empty_values(kind);
   Begun out;
   out.settle = settle_options(r);
-  std::vector<std::string> arguments = own_options(kind);
-  out.json.arguments = arguments;
+  out.json.arguments = own_options(kind);
   out.of = studied_machine(r.settings, r.machine);
   out.of.sharpness = out.settle.sharpness;
   out.terminal = terminal_options(r.settings, shared_arguments(kind));

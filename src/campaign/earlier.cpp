@@ -18,6 +18,7 @@
 #include "ingest/encoding.hpp"
 #include "ingest/input_file.hpp"
 #include "ingest/spelling.hpp"
+#include "ingest/table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -32,19 +33,9 @@ class Reader {
 
   EarlierTable read() {
     const std::string text = text_of(InputFile(table_.path));
-    std::size_t number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = std::min(text.find('\n', at), text.size());
-      const std::string_view line = std::string_view(text).substr(at, end - at);
-      at = end + 1;
-      ++number;
-      if (line.find_first_not_of(",;\t \r\"") == std::string_view::npos || trimmed(line).front() == '#') continue;
-      if (columns_.empty()) {
-        read_header(line, number);
-      } else {
-        read_row(line, number);
-      }
-    }
+    for_each_table_line(text, [this](std::string_view line, std::size_t number) {
+      columns_.empty() ? read_header(line, number) : read_row(line, number);
+    });
     if (columns_.empty()) refuse("has no header", std::string("begin it with the names of the columns, ") + kExample);
     if (table_.values.empty()) refuse("holds no values", "fill in a row for each of the conditions");
     return std::move(table_);

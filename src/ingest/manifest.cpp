@@ -18,6 +18,7 @@
 #include "input_file.hpp"
 #include "manifest_roles.hpp"
 #include "spelling.hpp"
+#include "table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/own_files.hpp"
@@ -73,19 +74,9 @@ class Reader {
   Manifest read() {
     const InputFile file(manifest_.path);
     const std::string text = text_of(file);
-    std::size_t number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = std::min(text.find('\n', at), text.size());
-      const std::string_view line = std::string_view(text).substr(at, end - at);
-      at = end + 1;
-      ++number;
-      if (line.find_first_not_of(",;\t \r\"") == std::string_view::npos || trimmed(line).front() == '#') continue;
-      if (columns_.empty()) {
-        read_header(line, number);
-      } else {
-        take_row(line, number);
-      }
-    }
+    for_each_table_line(text, [this](std::string_view line, std::size_t number) {
+      columns_.empty() ? read_header(line, number) : take_row(line, number);
+    });
     if (columns_.empty()) refuse("has no header", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
     if (manifest_.rows.empty() && manifest_.problems.empty())
       refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
