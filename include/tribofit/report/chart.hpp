@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tribofit {
+
+/// A picture as data: what it shows, in the units people read, and how its parts are told apart. It is drawn by the
+/// page (page/chart.js, with Plotly) and by write_pictures() (with gnuplot), from the same numbers.
+///
+/// Texts may hold subscripts and superscripts as "v_{r}" and "s^{2}"; names of lines, categories and files are taken as
+/// they are. Colours are those of Okabe and Ito, told apart by people who do not see colours alike; as a colour alone
+/// never tells anything, each line has a dash or a symbol of its own as well.
+
+enum class Colour { black, blue, red, green, purple, grey };
+enum class Dash { solid, dashed, dotted, dash_dotted, long_dashed };
+enum class Symbol { none, circle, square, diamond, triangle_up, triangle_down, cross };
+
+struct Stroke {
+  Colour colour = Colour::black;
+  Dash dash = Dash::solid;
+  Symbol symbol = Symbol::none;
+  double width = 1.6;  ///< [CSS pixels]
+  double size = 6;     ///< of the symbol [CSS pixels]
+  bool joined = true;  ///< false: symbols only
+};
+
+inline constexpr double kFromData = std::numeric_limits<double>::quiet_NaN();
+
+struct Axis {
+  std::string quantity;                      ///< "time"
+  std::string unit;                          ///< "s"; "1" for a pure number; empty: none is shown
+  double low = kFromData, high = kFromData;  ///< shown range
+  bool from_zero = false;
+  bool logarithmic = false;
+  bool falling = false;            ///< from high to low
+  std::vector<std::string> names;  ///< of the values 0, 1, 2 ... where the axis counts things
+  int digits = 5;                  ///< of the numbers over this axis; times need more
+};
+
+/// A line or points; with `low` and `high` also what is uncertain about it.
+struct Line {
+  std::string name;          ///< in the legend, which switches all of one name together
+  std::vector<double> x, y;  ///< NaN: a gap. y may be empty where there is a band only
+  Stroke stroke = {};
+  std::vector<double> low, high;  ///< of each y: a band, or bars where `bars`
+  bool bars = false;
+  bool listed = true;  ///< has an entry in the legend
+  bool shown = true;   ///< false: switched off until the legend is used, and left out of pictures
+  std::size_t panel = 0;
+};
+
+/// Bars that lie beside the names of the vertical axis (Axis::names of the only panel), one a name.
+struct Bars {
+  std::string name;
+  std::vector<double> values;
+  Colour colour = Colour::blue;
+  bool hatched = false;
+};
+
+/// A stretch of the abscissa that is shaded over all panels.
+enum class Shade { stick, slip, beyond };
+struct Stretch {
+  double from = 0, to = 0;
+  Shade shade = Shade::stick;
+};
+/// What a shade means, for the legend: "stick", "slip", "beyond the data".
+std::string meaning_of(Shade shade);
+
+/// A straight line across a panel (upright: over all of them) with a word beside it.
+struct Mark {
+  double at = 0;
+  bool upright = false;
+  Dash dash = Dash::dashed;
+  std::string text;
+  std::size_t panel = 0;
+};
+
+/// A word at a point of a panel.
+struct Label {
+  double x = 0, y = 0;
+  std::string text;
+  std::size_t panel = 0;
+};
+
+/// A quantity over two others, in colours that rise in lightness as well.
+struct HeatMap {
+  std::vector<double> x, y;            ///< of the columns, of the rows
+  std::vector<std::vector<double>> z;  ///< rows; NaN: nothing there
+  std::string quantity, unit;
+  double low = kFromData, high = kFromData;
+};
+
+/// Charts one above the other over one abscissa.
+struct Panel {
+  Axis axis;        ///< the ordinate
+  double part = 1;  ///< height beside that of the others
+};
+
+struct Chart {
+  std::string id;  ///< name of its file and anchor; letters, digits and '-'
+  std::string title;
+  std::string note;  ///< what to look at, a sentence or two
+  Axis x;
+  std::vector<Panel> panels = std::vector<Panel>(1);  ///< from top to bottom
+  std::vector<Line> lines;
+  std::vector<Bars> bars;
+  std::optional<HeatMap> map;  ///< under the lines
+  std::vector<Stretch> stretches;
+  std::vector<Mark> marks;
+  std::vector<Label> labels;
+  int height = 340;   ///< on the page [CSS pixels]
+  bool half = false;  ///< stands beside its neighbour where the page is wide
+};
+
+}  // namespace tribofit
