@@ -30,7 +30,7 @@ struct Stroke {
 
 inline constexpr double kFromData = std::numeric_limits<double>::quiet_NaN();
 
-struct Axis {
+struct ChartAxis {
   std::string quantity;                      ///< "time"
   std::string unit;                          ///< "s"; "1" for a pure number; empty: none is shown
   double low = kFromData, high = kFromData;  ///< shown range
@@ -42,7 +42,7 @@ struct Axis {
 };
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
-struct Line {
+struct ChartLine {
   std::string name;          ///< in the legend, which switches all of one name together
   std::vector<double> x, y;  ///< NaN: a gap. y may be empty where there is a band only
   Stroke stroke = {};
@@ -53,8 +53,8 @@ struct Line {
   std::size_t panel = 0;
 };
 
-/// Bars that lie beside the names of the vertical axis (Axis::names of the only panel), one a name.
-struct Bars {
+/// Bars that lie beside the names of the vertical axis (ChartAxis::names of the only panel), one a name.
+struct ChartBars {
   std::string name;
   std::vector<double> values;
   Colour colour = Colour::blue;
@@ -71,7 +71,7 @@ struct Stretch {
 std::string meaning_of(Shade shade);
 
 /// A straight line across a panel (upright: over all of them) with a word beside it.
-struct Mark {
+struct ChartMark {
   double at = 0;
   bool upright = false;
   Dash dash = Dash::dashed;
@@ -80,7 +80,7 @@ struct Mark {
 };
 
 /// A word at a point of a panel.
-struct Label {
+struct ChartLabel {
   double x = 0, y = 0;
   std::string text;
   std::size_t panel = 0;
@@ -95,8 +95,8 @@ struct HeatMap {
 };
 
 /// Charts one above the other over one abscissa.
-struct Panel {
-  Axis axis;        ///< the ordinate
+struct ChartPanel {
+  ChartAxis axis;   ///< the ordinate
   double part = 1;  ///< height beside that of the others
 };
 
@@ -104,14 +104,14 @@ struct Chart {
   std::string id;  ///< name of its file and anchor; letters, digits and '-'
   std::string title;
   std::string note;  ///< what to look at, a sentence or two
-  Axis x;
-  std::vector<Panel> panels = std::vector<Panel>(1);  ///< from top to bottom
-  std::vector<Line> lines;
-  std::vector<Bars> bars;
+  ChartAxis x;
+  std::vector<ChartPanel> panels = std::vector<ChartPanel>(1);  ///< from top to bottom
+  std::vector<ChartLine> lines;
+  std::vector<ChartBars> bars;
   std::optional<HeatMap> map;  ///< under the lines
   std::vector<Stretch> stretches;
-  std::vector<Mark> marks;
-  std::vector<Label> labels;
+  std::vector<ChartMark> marks;
+  std::vector<ChartLabel> labels;
   int height = 340;   ///< on the page [CSS pixels]
   bool half = false;  ///< stands beside its neighbour where the page is wide
 };

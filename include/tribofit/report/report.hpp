@@ -16,13 +16,13 @@ struct Identification;
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_page() makes one HTML file
 /// of it, write_pictures() a file of each chart. report_of() makes it of a result.
 
-struct Text {
+struct ReportText {
   enum class Kind { plain, soft, warning, command, heading, item };
   std::string text;
   Kind kind = Kind::plain;
 };
 
-struct Table {
+struct ReportTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
@@ -42,11 +42,11 @@ struct Animation {
   std::vector<Block> blocks;
 };
 
-using Item = std::variant<Text, Table, Chart, Animation>;
+using ReportItem = std::variant<ReportText, ReportTable, Chart, Animation>;
 
-struct Section {
+struct ReportSection {
   std::string id, title;
-  std::vector<Item> items;
+  std::vector<ReportItem> items;
 };
 
 struct Report {
@@ -55,7 +55,7 @@ struct Report {
   std::string lead;  ///< the verdict: what a reader must know
   std::vector<std::string> warnings;
   std::vector<std::pair<std::string, std::string>> facts;
-  std::vector<Section> sections;
+  std::vector<ReportSection> sections;
 };
 
 struct ReportOptions {
