@@ -418,6 +418,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     for (const TraceInput& input : more.confirm) {
       out.diagnosis.confirmations.push_back(confirm(input, options, diagnosed.fits.front(), diagnosed.fits.back()));
     }
+    out.rungs = std::move(diagnosed.fits);
   }
   return out;
 }

@@ -56,6 +56,27 @@ double interval_end(const ModelResiduals& residuals, const Bounds& bounds, const
   }
 }
 
+/// The profile on both sides of the best value, each side from the inside outwards so that every refit begins at its
+/// neighbour.
+std::vector<ProfilePoint> profile_about(const ModelResiduals& residuals, const Bounds& bounds,
+                                        const std::vector<double>& best, std::size_t k, double half_width,
+                                        double rise) {
+  constexpr int kSteps = 8;  // a side
+  const double base = 2 * residuals_cost(residuals, best);
+  std::vector<ProfilePoint> points = {{best[k], 0}};
+  for (const int side : {-1, 1}) {
+    std::vector<double> p = best;
+    for (int i = 1; i <= kSteps; ++i) {
+      const double value = best[k] + side * 2 * half_width * i / kSteps;
+      if (value < bounds.lower[k] || value > bounds.upper[k]) break;
+      points.push_back({value, (profiled_squares(residuals, bounds, k, value, p) - base) / rise});
+    }
+  }
+  std::sort(points.begin(), points.end(),
+            [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
+  return points;
+}
+
 }  // namespace
 
 void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
@@ -69,6 +90,7 @@ void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const E
     const double rise = half_width * half_width / inverse_curvature(i, i);
     parameter.profile_lower95 = interval_end(residuals, bounds, best, k, half_width, rise, -1);
     parameter.profile_upper95 = interval_end(residuals, bounds, best, k, half_width, rise, +1);
+    parameter.profile = profile_about(residuals, bounds, best, k, half_width, rise);
   }
 }
 

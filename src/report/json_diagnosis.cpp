@@ -23,7 +23,8 @@ Json finding_json(const EffectFinding& finding, const Motion& motion) {
           {"error_reduction", number(finding.error_reduction)},
           {"p_value", number(finding.p_value)},
           {"parameters", std::move(parameters)},
-          {"reason", finding.reason}};
+          {"reason", finding.reason},
+          {"held_out_std_error", number(finding.held_out_std_error)}};
 }
 
 Json rung_json(const Rung& rung) {

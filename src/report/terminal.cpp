@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "condition_texts.hpp"
 #include "measures.hpp"
 #include "numbers.hpp"
 #include "style.hpp"
@@ -40,41 +41,10 @@ std::string trace_lines(const Identification& r, const Style& style) {
   return text;
 }
 
-namespace {
-
-/// "15 mm (command line)", or every step's own where they differ.
-std::string condition(const Motion& motion, Condition Conditions::*which, double unit, std::string_view name) {
-  const Condition& whole = motion.conditions.*which;
-  const auto with_source = [](std::string text, const std::string& source) {
-    return source.empty() ? text : text + " (" + source + ")";
-  };
-  if (whole.known()) return with_source(brief(whole.value / unit) + " " + std::string(name), whole.source);
-  std::string list;
-  std::string source;
-  for (const Step& step : motion.steps) {
-    const Condition& own = step.conditions.*which;
-    if (!own.known()) continue;
-    list += (list.empty() ? "" : ", ") + brief(own.value / unit);
-    source = own.source;
-  }
-  if (list.empty()) return "not known";
-  return with_source(list + " " + std::string(name) + " by step", source);
-}
-
-std::string speed_text(const Motion& motion) {
-  if (motion.disc_speed.empty()) return condition(motion, &Conditions::speed, kRpm, "rpm");
-  const auto [low, high] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
-  return fmt::format("{} to {} rpm (recorded)", brief(*low / kRpm), brief(*high / kRpm));
-}
-
-}  // namespace
-
 std::string condition_lines(const Identification& r, const Style& style) {
   const Motion& m = r.motion;
   std::string text = style.heading("Conditions");
-  text += item(style, "radius", condition(m, &Conditions::radius, kMillimetre, "mm"));
-  text += item(style, "disc speed", speed_text(m));
-  text += item(style, "load", condition(m, &Conditions::load, 1, "N"));
+  for (const auto& [name, value] : condition_texts(m)) text += item(style, name, value);
   if (m.friction_kind == FrictionKind::force) {
     text += item(style, "friction", "is a force in newtons: no normal force is known");
   }

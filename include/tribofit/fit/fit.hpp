@@ -33,6 +33,12 @@ struct FitOptions {
   std::vector<double> start;  ///< values (SI) to begin with, instead of several starts; empty: from the data
 };
 
+/// Rise of the squares where a parameter is held at a value [SI] and all others are refitted, in units of the rise at
+/// which its 95 % interval ends.
+struct ProfilePoint {
+  double value = 0, rise = 0;
+};
+
 /// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
 struct FitParameter {
   Parameter parameter;  ///< name, unit and bounds
@@ -42,6 +48,8 @@ struct FitParameter {
   double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval; infinite where not determined
   double systematic = 0;                            ///< standard uncertainty from the declared instruments
   double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for
+  std::vector<ProfilePoint> profile;                ///< by value, from twice the half-width below to twice above; empty
+                                                    ///< unless asked for
   double start = 0;
   bool at_bound = false;
   bool determined = true;  ///< false: the data fix only a combination of it with others, which a message names

@@ -31,22 +31,22 @@ struct Stroke {
 inline constexpr double kFromData = std::numeric_limits<double>::quiet_NaN();
 
 struct ChartAxis {
-  std::string quantity;                      ///< "time"
-  std::string unit;                          ///< "s"; "1" for a pure number; empty: none is shown
+  std::string quantity = {};                 ///< "time"
+  std::string unit = {};                     ///< "s"; "1" for a pure number; empty: none is shown
   double low = kFromData, high = kFromData;  ///< shown range
   bool from_zero = false;
   bool logarithmic = false;
-  bool falling = false;            ///< from high to low
-  std::vector<std::string> names;  ///< of the values 0, 1, 2 ... where the axis counts things
-  int digits = 5;                  ///< of the numbers over this axis; times need more
+  bool falling = false;                 ///< from high to low
+  std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
+  int digits = 5;                       ///< of the numbers over this axis; times need more
 };
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
 struct ChartLine {
-  std::string name;          ///< in the legend, which switches all of one name together
-  std::vector<double> x, y;  ///< NaN: a gap. y may be empty where there is a band only
+  std::string name = {};               ///< in the legend, which switches all of one name together
+  std::vector<double> x = {}, y = {};  ///< NaN: a gap. y may be empty where there is a band only
   Stroke stroke = {};
-  std::vector<double> low, high;  ///< of each y: a band, or bars where `bars`
+  std::vector<double> low = {}, high = {};  ///< of each y: a band, or bars where `bars`
   bool bars = false;
   bool listed = true;  ///< has an entry in the legend
   bool shown = true;   ///< false: switched off until the legend is used, and left out of pictures
@@ -55,8 +55,8 @@ struct ChartLine {
 
 /// Bars that lie beside the names of the vertical axis (ChartAxis::names of the only panel), one a name.
 struct ChartBars {
-  std::string name;
-  std::vector<double> values;
+  std::string name = {};
+  std::vector<double> values = {};
   Colour colour = Colour::blue;
   bool hatched = false;
 };
@@ -75,43 +75,43 @@ struct ChartMark {
   double at = 0;
   bool upright = false;
   Dash dash = Dash::dashed;
-  std::string text;
+  std::string text = {};
   std::size_t panel = 0;
 };
 
 /// A word at a point of a panel.
 struct ChartLabel {
   double x = 0, y = 0;
-  std::string text;
+  std::string text = {};
   std::size_t panel = 0;
 };
 
 /// A quantity over two others, in colours that rise in lightness as well.
 struct HeatMap {
-  std::vector<double> x, y;            ///< of the columns, of the rows
-  std::vector<std::vector<double>> z;  ///< rows; NaN: nothing there
-  std::string quantity, unit;
+  std::vector<double> x = {}, y = {};       ///< of the columns, of the rows
+  std::vector<std::vector<double>> z = {};  ///< rows; NaN: nothing there
+  std::string quantity = {}, unit = {};
   double low = kFromData, high = kFromData;
 };
 
 /// Charts one above the other over one abscissa.
 struct ChartPanel {
-  ChartAxis axis;   ///< the ordinate
-  double part = 1;  ///< height beside that of the others
+  ChartAxis axis = {};  ///< the ordinate
+  double part = 1;      ///< height beside that of the others
 };
 
 struct Chart {
-  std::string id;  ///< name of its file and anchor; letters, digits and '-'
-  std::string title;
-  std::string note;  ///< what to look at, a sentence or two
-  ChartAxis x;
+  std::string id = {};  ///< name of its file and anchor; letters, digits and '-'
+  std::string title = {};
+  std::string note = {};  ///< what to look at, a sentence or two
+  ChartAxis x = {};
   std::vector<ChartPanel> panels = std::vector<ChartPanel>(1);  ///< from top to bottom
-  std::vector<ChartLine> lines;
-  std::vector<ChartBars> bars;
-  std::optional<HeatMap> map;  ///< under the lines
-  std::vector<Stretch> stretches;
-  std::vector<ChartMark> marks;
-  std::vector<ChartLabel> labels;
+  std::vector<ChartLine> lines = {};
+  std::vector<ChartBars> bars = {};
+  std::optional<HeatMap> map = {};  ///< under the lines
+  std::vector<Stretch> stretches = {};
+  std::vector<ChartMark> marks = {};
+  std::vector<ChartLabel> labels = {};
   int height = 340;   ///< on the page [CSS pixels]
   bool half = false;  ///< stands beside its neighbour where the page is wide
 };

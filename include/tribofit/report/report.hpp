@@ -18,14 +18,14 @@ struct Identification;
 
 struct ReportText {
   enum class Kind { plain, soft, warning, command, heading, item };
-  std::string text;
+  std::string text = {};
   Kind kind = Kind::plain;
 };
 
 struct ReportTable {
-  std::string caption;
-  std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
+  std::string caption = {};
+  std::vector<std::string> header = {};
+  std::vector<std::vector<std::string>> rows = {};
   std::vector<std::size_t> numeric = {};  ///< columns set to the right
   bool folded = false;                    ///< opened by a click
 };
@@ -37,31 +37,32 @@ struct Animation {
     std::vector<double> time, displacement, friction;  ///< [s], [mm], [1 or N]; the loop begins anew at its end
     std::vector<bool> sticks;
   };
-  std::string id, title, note;
+  std::string id = {}, title = {}, note = {};
   double disc_velocity = 0;  ///< omega r [mm/s]
-  std::vector<Block> blocks;
+  std::vector<Block> blocks = {};
 };
 
 using ReportItem = std::variant<ReportText, ReportTable, Chart, Animation>;
 
 struct ReportSection {
-  std::string id, title;
-  std::vector<ReportItem> items;
+  std::string id = {}, title = {};
+  std::vector<ReportItem> items = {};
 };
 
 struct Report {
-  std::string kind;  ///< "friction law", "diagnosis", "campaign", "study"
-  std::string title, subtitle;
-  std::string lead;  ///< the verdict: what a reader must know
-  std::vector<std::string> warnings;
-  std::vector<std::pair<std::string, std::string>> facts;
-  std::vector<ReportSection> sections;
+  std::string kind = {};  ///< "friction law", "diagnosis", "campaign", "study"
+  std::string title = {}, subtitle = {};
+  std::string lead = {};  ///< the verdict: what a reader must know
+  std::vector<std::string> warnings = {};
+  std::vector<std::pair<std::string, std::string>> facts = {};
+  std::vector<ReportSection> sections = {};
 };
 
 struct ReportOptions {
-  std::vector<std::string> arguments;  ///< the user's own options without traces and outputs, shown with the command
-  std::vector<std::string> inputs;     ///< traces and folders as the user named them; empty: the path of the trace
-  bool instruments_declared = false;   ///< an instruments file was given
+  std::vector<std::string> arguments =
+      {};                                ///< the user's own options without traces and outputs, shown with the command
+  std::vector<std::string> inputs = {};  ///< traces and folders as the user named them; empty: the path of the trace
+  bool instruments_declared = false;     ///< an instruments file was given
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,

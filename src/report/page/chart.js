@@ -1,48 +1,187 @@
-// A chart with its title, legend, tools and numbers. Colours are those of Okabe and Ito, told apart by people who do
-// not see colours alike; lines differ in their dashes and points in their shape as well.
+// Draws a chart as the program describes it (include/tribofit/report/chart.hpp), with its title, legend, tools and
+// numbers. Colours are those of Okabe and Ito, told apart by people who do not see colours alike.
 
 const ink = { black: "#000000", blue: "#0072b2", red: "#d55e00", green: "#009e73", purple: "#a0508a", grey: "#6b6b6b" };
 const pale = { blue: "rgba(0,114,178,0.22)", red: "rgba(213,94,0,0.22)", black: "rgba(0,0,0,0.14)",
   green: "rgba(0,158,115,0.2)", purple: "rgba(160,80,138,0.2)", grey: "rgba(107,107,107,0.2)" };
-const slipFill = "rgba(230,159,0,0.16)", stickFill = "rgba(0,0,0,0.07)", beyondFill = "rgba(0,0,0,0.09)";
+const shades = { stick: "rgba(0,0,0,0.07)", slip: "rgba(230,159,0,0.16)", beyond: "rgba(0,0,0,0.09)" };
 
 /** Text that a chart takes as text: no tags, no entities. */
 function plain(text) {
   return String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 }
 
-/** A line; `more` goes to the library as it is. name doubles as the group that the legend switches. */
-function line(name, series, style = {}, more = {}) {
-  const { colour = "black", dash = "solid", width = 1.6, symbol = null } = style;
-  return { type: "scatter", mode: symbol ? "lines+markers" : "lines", name: plain(name), legendgroup: name,
-    x: series.x, y: series.y, line: { color: ink[colour], dash, width },
-    marker: { symbol: symbol || "circle", size: 5, color: ink[colour] }, ...more };
+/** Text with the subscripts and superscripts of "v_{r}" and "s^{2}". */
+function marked(text) {
+  return plain(text).replace(/_\{([^}]*)\}/g, "<sub>$1</sub>").replace(/\^\{([^}]*)\}/g, "<sup>$1</sup>")
+    .replace(/\n/g, "<br>");
 }
 
-function points(name, series, style = {}, more = {}) {
-  const { colour = "black", symbol = "circle", size = 6 } = style;
-  return { type: "scatter", mode: "markers", name: plain(name), legendgroup: name, x: series.x, y: series.y,
-    marker: { symbol, size, color: ink[colour] }, ...more };
+const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
+
+function titleOf(axis) {
+  return axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity;
 }
 
-/** A band between two curves over the same abscissa, switched together with the line of that name. */
-function band(name, x, low, high, colour, more = {}) {
-  const edge = { type: "scatter", mode: "lines", legendgroup: name, showlegend: false, hoverinfo: "skip", x,
-    line: { width: 0, color: ink[colour] }, ...more };
-  return [{ ...edge, name: `${plain(name)}, lower edge`, y: low },
-    { ...edge, name: `${plain(name)}, upper edge`, y: high, fill: "tonexty", fillcolor: pale[colour] }];
+const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
+
+function axisOf(axis, more = {}) {
+  const layout = { title: { text: marked(titleOf(axis)), standoff: 8 }, automargin: true, zeroline: false, showline: true,
+    linecolor: "#444", gridcolor: "#e2e2e2", ticks: "outside", tickcolor: "#444", exponentformat: "power",
+    hoverformat: ".7~g", ...more };
+  if (axis.names) {
+    Object.assign(layout, { tickvals: axis.names.map((_, k) => k), ticktext: axis.names.map(plain), showgrid: false,
+      range: [-0.6, axis.names.length - 0.4] });
+  }
+  if (axis.logarithmic) layout.type = "log";
+  if (axis.from_zero) layout.rangemode = "tozero";
+  if (axis.low !== undefined && axis.high !== undefined) {
+    const ends = axis.logarithmic ? [Math.log10(axis.low), Math.log10(axis.high)] : [axis.low, axis.high];
+    layout.range = ends;
+  }
+  if (axis.falling && layout.range) layout.range = [...layout.range].reverse();
+  else if (axis.falling) layout.autorange = "reversed";
+  return layout;
 }
 
-function axis(title, more = {}) {
-  return { title: { text: title, standoff: 8 }, automargin: true, zeroline: false, showline: true, linecolor: "#444",
-    gridcolor: "#e2e2e2", ticks: "outside", tickcolor: "#444", exponentformat: "power", ...more };
+const nth = (letter, panel) => (panel ? `${letter}${panel + 1}` : letter);
+
+/** Hover text: both values with their units, and the line. */
+function hoverOf(chart, panel, bars) {
+  const y = chart.panels[panel || 0].axis, quantity = marked(y.quantity);
+  const x = chart.x.names ? "%{customdata}" : `${marked(chart.x.quantity)} %{x}${plain(unitOf(chart.x))}`;
+  return { hovertemplate: `${x}<br>${quantity} %{y:.5g}${plain(unitOf(y))}${bars ? "<br>%{text}" : ""}` +
+    "<extra>%{fullData.name}</extra>" };
 }
 
-const basicLayout = {
-  font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13, color: "#1b1b1b" },
-  margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest",
-  showlegend: false, hoverlabel: { bgcolor: "#fff", bordercolor: "#444", font: { color: "#1b1b1b" } },
-};
+/** A band under its line, switched together with it. */
+function bandOf(line, edge) {
+  return [{ ...edge, name: `${plain(line.name)}, lower edge`, y: line.low },
+    { ...edge, name: `${plain(line.name)}, upper edge`, y: line.high, fill: "tonexty", fillcolor: pale[line.colour] }];
+}
+
+function tracesOfLine(chart, line) {
+  const common = { type: "scatter", legendgroup: line.name, x: line.x, yaxis: nth("y", line.panel),
+    visible: line.shown === false ? "legendonly" : true };
+  const traces = [];
+  if (line.low && !line.bars) {
+    traces.push(...bandOf(line, { ...common, mode: "lines", showlegend: false, hoverinfo: "skip",
+      line: { width: 0, color: ink[line.colour] } }));
+  }
+  if (!line.y) {
+    if (traces.length > 0 && line.listed !== false) traces[traces.length - 1].showlegend = true;
+    return traces;
+  }
+  const joined = line.joined !== false;
+  const trace = { ...common, mode: line.symbol ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
+    y: line.y, line: { color: ink[line.colour], dash: line.dash, width: line.width },
+    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: ink[line.colour] },
+    showlegend: line.listed !== false, ...hoverOf(chart, line.panel, line.bars) };
+  if (chart.x.names) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
+  if (line.bars) {
+    trace.error_y = { type: "data", symmetric: false, array: line.y.map((y, k) => line.high[k] - y),
+      arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color: ink[line.colour] };
+    trace.text = line.y.map((_, k) => `from ${number(line.low[k], 5)} to ${number(line.high[k], 5)}`);
+  }
+  traces.push(trace);
+  return traces;
+}
+
+function tracesOfBars(chart, bars) {
+  const y = chart.panels[0].axis;
+  return { type: "bar", orientation: "h", name: plain(bars.name), legendgroup: bars.name, x: bars.values,
+    y: bars.values.map((_, k) => k), customdata: y.names.map(plain),
+    marker: { color: ink[bars.colour], line: { color: "#000", width: 1 },
+      pattern: { shape: bars.hatched ? "/" : "", fillmode: "overlay", fgcolor: "#fff", size: 6, solidity: 0.35 } },
+    hovertemplate: `%{customdata}: %{x:.4g}${plain(unitOf(chart.x))}<extra>%{fullData.name}</extra>` };
+}
+
+function traceOfMap(chart) {
+  const map = chart.map, x = chart.x, y = chart.panels[0].axis;
+  return { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low, zmax: map.high,
+    zauto: map.low === undefined, colorscale: "Cividis", hoverongaps: false,
+    colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12 },
+    hovertemplate: `${marked(x.quantity)} %{x}${plain(unitOf(x))}<br>${marked(y.quantity)} %{y}${plain(unitOf(y))}` +
+      `<br>%{z:.5g}${plain(unitOf(map))}<extra></extra>` };
+}
+
+function tracesOf(chart) {
+  const traces = chart.map ? [traceOfMap(chart)] : [];
+  for (const line of chart.lines || []) traces.push(...tracesOfLine(chart, line));
+  for (const bars of chart.bars || []) traces.push(tracesOfBars(chart, bars));
+  return traces;
+}
+
+function shapesOf(chart) {
+  const shapes = (chart.stretches || []).map((s) => ({ type: "rect", layer: "below", xref: "x", yref: "paper", x0: s.from,
+    x1: s.to, y0: 0, y1: 1, line: { width: 0 }, fillcolor: shades[s.shade] }));
+  for (const mark of chart.marks || []) {
+    const line = { color: "#444", width: 1.3, dash: mark.dash };
+    shapes.push(mark.upright
+      ? { type: "line", xref: "x", yref: "paper", x0: mark.at, x1: mark.at, y0: 0, y1: 1, line }
+      : { type: "line", xref: "paper", x0: 0, x1: 1, yref: nth("y", mark.panel), y0: mark.at, y1: mark.at, line });
+  }
+  return shapes;
+}
+
+function annotationsOf(chart) {
+  const log = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
+  const words = (chart.marks || []).filter((mark) => mark.text).map((mark) => (mark.upright
+    ? { xref: "x", x: log(chart.x, mark.at), xanchor: "left", yref: "paper", y: 1, yanchor: "top", textangle: 0 }
+    : { xref: "paper", x: 0, xanchor: "left", yref: nth("y", mark.panel), y: log(chart.panels[mark.panel || 0].axis, mark.at),
+      yanchor: "bottom" })).map((place, k) => ({ ...place, text: marked((chart.marks || []).filter((m) => m.text)[k].text),
+    showarrow: false, font: { size: 11 }, bgcolor: "rgba(255,255,255,0.7)" }));
+  for (const label of chart.labels || []) {
+    words.push({ x: log(chart.x, label.x), y: log(chart.panels[label.panel || 0].axis, label.y), yref: nth("y", label.panel),
+      text: marked(label.text), showarrow: false, yanchor: "bottom", yshift: 14, font: { size: 11 }, bgcolor: "#fff" });
+  }
+  return words;
+}
+
+/** Panels one above the other, with room between them. */
+function layoutOf(chart) {
+  const gap = 0.06, count = chart.panels.length;
+  const whole = chart.panels.reduce((sum, panel) => sum + panel.part, 0), free = 1 - gap * (count - 1);
+  const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13, color: "#1b1b1b" },
+    margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest",
+    showlegend: false, hoverlabel: { bgcolor: "#fff", bordercolor: "#444", font: { color: "#1b1b1b" } },
+    height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
+    xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
+  let top = 1;
+  chart.panels.forEach((panel, k) => {
+    const height = (free * panel.part) / whole;
+    layout[`yaxis${k ? k + 1 : ""}`] = axisOf(panel.axis, { domain: [Math.max(0, top - height), top] });
+    top -= height + gap;
+  });
+  if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
+  return layout;
+}
+
+/** The numbers of a chart: a row a point. */
+function rowsOf(chart) {
+  const rows = [];
+  const x = (value) => (chart.x.names ? chart.x.names[Math.round(value)] : value);
+  for (const line of chart.lines || []) {
+    const quantity = unmarked(titleOf(chart.panels[line.panel || 0].axis));
+    line.x.forEach((at, k) => {
+      const y = line.y ? line.y[k] : null, low = line.low ? line.low[k] : null;
+      if (y !== null || low !== null) rows.push([line.name, x(at), quantity, y, low, line.high ? line.high[k] : null]);
+    });
+  }
+  const names = chart.panels[0].axis.names || [];
+  for (const bars of chart.bars || []) {
+    bars.values.forEach((value, k) => value !== null && rows.push([bars.name, names[k], unmarked(titleOf(chart.x)), value, null, null]));
+  }
+  if (chart.map) {
+    const quantity = unmarked(titleOf(chart.map));
+    chart.map.z.forEach((row, i) => row.forEach((z, k) => z !== null && rows.push([
+      `${unmarked(titleOf(chart.panels[0].axis))} = ${chart.map.y[i]}`, chart.map.x[k], quantity, z, null, null])));
+  }
+  for (const stretch of chart.stretches || []) rows.push([stretch.meaning, stretch.from, "end", stretch.to, null, null]);
+  return rows;
+}
+
+const headerOf = (chart) => ["line", unmarked(chart.bars ? "name" : titleOf(chart.x)), "quantity", "value", "low", "high"];
 
 /** What a line looks like, for the legend. */
 function swatch(trace) {
@@ -53,20 +192,21 @@ function swatch(trace) {
     return element;
   };
   const svg = draw("svg", { width: 34, height: 12, "aria-hidden": "true" });
-  if (trace.type === "bar") {
-    svg.append(draw("rect", { x: 6, y: 1, width: 22, height: 10, fill: trace.marker.color, stroke: "#000" }));
-    if (trace.marker.pattern && trace.marker.pattern.shape) {
+  if (trace.type === "bar" || trace.fill) {
+    const fill = trace.fill ? trace.fillcolor : trace.marker.color;
+    svg.append(draw("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : "#000" }));
+    if (!trace.fill && trace.marker.pattern.shape) {
       svg.append(draw("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: "#fff", "stroke-width": 1.5 }));
     }
     return svg;
   }
   const dashes = { solid: "", dash: "7 4", dot: "2 3", dashdot: "7 3 2 3", longdash: "12 4" };
-  const mode = trace.mode || "lines", colour = trace.line ? trace.line.color : trace.marker.color;
-  if (mode.includes("lines")) {
+  const colour = trace.line.color;
+  if (trace.mode.includes("lines")) {
     svg.append(draw("line", { x1: 0, x2: 34, y1: 6, y2: 6, stroke: colour, "stroke-width": trace.line.width + 0.6,
       "stroke-dasharray": dashes[trace.line.dash] || "" }));
   }
-  if (mode.includes("markers")) {
+  if (trace.mode.includes("markers")) {
     const shapes = { circle: "M17,2a4,4 0 1,0 0.01,0z", "triangle-up": "M17,1L22,10L12,10z",
       "triangle-down": "M17,11L22,2L12,2z", square: "M13,2h8v8h-8z", diamond: "M17,1l5,5l-5,5l-5,-5z",
       x: "M13,2l8,8m0,-8l-8,8" };
@@ -75,88 +215,100 @@ function swatch(trace) {
   return svg;
 }
 
-const waiting = []; // charts not drawn yet
-const drawn = [];
+const chartItems = new Map(); // by id
+let waiting = []; // charts not drawn yet, or not as they are now
+let isDrawing = false;
 
-/**
- * Puts a chart into `parent`; it is drawn when its turn comes. spec: {id, title, note, traces, layout, height, header,
- * rows}; rows() gives the table of numbers where the lines themselves do not.
- */
-function chart(parent, spec) {
-  const plot = make("div", { className: "plot", id: spec.id, tabindex: "0", role: "img",
-    "aria-label": `Chart: ${spec.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
+/** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
+function chartFigure(chart) {
+  const item = chartItems.get(chart.id) || makeChart(chart);
+  item.chart = chart;
+  item.traces = tracesOf(chart);
+  item.layout = layoutOf(chart);
+  item.ranges = Object.fromEntries(Object.entries(item.layout).filter(([, part]) => part && part.range)
+    .map(([name, part]) => [name, [...part.range]])); // the library writes the present range into the layout
+  for (const trace of item.traces) {
+    if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
+  }
+  item.title.textContent = chart.title;
+  item.note.textContent = chart.note;
+  item.plot.style.height = `${chart.height}px`;
+  fillLegend(item);
+  if (!waiting.includes(item)) waiting.push(item);
+  if (!isDrawing) {
+    isDrawing = true;
+    delete document.documentElement.dataset.drawn;
+    requestAnimationFrame(() => setTimeout(drawWaiting, 0));
+  }
+  return item.figure;
+}
+
+function makeChart(chart) {
+  const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
+    "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  plot.style.height = `${spec.height || 340}px`;
-  const legend = make("div", { className: "legend" });
-  const tools = make("div", { className: "tools" });
-  const figure = make("figure", {}, make("figcaption", {}, make("h3", {}, spec.title),
-    spec.note ? make("p", {}, spec.note) : null), plot, legend, tools,
-  numbersOf(spec.id, spec.header, spec.rows || (() => rowsOf(spec.traces))));
-  parent.append(figure);
-  const item = { ...spec, plot, figure, layout: { ...basicLayout, height: spec.height || 340, ...spec.layout } };
-  // The library writes the present range into the layout it is given.
-  item.ranges = Object.fromEntries(Object.entries(spec.layout).filter(([, part]) => part && part.range)
-    .map(([name, part]) => [name, [...part.range]]));
-  if (matchMedia("(pointer: coarse)").matches) item.layout.dragmode = false; // a finger scrolls the page
-  addLegend(legend, item);
-  addTools(tools, item);
+  const item = { plot, switched: new Map(), drawn: false, title: make("h3"), note: make("p"),
+    legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
+  item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools,
+    numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart)));
+  addTools(item, chart.title);
   plot.addEventListener("keydown", (event) => onKey(event, item));
-  waiting.push(item);
+  chartItems.set(chart.id, item);
   return item;
 }
 
-function rowsOf(traces) {
-  const rows = [];
-  for (const trace of traces) {
-    for (let k = 0; k < trace.x.length; ++k) {
-      if (trace.y[k] !== null && trace.y[k] !== undefined) rows.push([trace.name, trace.x[k], trace.y[k]]);
-    }
-  }
-  return rows;
-}
-
 function draw(item) {
-  if (item.done) return;
-  item.done = true;
-  Plotly.newPlot(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
+  waiting = waiting.filter((other) => other !== item);
+  Plotly.react(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
     doubleClick: "reset", scrollZoom: false });
-  drawn.push(item);
+  item.drawn = true;
 }
 
-/** Draws what waits, one chart after the other so that the page stays alive. */
+function isInView(item) {
+  const box = item.plot.getBoundingClientRect();
+  return box.bottom > 0 && box.top < innerHeight;
+}
+
+/** Draws what waits, what is in view first, one chart after the other so that the page stays alive. */
 function drawWaiting() {
-  const item = waiting.shift();
-  if (!item) {
+  waiting = waiting.filter((item) => item.plot.isConnected);
+  if (waiting.length === 0) {
+    isDrawing = false;
     document.documentElement.dataset.drawn = "all";
     return;
   }
-  draw(item);
+  draw(waiting.find(isInView) || waiting[0]);
   setTimeout(drawWaiting, 0);
 }
 
 /** One button for each name: a line and its band go together. */
-function addLegend(legend, item) {
+function fillLegend(item) {
   const named = item.traces.filter((trace) => trace.showlegend !== false && trace.legendgroup);
-  if (named.length < 2 && !item.keys) return;
+  const parts = [];
   const seen = new Set();
   for (const trace of named) {
     if (seen.has(trace.legendgroup)) continue;
     seen.add(trace.legendgroup);
     const on = trace.visible !== "legendonly";
-    legend.append(make("button", { type: "button", "aria-pressed": String(on), title: "Show or hide",
+    parts.push(make("button", { type: "button", "aria-pressed": String(on), title: "Show or hide",
       onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), trace.legendgroup));
   }
-  for (const [name, fill] of item.keys || []) {
+  const stretches = item.chart.stretches || [];
+  const keys = new Map(stretches.map((stretch) => [stretch.meaning, shades[stretch.shade]]));
+  if (parts.length < 2 && keys.size === 0) parts.length = 0;
+  for (const [name, fill] of keys) {
     const key = make("span", { className: "key" });
     key.style.background = fill;
-    legend.append(make("span", { className: "soft" }, key, name));
+    parts.push(make("span", { className: "soft" }, key, name));
   }
+  item.legend.replaceChildren(...parts);
 }
 
 function toggle(item, group, button) {
-  draw(item);
+  if (!item.drawn) draw(item);
   const on = button.getAttribute("aria-pressed") !== "true";
   button.setAttribute("aria-pressed", String(on));
+  item.switched.set(group, on ? true : "legendonly");
   const indices = item.traces.map((trace, k) => (trace.legendgroup === group ? k : -1)).filter((k) => k >= 0);
   Plotly.restyle(item.plot, { visible: on ? true : "legendonly" }, indices);
 }
@@ -165,29 +317,23 @@ const axesOf = (item, letter) => Object.keys(item.plot._fullLayout)
   .filter((name) => new RegExp(`^${letter}axis[0-9]*$`).test(name));
 
 /** Zooms about the middle (factor below 1: closer) and moves by a part of the width. */
-function zoom(item, factor, move = 0, letters = "x") {
-  draw(item);
+function zoom(item, factor, move = 0) {
+  if (!item.drawn) draw(item);
   const change = {};
-  for (const letter of letters) {
-    for (const name of axesOf(item, letter)) {
-      const full = item.plot._fullLayout[name];
-      if (full.type === "category" || full.fixedrange) continue;
-      const [low, high] = full.range;
-      const middle = (low + high) / 2 + move * (high - low), half = (factor * (high - low)) / 2;
-      change[`${name}.range`] = [middle - half, middle + half];
-    }
+  for (const name of axesOf(item, "x")) {
+    const [low, high] = item.plot._fullLayout[name].range;
+    const middle = (low + high) / 2 + move * (high - low), half = (factor * (high - low)) / 2;
+    change[`${name}.range`] = [middle - half, middle + half];
   }
   Plotly.relayout(item.plot, change);
 }
 
 function showAll(item) {
-  draw(item);
+  if (!item.drawn) draw(item);
   const change = {};
-  for (const letter of "xy") {
-    for (const name of axesOf(item, letter)) {
-      if (item.ranges[name]) change[`${name}.range`] = [...item.ranges[name]];
-      else change[`${name}.autorange`] = true;
-    }
+  for (const name of [...axesOf(item, "x"), ...axesOf(item, "y")]) {
+    if (item.ranges[name]) change[`${name}.range`] = [...item.ranges[name]];
+    else change[`${name}.autorange`] = true;
   }
   Plotly.relayout(item.plot, change);
 }
@@ -203,29 +349,28 @@ function onKey(event, item) {
 
 /** Saves the chart with title and legend, wide enough for print. */
 function savePicture(item, format) {
-  draw(item);
-  const layout = { ...item.plot.layout, showlegend: true, width: 900, height: 560,
-    title: { text: plain(item.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
+  if (!item.drawn) draw(item);
+  const height = Math.max(560, item.chart.height);
+  const layout = { ...item.plot.layout, showlegend: true, width: 900, height,
+    title: { text: plain(item.chart.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
     legend: { orientation: "h", y: -0.18, yanchor: "top" } };
-  return Plotly.toImage({ data: item.plot.data, layout }, { format, width: 900, height: 560, scale: format === "png" ? 3 : 1 })
-    .then((url) => make("a", { href: url, download: `${item.id}.${format}` }).click());
+  return Plotly.toImage({ data: item.plot.data, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
+    .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
 }
 
-function addTools(tools, item) {
-  const button = (text, title, action) =>
-    make("button", { type: "button", title, "aria-label": `${title}: ${item.title}`, onclick: action }, text);
-  tools.append(button("+", "Zoom in", () => zoom(item, 0.5)), button("\u2212", "Zoom out", () => zoom(item, 2)),
+function addTools(item, title) {
+  const button = (text, what, action) =>
+    make("button", { type: "button", title: what, "aria-label": `${what}: ${title}`, onclick: action }, text);
+  item.tools.append(button("+", "Zoom in", () => zoom(item, 0.5)), button("\u2212", "Zoom out", () => zoom(item, 2)),
     button("All", "Show all", () => showAll(item)), button("SVG", "Save as SVG", () => savePicture(item, "svg")),
     button("PNG", "Save as PNG", () => savePicture(item, "png")));
 }
 
 // On paper charts are as wide as the page.
 addEventListener("beforeprint", () => {
-  while (waiting.length > 0) draw(waiting.shift());
-  for (const item of drawn) {
-    Plotly.relayout(item.plot, { width: 640, autosize: false });
-  }
+  while (waiting.length > 0) draw(waiting[0]);
+  for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: 640, autosize: false });
 });
 addEventListener("afterprint", () => {
-  for (const item of drawn) Plotly.relayout(item.plot, { width: null, autosize: true });
+  for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: null, autosize: true });
 });

@@ -21,31 +21,9 @@ function number(value, digits = 4) {
   return value.toFixed(Math.min(places, 12)).replace("-", "−");
 }
 
-/** Up to four digits without trailing zeros, for conditions. */
-function brief(value) {
-  return String(Number(value.toPrecision(4)));
-}
-
 /** Text of the program as a page has it. */
 function prose(text) {
   return text.replace(/\+\/?-/g, "±").replace(/^[a-z]/, (letter) => letter.toUpperCase());
-}
-
-/** A value with its standard error to the same place. */
-function withError(value, error, unit = "") {
-  if (!Number.isFinite(value)) return "–";
-  if (!Number.isFinite(error) || !(error > 0)) return number(value) + unit;
-  const places = Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error))));
-  return `${value.toFixed(places)} ± ${error.toFixed(places)}${unit}`;
-}
-
-/** A share as a percentage: with as many nines as it deserves, never rounded up to the whole. */
-function percent(share) {
-  if (share === null || !Number.isFinite(share)) return "–";
-  if (Math.abs(share) < 0.1) return `${number(100 * share, 2)} %`;
-  let places = 0;
-  if (share < 1) while (places < 6 && (100 * share).toFixed(places).startsWith("100")) ++places;
-  return `${(100 * share).toFixed(places).replace("-", "−")} %`;
 }
 
 /** A table; columns named in `numeric` are set to the right. */
@@ -73,13 +51,14 @@ function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
-/** The numbers of a chart behind a switch: made when it is opened, cut after `most` rows, whole as CSV. */
-function numbersOf(name, header, rowsOf) {
+/** The numbers of a chart behind a switch: made anew when it is opened, cut after `most` rows, whole as CSV. */
+function numbersOf(name, headerOf, rowsOf) {
   const most = 500;
   const details = make("details", { className: "numbers" }, make("summary", {}, "Numbers of this chart"));
   details.addEventListener("toggle", () => {
-    if (!details.open || details.childElementCount > 1) return;
-    const rows = rowsOf();
+    while (details.childElementCount > 1) details.lastChild.remove();
+    if (!details.open) return;
+    const header = headerOf(), rows = rowsOf();
     const text = (value) => (typeof value === "number" ? String(Number(value.toPrecision(9))) : value ?? "");
     const quoted = (value) => (/[",\n]/.test(text(value)) ? `"${text(value).replace(/"/g, '""')}"` : text(value));
     const csv = () => [header, ...rows].map((row) => row.map(quoted).join(",")).join("\n") + "\n";

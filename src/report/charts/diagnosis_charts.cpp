@@ -1,0 +1,144 @@
+#include "report/charts/diagnosis_charts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "report/charts/styles.hpp"
+#include "report/diagnosis_sentences.hpp"
+#include "report/numbers.hpp"
+
+namespace tribofit {
+namespace {
+
+/// Axis of errors.
+ChartAxis error_axis(const DiagnosedTraces& result) {
+  const bool force = !result.traces.empty() && friction_unit(result.traces.front().motion) == "N";
+  return {"RMSE on data not seen", force ? "N" : "1"};
+}
+
+std::vector<std::string> rung_names(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const Rung& rung : d.ladder) names.push_back(rung.added.empty() ? law_text(d) : "+ " + rung.added);
+  return names;
+}
+
+Chart ladder_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart;
+  chart.id = "ladder";
+  chart.title = "The ladder: error on data not seen, as effects are added";
+  chart.note = "Bars are one standard error. At the floor only noise and scatter from cycle to cycle are left.";
+  chart.x.names = rung_names(d);
+  chart.panels[0].axis = error_axis(result);
+  chart.panels[0].axis.from_zero = true;
+  const auto above = [&](const Rung& rung) { return std::pow(rung.held_out_rmse, 2) - std::pow(d.floor_rmse, 2); };
+  ChartLine line{"error on data not seen", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
+  line.bars = true;
+  for (std::size_t k = 0; k < d.ladder.size(); ++k) {
+    const Rung& rung = d.ladder[k];
+    const auto x = static_cast<double>(k);
+    line.x.push_back(x);
+    line.y.push_back(rung.held_out_rmse);
+    line.low.push_back(rung.held_out_rmse - rung.held_out_std_error);
+    line.high.push_back(rung.held_out_rmse + rung.held_out_std_error);
+    const double first = above(d.ladder.front());
+    if (k == 0 || !(first > 0)) continue;
+    chart.labels.push_back({x, rung.held_out_rmse, share_text(std::min(1.0, 1 - above(rung) / first)) + " gone"});
+  }
+  chart.lines.push_back(std::move(line));
+  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "floor " + significant(d.floor_rmse, 3)});
+  chart.half = true;
+  return chart;
+}
+
+/// Shares of the law and of the final model beside the same variables.
+Chart where_chart(const Diagnosis& d) {
+  Chart chart;
+  chart.id = "where";
+  chart.title = "Where the error above the floor goes";
+  chart.note = where_sentence(d.where);
+  chart.x = {"share", "%", 0, 105};
+  ChartAxis& names = chart.panels[0].axis;
+  ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
+  for (const Share& share : d.where) {
+    names.names.push_back(share.variable);
+    before.values.push_back(100 * share.share);
+    const auto left = std::find_if(d.remaining.begin(), d.remaining.end(),
+                                   [&](const Share& other) { return other.variable == share.variable; });
+    after.values.push_back(left == d.remaining.end() ? 0 : 100 * left->share);
+  }
+  std::reverse(names.names.begin(), names.names.end());  // the largest on top
+  std::reverse(before.values.begin(), before.values.end());
+  std::reverse(after.values.begin(), after.values.end());
+  chart.bars.push_back(std::move(before));
+  if (d.ladder.size() > 1) chart.bars.push_back(std::move(after));
+  chart.height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size()));
+  chart.half = true;
+  return chart;
+}
+
+struct StatusStyle {
+  EffectStatus status;
+  Stroke stroke;
+};
+constexpr std::array<StatusStyle, 4> kStatuses = {
+    StatusStyle{EffectStatus::missing, dots(Colour::red, Symbol::circle, 10)},
+    StatusStyle{EffectStatus::equivalent, dots(Colour::purple, Symbol::diamond, 10)},
+    StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
+    StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};
+
+/// Held-out error with each candidate, with two standard errors to either side.
+Chart candidates_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart;
+  chart.id = "candidates";
+  chart.title = "Each candidate: error on data not seen with it";
+  chart.note =
+      "At the rung where it was judged last; bars reach two standard errors of the difference from that rung. Dashed: "
+      "the floor; dotted: the bare law.";
+  ChartAxis error = error_axis(result);
+  error.digits = 6;
+  chart.panels[0].axis = error;
+  for (const auto& [status, stroke] : kStatuses) {
+    std::vector<const EffectFinding*> own;
+    for (const EffectFinding& finding : d.effects) {
+      if (finding.status == status && std::isfinite(finding.held_out_rmse)) own.push_back(&finding);
+    }
+    if (own.empty()) continue;
+    std::stable_sort(own.begin(), own.end(), [](const EffectFinding* a, const EffectFinding* b) {
+      return a->held_out_rmse < b->held_out_rmse;
+    });
+    ChartLine line{std::string(to_string(status)), {}, {}, stroke};
+    line.bars = true;
+    for (const EffectFinding* finding : own) {
+      const double e = std::isfinite(finding->held_out_std_error) ? 2 * finding->held_out_std_error : 0;
+      line.x.push_back(static_cast<double>(chart.x.names.size()));
+      line.y.push_back(finding->held_out_rmse);
+      line.low.push_back(finding->held_out_rmse - e);
+      line.high.push_back(finding->held_out_rmse + e);
+      chart.x.names.push_back(finding->key);
+    }
+    chart.lines.push_back(std::move(line));
+  }
+  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, ""});
+  if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, ""});
+  chart.height = 420;
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> diagnosis_charts(const DiagnosedTraces& result) {
+  std::vector<Chart> charts;
+  const Diagnosis& d = result.diagnosis;
+  if (!d.ladder.empty()) charts.push_back(ladder_chart(result));
+  if (!d.where.empty()) charts.push_back(where_chart(d));
+  Chart candidates = candidates_chart(result);
+  if (!candidates.lines.empty()) charts.push_back(std::move(candidates));
+  return charts;
+}
+
+}  // namespace tribofit

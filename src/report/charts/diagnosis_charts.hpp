@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/chart.hpp"
+
+namespace tribofit {
+
+/// What a diagnosis is looked at by: the ladder of held-out errors with the floor, where the error above the floor goes
+/// before and after, and the error with each candidate.
+std::vector<Chart> diagnosis_charts(const DiagnosedTraces& result);
+
+}  // namespace tribofit

@@ -1,0 +1,354 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "report/charts/styles.hpp"
+#include "report/charts/trace_charts.hpp"
+#include "report/drawing.hpp"
+#include "report/measures.hpp"
+#include "report/numbers.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr std::size_t kSpeedBins = 48, kErrorBins = 80, kTimeBins = 400, kCurvePoints = 161, kBreakAways = 200;
+/// Rows and columns of the map of residuals.
+constexpr std::size_t kMapRows = 120, kMapColumns = 50;
+constexpr std::size_t kFewestPieces = 20;
+/// Published bound of the relative error ([D] 3.3).
+constexpr double kPublishedError = 0.08;
+
+/// A part of a slip in which the speed only rises or only falls; both where the block never sticks.
+enum class Branch { accelerating, decelerating, both };
+struct BranchStyle {
+  std::string_view name;
+  Stroke stroke;
+};
+constexpr std::array<BranchStyle, 3> kBranches = {
+    BranchStyle{"speeding up", {Colour::blue, Dash::solid, Symbol::triangle_up, 1.6, 5}},
+    BranchStyle{"slowing down", {Colour::red, Dash::dashed, Symbol::triangle_down, 1.6, 5}},
+    BranchStyle{"slip", {Colour::blue, Dash::solid, Symbol::circle, 1.6, 5}}};
+
+/// A slip cut at its fastest sample. Slips that never stop are cut into pieces instead, which stand for cycles.
+struct Piece {
+  Branch branch;
+  std::size_t begin, end;
+  int direction;
+};
+
+std::vector<Piece> pieces_of(const Identification& trace) {
+  std::vector<Piece> pieces;
+  const Segmentation& s = trace.segmentation;
+  const std::vector<double>& v = trace.motion.relative_velocity;
+  for (const Cycle& c : s.cycles) {
+    const std::size_t end = std::min(c.slip.end, v.size());
+    if (c.slip.begin >= end) continue;
+    if (s.kind == MotionKind::always_slipping) {
+      const std::size_t n = end - c.slip.begin, count = std::min(n, kFewestPieces);
+      for (std::size_t k = 0; k < count; ++k) {
+        pieces.push_back({Branch::both, c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count, c.direction});
+      }
+      continue;
+    }
+    const auto first = v.begin() + static_cast<std::ptrdiff_t>(c.slip.begin);
+    const auto last = v.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto fastest = std::max_element(first, last, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto peak = static_cast<std::size_t>(fastest - v.begin());
+    pieces.push_back({Branch::accelerating, c.slip.begin, peak, c.direction});
+    pieces.push_back({Branch::decelerating, peak, end, c.direction});
+  }
+  return pieces;
+}
+
+double speed_at(const Identification& trace, std::size_t i) {
+  return std::abs(trace.motion.relative_velocity[i]) / kMillimetre;
+}
+
+double fastest_of(const Identification& trace, const std::vector<Piece>& pieces) {
+  double fastest = 0;
+  for (const Piece& piece : pieces) {
+    for (std::size_t i = piece.begin; i < piece.end; ++i) fastest = std::max(fastest, speed_at(trace, i));
+  }
+  return fastest;
+}
+
+/// Bands of value(sample, direction) over speed, one for each branch that there is.
+template <class Value>
+std::vector<std::pair<Branch, DrawnBand>> bands_over_speed(const Identification& trace,
+                                                           const std::vector<Piece>& pieces, double fastest,
+                                                           Value value) {
+  std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, fastest, kSpeedBins));
+  for (const Piece& piece : pieces) {
+    BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
+    for (std::size_t i = piece.begin; i < piece.end; ++i) band.add(speed_at(trace, i), value(i, piece.direction));
+    band.end_cycle();
+  }
+  std::vector<std::pair<Branch, DrawnBand>> out;
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    DrawnBand band = bands[k].band();
+    if (!band.at.empty()) out.emplace_back(static_cast<Branch>(k), std::move(band));
+  }
+  return out;
+}
+
+ChartLine band_line(std::string name, const DrawnBand& band, Stroke stroke) {
+  return {std::move(name), band.at, band.middle, stroke, band.low, band.high};
+}
+
+/// What residuals are measured in: the floor, or what they are themselves where none is known.
+double unit_of(const Fit& fit) {
+  if (fit.floor.rmse > 0) return fit.floor.rmse;
+  return fit.error.rmse > 0 ? fit.error.rmse : 1;
+}
+
+/// Residuals of each model on both branches, switched with the line of their model.
+void add_residuals(const DrawnTrace& d, const std::vector<Piece>& pieces, double fastest, Chart& chart) {
+  const std::vector<double>& friction = d.trace.motion.friction;
+  for (std::size_t m = 0; m < d.models.size(); ++m) {
+    const std::vector<double>& prediction = d.predictions[m];
+    const double unit = unit_of(*d.models[m].fit);
+    const auto residual = [&](std::size_t i, int sign) { return sign * (friction[i] - prediction[i]) / unit; };
+    for (auto& [branch, band] : bands_over_speed(d.trace, pieces, fastest, residual)) {
+      Stroke stroke = kBranches[static_cast<std::size_t>(branch)].stroke;
+      stroke.width = 1.3;
+      if (m > 0) {  // one band is enough to look at
+        stroke.colour = model_stroke(m).colour;
+        stroke.dash = model_stroke(m).dash;
+        band.low.clear();
+        band.high.clear();
+      }
+      chart.lines.push_back(band_line(d.models[m].name, band, stroke));
+      chart.lines.back().panel = 1;
+      chart.lines.back().listed = false;
+    }
+  }
+}
+
+void add_break_aways(const DrawnTrace& d, Chart& chart) {
+  std::vector<double> levels;
+  for (const Cycle& c : d.trace.segmentation.cycles) {
+    if (std::isfinite(c.break_away_friction)) levels.push_back(c.break_away_friction);
+  }
+  if (levels.empty()) return;
+  ChartLine line{"break-away of each cycle", {}, {}, dots(Colour::grey, Symbol::diamond)};
+  for (const std::size_t k : drawn_samples(levels, d.bins(kBreakAways))) {
+    line.x.push_back(0);
+    line.y.push_back(levels[k]);
+  }
+  chart.lines.push_back(std::move(line));
+}
+
+/// The law of each fit with its band; those that no model beside the samples has can be switched on.
+void add_curves(const DrawnTrace& d, Chart& chart) {
+  for (const DrawnModel& drawn : d.curves) {
+    const auto beside =
+        std::find_if(d.models.begin(), d.models.end(), [&](const DrawnModel& model) { return model.fit == drawn.fit; });
+    const bool is_beside = beside != d.models.end();
+    const Curve curve = curve_of(*drawn.fit, kCurvePoints);
+    ChartLine line{
+        drawn.name,    curve.velocity,
+        curve.mu,      is_beside ? model_stroke(static_cast<std::size_t>(beside - d.models.begin())) : kPublished,
+        curve.lower95, curve.upper95};
+    for (double& v : line.x) v /= kMillimetre;
+    line.shown = is_beside;
+    chart.lines.push_back(std::move(line));
+  }
+}
+
+/// What no slip reaches is grey.
+void shade_beyond(const DrawnTrace& d, Chart& chart) {
+  double fastest = 0, slowest = std::numeric_limits<double>::infinity();
+  for (const DrawnModel& drawn : d.curves) {
+    fastest = std::max(fastest, drawn.fit->fastest / kMillimetre);
+    slowest = std::min(slowest, drawn.fit->slowest / kMillimetre);
+  }
+  if (!(fastest > 0)) return;
+  const double right = 1.12 * fastest;
+  chart.x.low = -0.02 * right;
+  chart.x.high = right;
+  chart.stretches.push_back({fastest, 1.3 * fastest, Shade::beyond});
+  if (slowest > 0 && slowest < fastest) chart.stretches.push_back({-fastest, slowest, Shade::beyond});
+}
+
+Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fastest) {
+  Chart chart;
+  chart.id = d.id + "-law";
+  chart.title = "Friction over relative velocity";
+  chart.note =
+      "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what each law "
+      "leaves, in units of the floor of noise and scatter.";
+  chart.height = 560;
+  chart.x = {"relative velocity |v_{r}|", "mm/s"};
+  chart.panels = {panel(friction_axis(d.trace.motion), 1.35)};
+  const std::vector<double>& friction = d.trace.motion.friction;
+  for (const auto& [branch, band] :
+       bands_over_speed(d.trace, pieces, fastest, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
+    const BranchStyle& style = kBranches[static_cast<std::size_t>(branch)];
+    chart.lines.push_back(band_line("measured, " + std::string(style.name), band, style.stroke));
+  }
+  add_break_aways(d, chart);
+  add_curves(d, chart);
+  shade_beyond(d, chart);
+  if (d.models.empty()) return chart;
+  chart.panels.push_back(panel({"residual / floor", "1"}));
+  add_residuals(d, pieces, fastest, chart);
+  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
+  return chart;
+}
+
+/// Relative error ([D] Eq 5): the mean of each bin as a line, its largest as points.
+class ErrorChart {
+ public:
+  ErrorChart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
+    chart_.id = d.id + "-" + id;
+    chart_.title = title;
+    chart_.note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.";
+    chart_.x = std::move(x);
+    chart_.panels[0].axis = {"relative error", "1"};
+    chart_.panels[0].axis.from_zero = true;
+    chart_.marks.push_back({kPublishedError, false, Dash::dashed, "0.08"});
+    chart_.half = true;
+  }
+  void add(const std::string& name, std::size_t k, const DrawnExtremes& errors) {
+    constexpr std::array<Colour, 3> kColours = {Colour::blue, Colour::red, Colour::green};
+    constexpr std::array<Symbol, 3> kSymbols = {Symbol::triangle_up, Symbol::square, Symbol::cross};
+    const Colour colour = kColours[k % kColours.size()];
+    const bool shown = k < 2;
+    chart_.lines.push_back({name + ", mean", errors.at, errors.mean, {colour, model_stroke(k).dash}});
+    chart_.lines.back().shown = shown;
+    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kSymbols[k % 3], 4)});
+    chart_.lines.back().shown = shown;
+  }
+  Chart chart() const { return chart_; }
+
+ private:
+  Chart chart_;
+};
+
+/// Mean residual in units of the floor over cycles (neighbours together where there are many) and the phase of the
+/// slip, from break-away (0) to re-stick (1); NaN where nothing is.
+HeatMap residual_map(const DrawnTrace& d) {
+  const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
+  const std::vector<double>& prediction = d.predictions[0];
+  const double floor = unit_of(*d.models[0].fit);
+  const std::size_t rows = std::min(kMapRows, cycles.size());
+  HeatMap map;
+  map.z.assign(rows, std::vector<double>(kMapColumns, 0.0));
+  auto count = map.z;
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    const Cycle& cycle = cycles[c];
+    if (!cycle.slip_complete) continue;
+    const std::size_t row = c * rows / cycles.size();
+    for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, prediction.size()); ++i) {
+      const double phase = static_cast<double>(i - cycle.slip.begin) / static_cast<double>(cycle.slip.size());
+      const auto column = std::min(kMapColumns - 1, static_cast<std::size_t>(phase * static_cast<double>(kMapColumns)));
+      if (!std::isfinite(prediction[i])) continue;
+      map.z[row][column] += cycle.direction * (d.trace.motion.friction[i] - prediction[i]) / floor;
+      count[row][column] += 1;
+    }
+  }
+  std::vector<double> sizes;
+  for (std::size_t row = 0; row < rows; ++row) {
+    map.y.push_back(static_cast<double>((row * cycles.size() + rows - 1) / rows + 1));
+    for (std::size_t k = 0; k < kMapColumns; ++k) {
+      map.z[row][k] /= count[row][k];
+      if (std::isfinite(map.z[row][k])) sizes.push_back(std::abs(map.z[row][k]));
+    }
+  }
+  for (std::size_t k = 0; k < kMapColumns; ++k) {
+    map.x.push_back((static_cast<double>(k) + 0.5) / static_cast<double>(kMapColumns));
+  }
+  std::sort(sizes.begin(), sizes.end());
+  const double most =
+      sizes.empty() ? 1 : std::max(1.0, sizes[static_cast<std::size_t>(0.995 * static_cast<double>(sizes.size() - 1))]);
+  map.low = -most;
+  map.high = most;
+  map.quantity = "residual / floor";
+  map.unit = "1";
+  return map;
+}
+
+Chart map_chart(const DrawnTrace& d) {
+  Chart chart;
+  chart.id = d.id + "-map";
+  chart.title = "What the law leaves over cycle and phase of the slip";
+  chart.note = "Mean residual of " + d.models[0].name +
+               " in units of the floor. Stripes along the slip: the law has the wrong shape. Changes from cycle to "
+               "cycle: something moves with time or angle.";
+  chart.x = {"phase of the slip, 0 break-away to 1 re-stick", "1"};
+  chart.panels[0].axis = {"cycle", ""};
+  chart.map = residual_map(d);
+  chart.height = 360;
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> law_charts(const DrawnTrace& d) {
+  const std::vector<Piece> pieces = pieces_of(d.trace);
+  const double fastest = fastest_of(d.trace, pieces);
+  if (!(fastest > 0)) return {};
+  return {law_chart(d, pieces, fastest)};
+}
+
+std::vector<Chart> error_charts(const DrawnTrace& d) {
+  const std::vector<Piece> pieces = pieces_of(d.trace);
+  const double fastest = fastest_of(d.trace, pieces);
+  if (!(fastest > 0) || d.models.empty()) return {};
+  const Motion& m = d.trace.motion;
+  ErrorChart over_speed(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"});
+  ErrorChart over_time(d, "error-time", "Relative error over time", {"time", "s"});
+  for (std::size_t k = 0; k < d.models.size(); ++k) {
+    ExtremesInBins speed(0, fastest, kErrorBins), time(m.time.front(), m.time.back(), kTimeBins);
+    for (const Piece& piece : pieces) {
+      for (std::size_t i = piece.begin; i < piece.end; ++i) {
+        const double error = std::abs((m.friction[i] - d.predictions[k][i]) / m.friction[i]);
+        speed.add(speed_at(d.trace, i), error);
+        time.add(m.time[i], error);
+      }
+    }
+    over_speed.add(d.models[k].name, k, speed.result());
+    over_time.add(d.models[k].name, k, time.result());
+  }
+  std::vector<Chart> charts = {over_speed.chart(), over_time.chart()};
+  if (d.trace.segmentation.kind == MotionKind::stick_slip) charts.push_back(map_chart(d));
+  return charts;
+}
+
+std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const std::string& id) {
+  std::vector<Chart> charts;
+  for (const FitParameter& p : fit.parameters) {
+    if (p.profile.empty()) continue;
+    const std::string name = p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
+    Chart chart;
+    chart.id = id + "-profile-" + name;
+    std::replace_if(
+        chart.id.begin(), chart.id.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '-');
+    chart.title = "Profile likelihood of " + name;
+    chart.note =
+        "Rise of the squares with this parameter held and all others refitted, in units of the rise at which "
+        "the 95 % interval ends. Dotted: best value. A parabola means that the interval from the curvature is "
+        "right.";
+    chart.x = {name, shown_unit(p, motion)};
+    chart.x.digits = 9;
+    chart.panels[0].axis = {"rise of the squares / that of the 95 % interval", "1"};
+    chart.panels[0].axis.from_zero = true;
+    ChartLine line{"profile", {}, {}, {Colour::blue, Dash::solid, Symbol::circle}};
+    for (const ProfilePoint& point : p.profile) {
+      line.x.push_back(shown(p, point.value));
+      line.y.push_back(point.rise);
+    }
+    chart.lines.push_back(std::move(line));
+    chart.marks.push_back({1, false, Dash::dashed, "95 %"});
+    chart.marks.push_back({shown(p, p.value), true, Dash::dotted, ""});
+    chart.height = 280;
+    chart.half = true;
+    charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,286 @@
+#include "report/charts/trace_charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "report/charts/styles.hpp"
+#include "report/drawing.hpp"
+#include "report/numbers.hpp"
+#include "report/page_series.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kZoom = 5e-3;  // s, to either side of a break-away or re-stick
+/// Stretches into which series are cut for drawing.
+constexpr std::size_t kRecordBins = 1200, kCycleBins = 1200, kZoomBins = 300, kMeasureBins = 200, kLineBins = 800;
+constexpr std::size_t kShownCycles = 3;
+
+/// What the velocity charts show: v_b where the block moves against a disc of known speed, else v_r.
+class VelocityChannel {
+ public:
+  explicit VelocityChannel(const Motion& motion) : motion_(motion) {
+    of_block_ = motion.velocity_kind != VelocityKind::fixed_block &&
+                (!motion.disc_velocity.empty() || motion.constant_disc_velocity != 0);
+  }
+  bool of_block() const { return of_block_; }
+  double operator[](std::size_t i) const {
+    const double v_r = motion_.relative_velocity[i];
+    return (of_block_ ? motion_.disc_velocity_at(i) - v_r : v_r) / kMillimetre;
+  }
+
+ private:
+  const Motion& motion_;
+  bool of_block_ = false;
+};
+
+/// Samples [begin, end) that are drawn, and how their times are shown.
+struct Window {
+  std::size_t begin, end, bins;
+  double origin = 0, unit = 1;  ///< of the abscissa [s]
+};
+
+template <class Channel>
+ChartLine line_of(const DrawnTrace& d, const Window& w, std::string name, const Channel& channel, Stroke stroke,
+                  std::size_t panel = 0) {
+  std::vector<double> values(w.end - w.begin);
+  for (std::size_t i = w.begin; i < w.end; ++i) values[i - w.begin] = channel[i];
+  ChartLine line{std::move(name), {}, {}, stroke};
+  line.panel = panel;
+  for (const std::size_t k : drawn_samples(values, w.bins)) {
+    line.x.push_back((d.trace.motion.time[w.begin + k] - w.origin) / w.unit);
+    line.y.push_back(values[k]);
+  }
+  return line;
+}
+
+ChartLine disc_line(const DrawnTrace& d, const Window& w) {
+  const Motion& motion = d.trace.motion;
+  const std::string name = "ω r of the disc";
+  if (!motion.disc_velocity.empty()) {
+    std::vector<double> level = motion.disc_velocity;
+    for (double& v : level) v /= kMillimetre;
+    return line_of(d, w, name, level, kDisc, 1);
+  }
+  const double level = motion.constant_disc_velocity / kMillimetre;
+  const auto shown = [&](std::size_t i) { return (motion.time[i] - w.origin) / w.unit; };
+  ChartLine line{name, {shown(w.begin), shown(w.end - 1)}, {level, level}, kDisc};
+  line.panel = 1;
+  return line;
+}
+
+/// Friction with its models above, velocity with the disc below.
+Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
+  const Motion& motion = d.trace.motion;
+  const VelocityChannel velocity(motion);
+  Chart chart;
+  chart.x = {"time", "s"};
+  chart.x.digits = kTimeDigits;
+  chart.panels = {panel(friction_axis(motion), 1.3), panel({velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"})};
+  chart.lines.push_back(line_of(d, w, "measured", motion.friction, kMeasured));
+  for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
+    chart.lines.push_back(line_of(d, w, d.models[k].name, d.predictions[k], model_stroke(k)));
+    chart.lines.back().shown = k < 2;
+  }
+  chart.lines.push_back(line_of(d, w, "measured", velocity, kMeasured, 1));
+  chart.lines.back().listed = false;
+  if (velocity.of_block()) chart.lines.push_back(disc_line(d, w));
+  return chart;
+}
+
+/// The first of three cycles in a row that are all there, as near to the middle of the record as they come; else the
+/// middle ones.
+std::size_t first_shown(const std::vector<Cycle>& cycles) {
+  const std::size_t last = cycles.size() - kShownCycles;
+  const auto complete = [&](std::size_t k) {
+    return std::all_of(cycles.begin() + static_cast<std::ptrdiff_t>(k),
+                       cycles.begin() + static_cast<std::ptrdiff_t>(k + kShownCycles),
+                       [](const Cycle& c) { return c.stick_complete && c.slip_complete; });
+  };
+  const std::size_t middle = last / 2;
+  for (std::size_t off = 0; off <= last; ++off) {
+    if (middle + off <= last && complete(middle + off)) return middle + off;
+    if (off <= middle && complete(middle - off)) return middle - off;
+  }
+  return middle;
+}
+
+void shade_phases(const Motion& motion, const Cycle& c, Chart& chart) {
+  if (c.stick.size() > 0) {
+    chart.stretches.push_back({motion.time[c.stick.begin], c.break_away_time, Shade::stick});
+  }
+  const double end = std::isfinite(c.restick_time) && c.slip_complete
+                         ? c.restick_time
+                         : motion.time[std::min(c.slip.end, motion.size() - 1)];
+  if (c.slip.size() > 0) chart.stretches.push_back({c.break_away_time, end, Shade::slip});
+}
+
+/// Every sample within 5 ms of an event, with the event at zero.
+std::vector<Chart> zoom_chart(const DrawnTrace& d, double at, const char* id, const char* title) {
+  const std::vector<double>& time = d.trace.motion.time;
+  const auto index_at = [&](double t) {
+    return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), t) - time.begin());
+  };
+  const std::size_t begin = index_at(at - kZoom), end = index_at(at + kZoom);
+  if (end < begin + 2) return {};
+  Chart chart = window_chart(d, {begin, end, d.bins(kZoomBins), at, kMillisecond}, true);
+  chart.id = d.id + "-" + id;
+  chart.title = title;
+  chart.note = "±5 ms about " + significant(at, 6) + " s.";
+  chart.x = {"time from the event", "ms"};
+  chart.x.digits = kTimeDigits;
+  chart.marks.push_back({0, true, Dash::dotted, ""});
+  chart.height = 400;
+  chart.half = true;
+  return {chart};
+}
+
+/// Amplitudes of v_r up to twelve times the stick-slip frequency, or the whole band where nothing repeats.
+std::vector<Chart> spectrum_chart(const DrawnTrace& d) {
+  constexpr double kHarmonics = 12, kSamplesPerHarmonic = 4;
+  const Motion& motion = d.trace.motion;
+  const std::vector<double>& v_r = motion.relative_velocity;
+  if (v_r.size() < 16) return {};
+  const double peak = d.trace.spectral_peak.frequency;
+  // Means over neighbours do for what is far below the rate, and cost less.
+  const double top = peak > 0 ? std::min(kHarmonics * peak, 0.5 / motion.step) : 0.5 / motion.step;
+  const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerHarmonic * top * motion.step)));
+  std::vector<double> reduced(v_r.size() / every);
+  for (std::size_t i = 0; i < reduced.size(); ++i) {
+    double sum = 0;
+    for (std::size_t k = 0; k < every; ++k) sum += v_r[i * every + k];
+    reduced[i] = sum / static_cast<double>(every) / kMillimetre;
+  }
+  if (reduced.size() < 8) return {};
+  const Spectrum spectrum = amplitude_spectrum(reduced, motion.step * static_cast<double>(every));
+  std::vector<double> amplitude = spectrum.amplitude;
+  amplitude.resize(std::min(amplitude.size(), static_cast<std::size_t>(top / spectrum.bin_width) + 1));
+  Chart chart;
+  chart.id = d.id + "-spectrum";
+  chart.title = "Spectrum of the relative velocity";
+  chart.note = "Hann window over the whole record.";
+  if (peak > 0) {
+    chart.note = "Strongest line at " + significant(peak, 4) + " Hz (dotted). " + chart.note;
+    chart.marks.push_back({peak, true, Dash::dotted, ""});
+  }
+  chart.x = {"frequency", "Hz"};
+  chart.panels[0].axis = {"amplitude of v_{r}", "mm/s"};
+  chart.panels[0].axis.from_zero = true;
+  ChartLine line{"amplitude", {}, {}, kMeasured};
+  for (const std::size_t k : drawn_samples(amplitude, d.bins(kLineBins))) {
+    line.x.push_back(static_cast<double>(k) * spectrum.bin_width);
+    line.y.push_back(amplitude[k]);
+  }
+  chart.lines.push_back(std::move(line));
+  chart.height = 290;
+  chart.half = true;
+  return {chart};
+}
+
+/// Measures of each cycle as points over time.
+class CycleChart {
+ public:
+  CycleChart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis) : d_(d) {
+    chart_.id = d.id + "-" + id;
+    chart_.title = title;
+    chart_.x = {"time of break-away", "s"};
+    chart_.x.digits = kTimeDigits;
+    chart_.panels[0].axis = std::move(axis);
+    chart_.height = 290;
+    chart_.half = true;
+  }
+  CycleChart& add(const char* name, double Cycle::*which, double unit, Colour colour, Symbol symbol) {
+    const std::vector<Cycle>& cycles = d_.trace.segmentation.cycles;
+    std::vector<double> values;
+    for (const Cycle& c : cycles) values.push_back(c.*which / unit);
+    ChartLine line{name, {}, {}, dots(colour, symbol)};
+    for (const std::size_t k : drawn_samples(values, d_.bins(kMeasureBins))) {
+      line.x.push_back(cycles[k].break_away_time);
+      line.y.push_back(values[k]);
+    }
+    chart_.lines.push_back(std::move(line));
+    return *this;
+  }
+  Chart chart() const { return chart_; }
+
+ private:
+  const DrawnTrace& d_;
+  Chart chart_;
+};
+
+}  // namespace
+
+DrawnTrace::DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside,
+                       const std::vector<DrawnModel>& laws, std::string prefix, double part)
+    : trace(of), models(beside), curves(laws), id(std::move(prefix)), share(part) {
+  for (const DrawnModel& model : models) predictions.push_back(predict(*model.fit, trace.motion, trace.segmentation));
+}
+
+std::size_t DrawnTrace::bins(std::size_t whole) const {
+  constexpr std::size_t kFewest = 50;
+  return std::max(kFewest, static_cast<std::size_t>(share * static_cast<double>(whole)));
+}
+
+ChartAxis friction_axis(const Motion& motion) {
+  const bool force = friction_unit(motion) == "N";
+  return {force ? "friction force" : "friction μ", force ? "N" : "1"};
+}
+
+std::vector<Chart> cycle_charts(const DrawnTrace& d) {
+  const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
+  const Motion& motion = d.trace.motion;
+  if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < kShownCycles) return {};
+  const std::size_t first = first_shown(cycles);
+  const Cycle& head = cycles[first];
+  const Cycle& tail = cycles[first + kShownCycles - 1];
+  const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;
+  const std::size_t margin = (tail.slip.end - begin) / 20;  // a little of the next stick
+  const std::size_t end = std::min(motion.size(), tail.slip.end + margin);
+  if (end < begin + 2) return {};
+  Chart chart = window_chart(d, {begin, end, d.bins(kCycleBins)}, true);
+  chart.id = d.id + "-cycles";
+  chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
+  chart.note = "Cycles " + std::to_string(first + 1) + " to " + std::to_string(first + kShownCycles) +
+               ". In stick the spring sets friction, so the law speaks in slip only.";
+  chart.height = 470;
+  for (std::size_t k = first; k < first + kShownCycles; ++k) shade_phases(motion, cycles[k], chart);
+  std::vector<Chart> charts = {chart};
+  const auto append = [&](const std::vector<Chart>& more) { charts.insert(charts.end(), more.begin(), more.end()); };
+  const Cycle& shown = cycles[first + kShownCycles / 2];
+  if (shown.stick.size() > 0) append(zoom_chart(d, shown.break_away_time, "break-away", "Break-away"));
+  if (shown.slip_complete) append(zoom_chart(d, shown.restick_time, "restick", "Re-stick"));
+  return charts;
+}
+
+Chart record_chart(const DrawnTrace& d) {
+  Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(kRecordBins)}, false);
+  chart.id = d.id + "-record";
+  chart.title = "The whole record";
+  chart.note = "Every stretch is drawn from its least to its largest sample, so that no peak is lost.";
+  chart.height = 400;
+  return chart;
+}
+
+std::vector<Chart> measure_charts(const DrawnTrace& d) {
+  std::vector<Chart> charts;
+  if (d.trace.segmentation.cycles.size() > 1) {
+    charts.push_back(CycleChart(d, "levels", "Friction levels of each cycle", friction_axis(d.trace.motion))
+                         .add("break-away", &Cycle::break_away_friction, 1, Colour::blue, Symbol::circle)
+                         .add("largest in stick", &Cycle::stick_maximum, 1, Colour::red, Symbol::triangle_up)
+                         .add("least in slip", &Cycle::slip_minimum, 1, Colour::green, Symbol::triangle_down)
+                         .chart());
+    charts.push_back(CycleChart(d, "peaks", "Fastest of each slip", {"peak |v_{r}|", "mm/s"})
+                         .add("peak velocity", &Cycle::peak_velocity, kMillimetre, Colour::blue, Symbol::circle)
+                         .chart());
+    charts.push_back(CycleChart(d, "times", "Durations of each cycle", {"duration", "ms"})
+                         .add("stick", &Cycle::stick_time, kMillisecond, Colour::blue, Symbol::circle)
+                         .add("slip", &Cycle::slip_time, kMillisecond, Colour::red, Symbol::triangle_up)
+                         .add("period", &Cycle::period, kMillisecond, Colour::green, Symbol::square)
+                         .chart());
+  }
+  for (Chart& chart : spectrum_chart(d)) charts.push_back(std::move(chart));
+  return charts;
+}
+
+}  // namespace tribofit

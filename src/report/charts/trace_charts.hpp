@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/chart.hpp"
+
+namespace tribofit {
+
+/// A fit that is drawn, as the legend names it.
+struct DrawnModel {
+  std::string name;
+  const Fit* fit;
+};
+
+/// What the charts of one trace share: its samples, and what each model says of every one of them.
+struct DrawnTrace {
+  const Identification& trace;
+  const std::vector<DrawnModel>& models;         ///< beside the samples, the one to look at first
+  const std::vector<DrawnModel>& curves;         ///< whose law is drawn over speed: the models, and others
+  std::string id;                                ///< begins the ids of the charts
+  double share;                                  ///< part of the points of a page that this trace may have
+  std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
+
+  DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside, const std::vector<DrawnModel>& laws,
+             std::string prefix, double part = 1);
+  /// Points that a series of this trace may have where a trace alone has `whole`.
+  std::size_t bins(std::size_t whole) const;
+};
+
+/// Three cycles with stick and slip shaded, and what happens within 5 ms of a break-away and a re-stick; none where
+/// there are no three cycles. All series are reduced so that no peak is lost.
+std::vector<Chart> cycle_charts(const DrawnTrace& drawn);
+/// The whole record.
+Chart record_chart(const DrawnTrace& drawn);
+/// Friction levels, peak velocities and durations of each cycle, and the spectrum of v_r.
+std::vector<Chart> measure_charts(const DrawnTrace& drawn);
+
+/// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the floor.
+std::vector<Chart> law_charts(const DrawnTrace& drawn);
+/// Relative errors ([D] Eq 5) over speed and time, and the map of residuals over cycle and phase of the slip.
+std::vector<Chart> error_charts(const DrawnTrace& drawn);
+/// Profile likelihoods of the parameters of a fit, where they were asked for.
+std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const std::string& id);
+
+/// Axis of friction levels.
+ChartAxis friction_axis(const Motion& motion);
+
+}  // namespace tribofit
