@@ -73,9 +73,9 @@ struct DiagnoseOptions {
 struct DiagnosedTraces {
   std::vector<Identification> traces;  ///< as given; their `fits` are of each trace alone and empty where several are
                                        ///< diagnosed together
-  std::vector<Fit> fits;  ///< the bare laws, then the last rung of the ladder where it holds more; all traces together
-  std::size_t best = 0;      ///< index in `fits`
-  std::vector<Fit> rungs;    ///< the models of the ladder, the base law first
+  std::vector<Fit> fits;   ///< the bare laws, then the last rung of the ladder where it holds more; all traces together
+  std::size_t best = 0;    ///< index in `fits`
+  std::vector<Fit> rungs;  ///< the models of the ladder, the base law first
   Diagnosis diagnosis;
   bool analysed = true;  ///< false: some trace cannot carry the analysis, its warnings say why
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "tribofit/friction/effect_pairs.hpp"
@@ -93,13 +92,10 @@ std::size_t form_of(const Ladder& ladder, const std::vector<Candidate>& all, std
   return effect;
 }
 
-/// Standard error of a held-out RMSE beside that of the model before, from the squares of each cycle with both: what
-/// both see alike does not count. samples: behind the mean square.
-double paired_std_error(std::span<const double> before, std::span<const double> after, double samples, double rmse) {
-  if (before.size() != after.size() || before.size() < 3 || !(rmse > 0)) return kNaN;
-  std::vector<double> falls(before.size());
-  for (std::size_t c = 0; c < falls.size(); ++c) falls[c] = before[c] - after[c];
-  return mean_error(falls).std_error * static_cast<double>(falls.size()) / samples / (2 * rmse);
+/// Standard error of a held-out RMSE from the squares of each cycle; samples: behind their mean.
+double std_error_of_rmse(std::span<const double> squares, double samples, double rmse) {
+  if (squares.size() < 3 || !(rmse > 0)) return kNaN;
+  return mean_error(squares).std_error * static_cast<double>(squares.size()) / samples / (2 * rmse);
 }
 
 /// The user has not thought of it already.
@@ -145,8 +141,8 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       const double in_slip = last.judged->fall - in_stick(last.judged->trial) + in_stick(ladder.steps[last.step].trial);
       const double squared = std::max(0.0, before * before - in_slip / bench.fine.samples);
       finding.held_out_rmse = std::sqrt(squared);
-      finding.held_out_std_error = paired_std_error(ladder.steps[last.step].trial.held_out, last.judged->trial.held_out,
-                                                    bench.fine.samples, finding.held_out_rmse);
+      finding.held_out_std_error =
+          std_error_of_rmse(last.judged->trial.held_out, bench.fine.samples, finding.held_out_rmse);
       finding.p_value = last.judged->p_value;
       finding.parameters = parameters_of(last.judged->trial, finding.key);
       finding.error_reduction = std::clamp((before * before - squared) / above, -1.0, 1.0);
@@ -170,8 +166,7 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       if (*step.added != k) continue;
       finding.status = EffectStatus::missing;
       finding.held_out_rmse = fits[s].error.held_out_rmse;
-      const double counts = std::accumulate(fits[s].cycle_counts.begin(), fits[s].cycle_counts.end(), 0.0);
-      finding.held_out_std_error = paired_std_error(fits[s - 1].cycle_squares, fits[s].cycle_squares, counts, finding.held_out_rmse);
+      finding.held_out_std_error = held_out_std_error(fits[s]);
       const double before = fits[s - 1].error.held_out_rmse;
       finding.error_reduction = std::clamp((before * before - std::pow(finding.held_out_rmse, 2)) / above, -1.0, 1.0);
       finding.parameters = parameters_of(fits.back(), finding.key);

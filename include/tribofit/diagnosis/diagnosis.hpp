@@ -56,8 +56,7 @@ struct EffectFinding {
   double p_value = 1;          ///< that it takes away nothing, corrected for the number of candidates; NaN: not fitted
   std::vector<FitParameter> parameters;  ///< of the last model that held it; empty where not fitted
   std::string reason;                    ///< one sentence
-  double held_out_std_error = std::numeric_limits<double>::quiet_NaN();  ///< of held_out_rmse, from cycle to cycle,
-                                                                         ///< beside the model that it was tried on
+  double held_out_std_error = std::numeric_limits<double>::quiet_NaN();  ///< of held_out_rmse, from cycle to cycle
 };
 
 /// One rung of the ladder: the model after an effect was added.

@@ -90,18 +90,19 @@ constexpr std::array<StatusStyle, 4> kStatuses = {
     StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
     StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};
 
-/// Held-out error with each candidate, with two standard errors to either side.
+/// Held-out error with each candidate.
 Chart candidates_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart;
   chart.id = "candidates";
   chart.title = "Each candidate: error on data not seen with it";
   chart.note =
-      "At the rung where it was judged last; bars reach two standard errors of the difference from that rung. Dashed: "
-      "the floor; dotted: the bare law.";
+      "At the rung where it was judged last; bars are one standard error, from cycle to cycle. Dashed: the "
+      "floor; dotted: the bare law.";
   ChartAxis error = error_axis(result);
   error.digits = 6;
   chart.panels[0].axis = error;
+  chart.panels[0].axis.from_zero = true;
   for (const auto& [status, stroke] : kStatuses) {
     std::vector<const EffectFinding*> own;
     for (const EffectFinding& finding : d.effects) {
@@ -114,7 +115,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     ChartLine line{std::string(to_string(status)), {}, {}, stroke};
     line.bars = true;
     for (const EffectFinding* finding : own) {
-      const double e = std::isfinite(finding->held_out_std_error) ? 2 * finding->held_out_std_error : 0;
+      const double e = std::isfinite(finding->held_out_std_error) ? finding->held_out_std_error : 0;
       line.x.push_back(static_cast<double>(chart.x.names.size()));
       line.y.push_back(finding->held_out_rmse);
       line.low.push_back(finding->held_out_rmse - e);

@@ -334,7 +334,7 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
         "right.";
     chart.x = {name, shown_unit(p, motion)};
     chart.x.digits = 9;
-    chart.panels[0].axis = {"rise of the squares / that of the 95 % interval", "1"};
+    chart.panels[0].axis = {"rise / that of 95 %", "1"};
     chart.panels[0].axis.from_zero = true;
     ChartLine line{"profile", {}, {}, {Colour::blue, Dash::solid, Symbol::circle}};
     for (const ProfilePoint& point : p.profile) {

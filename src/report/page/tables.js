@@ -23,7 +23,8 @@ function number(value, digits = 4) {
 
 /** Text of the program as a page has it. */
 function prose(text) {
-  return text.replace(/\+\/?-/g, "±").replace(/^[a-z]/, (letter) => letter.toUpperCase());
+  const words = text.replace(/\+\/?-/g, "±");
+  return words.replace(/^[a-z](?=[a-z'-]*( [^=]|$))/, (letter) => letter.toUpperCase()); // but "mu_s" and "mu = ..."
 }
 
 /** A table; columns named in `numeric` are set to the right. */
@@ -39,7 +40,7 @@ function table(caption, header, rows, numeric = []) {
 /** Facts as a list of names and values. */
 function facts(pairs) {
   return make("dl", { className: "facts" }, ...pairs.filter(([, value]) => value)
-    .map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value))));
+    .map(([name, value]) => make("div", {}, make("dt", {}, prose(name)), make("dd", {}, prose(value)))));
 }
 
 function save(name, content) {
