@@ -58,14 +58,14 @@ async function checkCharts(page, least) {
     figure.querySelector("details.numbers").open = true;
     const axes = Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)).map((key) => layout[key]);
     return { id: plot.id, title: figure.querySelector("h3").textContent, points: plot.data.length,
-      axes: axes.map((axis) => [axis.type, axis.title.text]), lines: plot.querySelectorAll("path").length };
+      axes: axes.map((axis) => [Boolean(axis.ticktext), axis.title.text]), lines: plot.querySelectorAll("path").length };
   }));
   assert.ok(charts.length >= least, `${charts.length} charts`);
   assert.equal(new Set(charts.map((chart) => chart.id)).size, charts.length, "ids are unique");
   for (const chart of charts) {
     assert.ok(chart.title && chart.points > 0 && chart.lines > 0, chart.id);
-    for (const [type, title] of chart.axes) {
-      if (type !== "category" && title !== "cycle") assert.match(title, /\[.+\]$/, `axis of ${chart.id}`);
+    for (const [named, title] of chart.axes) {
+      if (!named && title !== "cycle") assert.match(title, /\[.+\]$/, `axis of ${chart.id}`);
     }
   }
   await page.waitForFunction(() => [...document.querySelectorAll("details.numbers")]
@@ -129,7 +129,7 @@ async function checkSaving(page) {
   assert.deepEqual([...png.subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
   assert.equal(png.readUInt32BE(16), 2700);
   const csv = (await saved("figure:has(#t1-spectrum) details button")).toString();
-  assert.match(csv, /^line,frequency_hz,amplitude_mm_s\namplitude,0,/);
+  assert.match(csv, /^line,frequency \[Hz\],quantity,value,low,high\namplitude,0,amplitude of v_r \[mm\/s\],/);
 }
 
 async function checkNames(page) {

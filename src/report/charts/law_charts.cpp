@@ -230,10 +230,10 @@ class ErrorChart {
 
 /// Mean residual in units of the floor over cycles (neighbours together where there are many) and the phase of the
 /// slip, from break-away (0) to re-stick (1); NaN where nothing is.
-HeatMap residual_map(const DrawnTrace& d) {
+HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
-  const std::vector<double>& prediction = d.predictions[0];
-  const double floor = unit_of(*d.models[0].fit);
+  const std::vector<double>& prediction = d.predictions[model];
+  const double floor = unit_of(*d.models[model].fit);
   const std::size_t rows = std::min(kMapRows, cycles.size());
   HeatMap map;
   map.z.assign(rows, std::vector<double>(kMapColumns, 0.0));
@@ -271,17 +271,19 @@ HeatMap residual_map(const DrawnTrace& d) {
   return map;
 }
 
-Chart map_chart(const DrawnTrace& d) {
+Chart map_chart(const DrawnTrace& d, std::size_t model) {
   Chart chart;
-  chart.id = d.id + "-map";
-  chart.title = "What the law leaves over cycle and phase of the slip";
-  chart.note = "Mean residual of " + d.models[0].name +
-               " in units of the floor. Stripes along the slip: the law has the wrong shape. Changes from cycle to "
-               "cycle: something moves with time or angle.";
+  chart.id = d.id + "-map-" + std::to_string(model + 1);
+  chart.title = "What " + d.models[model].name + " leaves over cycle and phase of the slip";
+  chart.note =
+      "Mean residual in units of the floor. Upright stripes: the law has the wrong shape. Changes from cycle "
+      "to "
+      "cycle: something moves with time or angle.";
   chart.x = {"phase of the slip, 0 break-away to 1 re-stick", "1"};
   chart.panels[0].axis = {"cycle", ""};
-  chart.map = residual_map(d);
+  chart.map = residual_map(d, model);
   chart.height = 360;
+  chart.half = true;
   return chart;
 }
 
@@ -314,7 +316,9 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
     over_time.add(d.models[k].name, k, time.result());
   }
   std::vector<Chart> charts = {over_speed.chart(), over_time.chart()};
-  if (d.trace.segmentation.kind == MotionKind::stick_slip) charts.push_back(map_chart(d));
+  if (d.trace.segmentation.kind == MotionKind::stick_slip) {
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k));
+  }
   return charts;
 }
 
