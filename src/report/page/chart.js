@@ -366,11 +366,15 @@ function addTools(item, title) {
     button("PNG", "Save as PNG", () => savePicture(item, "png")));
 }
 
-// On paper charts are as wide as the page.
+// On paper charts are as wide as the page, and folded tables are open.
+let unfolded = [];
 addEventListener("beforeprint", () => {
+  unfolded = [...document.querySelectorAll("details:not(.numbers):not([open])")];
+  for (const details of unfolded) details.open = true;
   while (waiting.length > 0) draw(waiting[0]);
   for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: 640, autosize: false });
 });
 addEventListener("afterprint", () => {
+  for (const details of unfolded) details.open = false;
   for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: null, autosize: true });
 });
