@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "campaign_cells.hpp"
 #include "csv_cells.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
@@ -91,10 +92,25 @@ std::string signed_text(double value) {
   return std::abs(value) < 100 ? fmt::format("{:+.1f}", value) : fmt::format("{:+.0f}", value);
 }
 
-std::string values_table(const ComparisonReport& report, std::span<const PooledGroup> groups, const Style& style) {
-  Table table({"conditions", "value", "law", "earlier", "joint fit", "difference", "std errors", "published protocol",
-               "difference"},
-              {true, true, true});
+std::string preference_text(const LawPreference& p) {
+  const std::string chance =
+      std::isfinite(p.p_value) ? (p.p_value < 1e-4 ? ", p < 0.0001" : fmt::format(", p {:.2g}", p.p_value)) : "";
+  return fmt::format("{} in {} of {} run{}; held-out error of {} {:.3f} times as large{}", p.better, p.better_in,
+                     p.runs, p.runs == 1 ? "" : "s", p.other, p.ratio, chance);
+}
+
+std::string text_of(const CellRows& cells, const Style& style) {
+  Table table(cells.header, {true, true, true});
+  for (const std::vector<std::string>& row : cells.rows) table.add(row);
+  return table.text(2, style.bold, style.off);
+}
+
+}  // namespace
+
+CellRows comparison_cells(const ComparisonReport& report, std::span<const PooledGroup> groups) {
+  CellRows out{{"conditions", "value", "law", "earlier", "joint fit", "difference", "std errors", "published protocol",
+                "difference"},
+               {}};
   std::string before;
   for (const Pair& pair : pairs_of(report.values.values)) {
     const ComparedValue& v = *pair.first;
@@ -110,34 +126,36 @@ std::string values_table(const ComparisonReport& report, std::span<const PooledG
     row.push_back(only_published ? "" : signed_text(v.in_std_errors));
     row.push_back(published != nullptr ? significant(published->ours.value, 4) : "");
     row.push_back(published != nullptr ? percent_text(published->percent) : "");
-    table.add(std::move(row));
+    out.rows.push_back(std::move(row));
   }
-  return table.text(2, style.bold, style.off);
+  return out;
 }
 
-std::string preference_text(const LawPreference& p) {
-  const std::string chance =
-      std::isfinite(p.p_value) ? (p.p_value < 1e-4 ? ", p < 0.0001" : fmt::format(", p {:.2g}", p.p_value)) : "";
-  return fmt::format("{} in {} of {} run{}; held-out error of {} {:.3f} times as large{}", p.better, p.better_in,
-                     p.runs, p.runs == 1 ? "" : "s", p.other, p.ratio, chance);
-}
-
-std::string errors_table(const ComparisonReport& report, std::span<const PooledGroup> groups, const Style& style) {
-  Table table(
+CellRows error_cells(const Statements& statements, std::span<const PooledGroup> groups) {
+  CellRows out{
       {"conditions", "law", "protocol", "samples below 0.08", "mean", "largest", "bins below 0.08", "largest of bins"},
-      {true, true, true});
+      {}};
   std::string before;
-  for (const ErrorStatement& e : report.statements.errors) {
+  for (const ErrorStatement& e : statements.errors) {
     const std::string conditions = conditions_text(groups[e.group].conditions, groups[e.group].others);
-    table.add({conditions == before ? "" : conditions, e.law, e.protocol, share_text(e.below_limit),
-               significant(e.mean_relative, 2), significant(e.max_relative, 2), share_text(e.bins_below_limit),
-               significant(e.largest_of_bins, 2)});
+    out.rows.push_back({conditions == before ? "" : conditions, e.law, e.protocol, share_text(e.below_limit),
+                        significant(e.mean_relative, 2), significant(e.max_relative, 2), share_text(e.bins_below_limit),
+                        significant(e.largest_of_bins, 2)});
     before = conditions;
   }
-  return table.text(2, style.bold, style.off);
+  return out;
 }
 
-}  // namespace
+std::vector<std::string> preference_sentences(const Statements& s, std::span<const PooledGroup> groups) {
+  std::vector<std::string> out;
+  if (s.overall.runs == 0) return out;
+  out.push_back("all: " + preference_text(s.overall));
+  for (std::size_t g = 0; g < s.preference.size(); ++g) {
+    if (s.preference[g].runs == 0) continue;
+    out.push_back(conditions_text(groups[g].conditions, groups[g].others) + ": " + preference_text(s.preference[g]));
+  }
+  return out;
+}
 
 std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups) {
   std::string text =
@@ -197,7 +215,7 @@ std::string render_comparison(const ComparisonReport& report, std::span<const Po
   const Style style(options.colour, options.width);
   std::string text = style.heading("Beside " + report.values.path);
   if (!report.values.values.empty()) {
-    text += values_table(report, groups, style);
+    text += text_of(comparison_cells(report, groups), style);
     text += "  " +
             wrapped(
                 "std errors: the difference over the error of ours, statistical, between runs and "
@@ -209,18 +227,13 @@ std::string render_comparison(const ComparisonReport& report, std::span<const Po
   const Statements& s = report.statements;
   if (s.overall.runs > 0) {
     text += style.heading("Which law predicts better (joint protocol, held-out cycles)");
-    text += "  " + wrapped("all: " + preference_text(s.overall), style.width, 4) + "\n";
-    for (std::size_t g = 0; g < s.preference.size(); ++g) {
-      if (s.preference[g].runs == 0) continue;
-      text += "  " +
-              wrapped(conditions_text(groups[g].conditions, groups[g].others) + ": " + preference_text(s.preference[g]),
-                      style.width, 4) +
-              "\n";
+    for (const std::string& sentence : preference_sentences(s, groups)) {
+      text += "  " + wrapped(sentence, style.width, 4) + "\n";
     }
   }
   if (!s.errors.empty()) {
     text += style.heading("Relative error (Eq 5), slip samples and means in 40 bins of v_r");
-    text += errors_table(report, groups, style);
+    text += text_of(error_cells(s, groups), style);
   }
   return text + "\n";
 }

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "campaign_cells.hpp"
 #include "conditions_cells.hpp"
 #include "csv_cells.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -53,32 +54,6 @@ void write_line(WholeFile& file, const std::string& front, std::initializer_list
   file.write(line + "\n");
 }
 
-const PooledValue* find(const std::vector<PooledValue>& values, std::string_view name) {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
-  return found == values.end() ? nullptr : &*found;
-}
-
-/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
-  std::vector<double> drops;
-  for (const std::size_t k : group.runs) {
-    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
-    if (fit != nullptr && fit->parameters.size() > 1) {
-      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
-    }
-  }
-  ResultMeasure out;
-  if (drops.empty()) return out;
-  const double n = static_cast<double>(drops.size());
-  double sum = 0, squares = 0;
-  for (const double drop : drops) sum += drop;
-  out.value = sum / n;
-  for (const double drop : drops) squares += (drop - out.value) * (drop - out.value);
-  if (drops.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
-  return out;
-}
-
 void write_groups(FigureFiles& files, const ConditionCells& conditions, std::span<const RunResult> runs,
                   std::span<const PooledGroup> groups) {
   WholeFile& rms = files.add("05-rms-velocity.csv",
@@ -89,9 +64,10 @@ void write_groups(FigureFiles& files, const ConditionCells& conditions, std::spa
                                              "mu_s_minus_mu_k,mu_s_minus_mu_k_std_error");
   for (const PooledGroup& group : groups) {
     const std::string front = std::to_string(group.runs.size()) + "," + conditions.of(group.conditions, group.others);
-    if (const PooledValue* v = find(group.measures, "rms_velocity")) write_line(rms, front, {v->mean, v->mean_error});
+    if (const PooledValue* v = pooled_value(group.measures, "rms_velocity"))
+      write_line(rms, front, {v->mean, v->mean_error});
     for (const PooledGroup::OfFit& fit : group.fits) {
-      const PooledValue *mu_s = find(fit.parameters, "mu_s"), *mu_k = find(fit.parameters, "mu_k");
+      const PooledValue *mu_s = pooled_value(fit.parameters, "mu_s"), *mu_k = pooled_value(fit.parameters, "mu_k");
       if (mu_s == nullptr || mu_k == nullptr) continue;
       const ResultMeasure drop = drop_of(runs, group, fit);
       write_line(levels, front + "," + fit.law + "," + fit.protocol + "," + mu_s->unit,
@@ -151,6 +127,32 @@ class RunFiles {
 };
 
 }  // namespace
+
+const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
+  return found == values.end() ? nullptr : &*found;
+}
+
+/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
+  std::vector<double> drops;
+  for (const std::size_t k : group.runs) {
+    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
+    if (fit != nullptr && fit->parameters.size() > 1) {
+      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
+    }
+  }
+  ResultMeasure out;
+  if (drops.empty()) return out;
+  const double n = static_cast<double>(drops.size());
+  double sum = 0, squares = 0;
+  for (const double drop : drops) sum += drop;
+  out.value = sum / n;
+  for (const double drop : drops) squares += (drop - out.value) * (drop - out.value);
+  if (drops.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
+  return out;
+}
 
 void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
   FigureFiles files(results.folder());

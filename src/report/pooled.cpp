@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "campaign_cells.hpp"
 #include "conditions_cells.hpp"
 #include "csv_cells.hpp"
 #include "json_parts.hpp"
@@ -231,22 +232,7 @@ std::string shared_table(const Pooled& pooled, const Style& style) {
 
 std::string trends_text(const Trends& trends, const Style& style) {
   std::string text;
-  for (const Trend& t : trends.trends) {
-    // What goes exactly with a condition before it is named in the warnings.
-    const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
-      return pair.b == t.condition && std::abs(pair.correlation) > 0.999;
-    });
-    if (t.p_corrected > kChance || said) continue;
-    const std::string per = t.condition == "order" ? "run" : t.condition_unit;
-    const std::string unit = (t.unit == "1" ? "" : " " + t.unit) + (per.empty() ? "" : " per " + per);
-    text += "  " +
-            wrapped(fmt::format("{} ({} law) {} with {}: {}{} (p = {:.2g}, corrected for {} trends)", t.parameter,
-                                t.law, t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error),
-                                unit, t.p_corrected, trends.trends.size()),
-                    style.width, 4) +
-            "\n";
-  }
-  if (text.empty() && !trends.trends.empty()) text = "  none that is no chance\n";
+  for (const std::string& sentence : trend_sentences(trends)) text += "  " + wrapped(sentence, style.width, 4) + "\n";
   if (!text.empty()) text = style.heading("Trends") + text;
   for (const std::string& warning : trends.warnings) {
     text += "  " + std::string(style.yellow) + "warning" + std::string(style.off) + "  " +
@@ -256,6 +242,24 @@ std::string trends_text(const Trends& trends, const Style& style) {
 }
 
 }  // namespace
+
+std::vector<std::string> trend_sentences(const Trends& trends) {
+  std::vector<std::string> out;
+  for (const Trend& t : trends.trends) {
+    // What goes exactly with a condition before it is named in the warnings.
+    const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
+      return pair.b == t.condition && std::abs(pair.correlation) > 0.999;
+    });
+    if (t.p_corrected > kChance || said) continue;
+    const std::string per = t.condition == "order" ? "run" : t.condition_unit;
+    const std::string unit = (t.unit == "1" ? "" : " " + t.unit) + (per.empty() ? "" : " per " + per);
+    out.push_back(fmt::format("{} ({} law) {} with {}: {}{} (p = {:.2g}, corrected for {} trends)", t.parameter, t.law,
+                              t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error), unit,
+                              t.p_corrected, trends.trends.size()));
+  }
+  if (out.empty() && !trends.trends.empty()) out.push_back("none that is no chance");
+  return out;
+}
 
 Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing) {
   Pooled out;

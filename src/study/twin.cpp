@@ -95,9 +95,14 @@ double noise_colour(const Motion& motion, const Segmentation& segmentation) {
   return squares > 0 ? std::clamp(products / squares, 0.0, kMost) : 0;
 }
 
-/// One simulated record as the measured one is read.
+/// N/k of a machine: what the spring gives for a unit of friction [m].
+double compliance(const Machine& machine) {
+  return machine.load / machine.rig.stiffness;
+}
+
+/// One simulated record as the measured one is read. shown: takes three cycles of it where it is given.
 MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter& scatter, Sensors sensors,
-                                  const Motion& motion, std::uint64_t seed) {
+                                  const Motion& motion, std::uint64_t seed, BlockMotion* shown) {
   const Drive drive = drive_of(machine, motion);
   SimulationOptions options;
   options.duration = motion.duration();
@@ -114,6 +119,7 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
       compute_motion(std::move(trace), {}, {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
+  if (shown != nullptr) *shown = block_motion(twin, cycles, compliance(machine));
   return measure_motion(twin, cycles);
 }
 
@@ -176,12 +182,13 @@ double portrait_distance(const std::vector<Measure>& measured, const Predictions
 
 std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& of, const Sensors& sensors, const Motion& motion,
                                             std::size_t count, const TwinOptions& options,
-                                            const std::function<void()>& done) {
+                                            const std::function<void()>& done, BlockMotion& shown) {
   const std::vector<Machine> machines = draws_of(of.machine, of.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
     try {
-      out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k);
+      out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k,
+                                  k == 0 ? &shown : nullptr);
     } catch (const InputError&) {  // numbers that cannot be simulated: one prediction less
     }
     done();
@@ -272,6 +279,7 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   sensors.friction_noise = fits.empty() ? 0 : fits[0].floor.noise;
   sensors.velocity_noise = motion.velocity_noise;
   sensors.noise_colour = noise_colour(motion, segmentation);
+  if (!machines.empty()) twin.measured = block_motion(motion, segmentation, compliance(machines.back().machine));
   std::mutex mutex;
   std::size_t finished = 0;
   for (std::size_t c = 0; c < machines.size(); ++c) {
@@ -282,7 +290,8 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
       options.progress("simulating twins",
                        static_cast<double>(finished) / static_cast<double>(machines.size() * twin.simulations));
     };
-    const auto simulations = simulate_column(machines[c], sensors, motion, twin.simulations, options, done);
+    const auto simulations =
+        simulate_column(machines[c], sensors, motion, twin.simulations, options, done, twin.simulated.emplace_back());
     twin.columns.push_back(fits[c].model.name());
     add_column(measured, simulations, twin);
   }

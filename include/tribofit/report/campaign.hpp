@@ -1,11 +1,16 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/campaign/run_result.hpp"
+#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/pooled.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
@@ -35,5 +40,11 @@ struct CampaignSummary {
 /// Throws InputError. Cost: linear in runs; memory hardly grows with them.
 CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {},
                               const std::string& comparison = {});
+
+/// A campaign: what Fig 5 to 12 of [D] show, earlier values beside ours (`comparison`), which law predicts better, all
+/// pooled values with what differs from run to run, trends, the runs with their status and warnings. Of many conditions
+/// runs of six are drawn, all are listed up to a thousand rows. runs: those of `results`, in their order.
+Report report_of(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
+                 const std::optional<ComparisonReport>& comparison, const ReportOptions& options = {});
 
 }  // namespace tribofit

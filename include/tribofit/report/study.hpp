@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/map.hpp"
 #include "tribofit/study/response.hpp"
@@ -19,6 +21,8 @@ struct StudiedMachine {
   std::string source;
   std::vector<std::string> notes;
   double sharpness = 0;  ///< of the smoothed law [s/m]; 0: the event-located law
+  /// From which it was identified, to be drawn beside what is simulated; null: from none.
+  std::shared_ptr<const Identification> record = {};
 };
 
 /// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.
@@ -41,6 +45,18 @@ std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>&
                        const JsonOptions& options = {});
 std::string map_json(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
                      const JsonOptions& options = {});
+
+/// Reports of studies, options.arguments behind the kind. Speed: each measure over speed, up and down, with the
+/// critical speeds and their 95 % ranges, and the growth rate. Phase: portraits, the motion over time and the block in
+/// motion, beside the record where the machine comes from one; of many speeds eight are drawn, all are listed.
+/// Response: A(omega) and the spectra. Sensitivity: each measure over each number of the machine, and the elasticities
+/// as bars. Map: each measure in colours; of many cells the largest of each block is drawn.
+Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& of, const Response& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
+                 const ReportOptions& options = {});
 
 /// Tables of a study in a folder, made where it is not there: speed.csv; phase_1.csv ... with the start and cycle_1.csv
 /// ... with one settled cycle; response.csv and harmonics.csv; sensitivity.csv and elasticities.csv. All or none.

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
@@ -19,5 +20,9 @@ std::string render_twin(const TwinIdentification& result, const TerminalOptions&
 /// "std_error", "difference_in_std_errors"}]}], "rms_difference", "failures", "simulations", "messages", "reason",
 /// "next"}.
 std::string to_json(const TwinIdentification& result, const JsonOptions& options = {});
+
+/// The same as pictures: measures in standard errors, three cycles of friction and velocity measured and simulated, the
+/// portraits, and the block on its disc, measured and simulated side by side.
+Report report_of(const TwinIdentification& result, const ReportOptions& options = {});
 
 }  // namespace tribofit

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/study/block_motion.hpp"
 #include "tribofit/study/identified.hpp"
 
 namespace tribofit {
@@ -33,6 +34,9 @@ struct Twin {
   std::vector<std::string> messages;
   std::string reason;           ///< why there is no twin; empty where there is one
   std::size_t simulations = 0;  ///< behind each column
+
+  BlockMotion measured;                ///< three cycles of the record; empty where no three are whole
+  std::vector<BlockMotion> simulated;  ///< and of the first simulation of each column
 
   /// Names of the measures in which a column is off by more than three standard errors, the worst first.
   std::vector<std::string> failures(std::size_t column) const;

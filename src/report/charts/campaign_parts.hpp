@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/campaign_cells.hpp"
+#include "strokes.hpp"
+#include "tribofit/report/campaign.hpp"
+
+namespace tribofit {
+
+/// The campaign that is drawn.
+struct DrawnCampaign {
+  const ResultReader& results;
+  std::span<const RunResult> runs;
+  const Pooled& pooled;
+  const ComparisonReport* comparison;  ///< null: none
+  std::vector<std::size_t> shown;      ///< groups of which single runs are drawn
+
+  std::span<const PooledGroup> groups() const { return pooled.groups; }
+  std::string name_of(std::size_t group) const;
+  /// "1", or "N" where friction is a force.
+  std::string friction_unit() const { return runs.empty() ? "1" : runs.front().friction_unit; }
+  /// How values of the table named by --compare are called.
+  std::string earlier_name() const;
+};
+
+DrawnCampaign drawn_campaign(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
+                             const std::optional<ComparisonReport>& comparison);
+
+/// What groups are drawn over: the condition that takes most values, else their number.
+class OverConditions {
+ public:
+  explicit OverConditions(std::span<const PooledGroup> groups);
+
+  const ChartAxis& axis() const { return axis_; }
+  /// Groups of one line, by rising abscissa, and what they have in common ("50 N").
+  struct Series {
+    std::string name;
+    std::vector<std::size_t> groups;
+    std::vector<double> x;
+  };
+  const std::vector<Series>& series() const { return series_; }
+  double x_of(std::size_t group) const { return x_[group]; }
+
+ private:
+  ChartAxis axis_;
+  std::vector<Series> series_;
+  std::vector<double> x_;
+};
+
+/// Adds a line of a value with its error for each series; value: of a group, nothing where there is none.
+void add_over_conditions(const OverConditions& over, const std::string& name, const Stroke& stroke, std::size_t panel,
+                         const std::function<std::optional<ResultMeasure>(std::size_t group)>& value, Chart& chart);
+
+/// Adds the earlier values of that name, one for each of the conditions.
+void add_earlier(const DrawnCampaign& of, const OverConditions& over, const std::string& name, std::size_t panel,
+                 Chart& chart);
+
+/// Fig 5 to 9 of [D]: a section of charts.
+ReportSection motion_figures(const DrawnCampaign& of);
+/// Fig 10 to 12 of [D].
+ReportSection law_figures(const DrawnCampaign& of);
+
+}  // namespace tribofit

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "report/numbers.hpp"
+#include "report/study_sentences.hpp"
+#include "strokes.hpp"
+#include "study_parts.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr const char* kUp = "begun in stick (way up)";
+constexpr const char* kDown = "begun in sliding (way down)";
+constexpr const char* kMeasured = "measured";
+constexpr const char* kRange = "95 % range of a critical speed";
+
+/// An upright mark at each critical speed.
+void add_critical(const SpeedStudy& study, Chart& chart) {
+  const auto add = [&](double at, Dash dash, const char* text) {
+    if (std::isfinite(at)) chart.marks.push_back({at / kMillimetre, true, dash, text, 0});
+  };
+  const CriticalSpeed& c = study.critical;
+  for (const double v : c.linear) add(v, Dash::dotted, "stability of sliding");
+  add(c.stick_vanishes, Dash::dashed, "stick vanishes");
+  constexpr double kSame = 1.001;
+  if (!(c.stick_vanishes <= kSame * c.stick_returns)) add(c.stick_returns, Dash::dash_dotted, "stick returns");
+}
+
+/// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
+void add_range(const Range& range, std::size_t panel, Chart& chart) {
+  if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
+  ChartLine line{kRange, in_unit(std::vector{range.lower95, range.upper95}, kMillimetre), {0, 0}};
+  line.stroke = {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4};
+  line.panel = panel;
+  for (const ChartLine& other : chart.lines) line.listed &= other.name != kRange;
+  chart.lines.push_back(std::move(line));
+}
+
+void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  const std::vector<double> velocity = in_unit(study.velocity, kMillimetre);
+  const auto add = [&](const char* name, const std::vector<Settled>& settled, const Stroke& stroke) {
+    ChartLine line{name, velocity, {}, stroke};
+    for (const Settled& s : settled) line.y.push_back(s.*measure.value / measure.si);
+    line.panel = panel;
+    line.listed = panel == 0;
+    chart.lines.push_back(std::move(line));
+  };
+  Stroke up = marked(1), down = marked(2);
+  up.dash = Dash::solid, down.dash = Dash::dashed;
+  up.size = down.size = 5;
+  add(kUp, study.up, up);
+  add(kDown, study.down, down);
+}
+
+/// What the record says at its own speed; nothing where it does not.
+void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  if (!of.record) return;
+  const Segmentation& s = of.record->segmentation;
+  const Measure* value = measure.name == "frequency"    ? &s.frequency
+                         : measure.name == "stick-time" ? &s.stick_time
+                         : measure.name == "peak-speed" ? &s.amplitude
+                                                        : nullptr;
+  if (value == nullptr || !std::isfinite(value->value)) return;
+  const double y = value->value / measure.si;
+  const double error = std::isfinite(value->std_error) ? 1.96 * value->std_error / measure.si : 0;
+  ChartLine line{kMeasured,  {of.machine.disc_velocity() / kMillimetre}, {y}, marked(0, false), {y - error},
+                 {y + error}};
+  line.stroke.symbol = Symbol::cross;
+  line.stroke.size = 9;
+  line.bars = true;
+  line.panel = panel;
+  for (const ChartLine& other : chart.lines) line.listed &= other.name != kMeasured;
+  chart.lines.push_back(std::move(line));
+}
+
+Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const std::vector<std::string>& names) {
+  Chart chart;
+  chart.x = {.quantity = "speed of the disc", .unit = "mm/s"};
+  chart.panels.clear();
+  for (const std::string& name : names) {
+    const MeasureInfo& measure = measure_named(name);
+    const std::size_t panel = chart.panels.size();
+    ChartPanel& added = chart.panels.emplace_back();
+    added.axis = axis_of(measure);
+    added.axis.from_zero = true;
+    add_sweeps(study, measure, panel, chart);
+    add_measured(of, measure, panel, chart);
+    if (name == "frequency") {
+      const double natural = of.machine.rig.natural_frequency() / (2 * std::numbers::pi);
+      chart.marks.push_back({natural, false, Dash::dotted, "natural frequency", panel});
+    }
+    if (name == "stick-time") {
+      add_range(study.vanishes_range, panel, chart);
+      add_range(study.returns_range, panel, chart);
+    }
+  }
+  add_critical(study, chart);
+  chart.height = 150 + 170 * static_cast<int>(names.size());
+  return chart;
+}
+
+Chart growth_chart(const SpeedStudy& study) {
+  Chart chart;
+  chart.id = "growth-rate";
+  chart.title = "Growth of a small vibration about steady sliding";
+  chart.note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.";
+  chart.x = {.quantity = "speed of the disc", .unit = "mm/s"};
+  chart.panels[0].axis = {.quantity = "growth rate", .unit = "1/s"};
+  chart.lines.push_back({"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)});
+  add_range(study.linear_range, 0, chart);
+  chart.marks.push_back({0, false, Dash::solid, "", 0});
+  add_critical(study, chart);
+  return chart;
+}
+
+ReportTable own_table(const StudiedMachine& of, const SpeedStudy& study) {
+  ReportTable table{
+      "At " + velocity_text(of.machine.disc_velocity(), of.machine) + ": " + std::string(to_string(study.own.regime)),
+      {"measure", "value", "95 % interval", "unit", "meaning"},
+      {},
+      {1, 2}};
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    const MeasureInfo& measure = measures()[k];
+    const std::string range = range_text(study.own_ranges[k], measure.si);
+    table.rows.push_back(
+        {measure.name, measure_text(study.own, measure), range.empty() ? "-" : range, measure.unit, measure.meaning});
+  }
+  return table;
+}
+
+ReportTable speed_table(const SpeedStudy& study) {
+  constexpr std::size_t kMostRows = 200;
+  std::vector<std::vector<std::string>> first;
+  std::vector<const Settled*> settled;
+  const std::vector<std::size_t> rows = thinned(study.velocity.size(), kMostRows);
+  for (const std::size_t i : rows) {
+    for (const bool up : {true, false}) {
+      const Settled& s = up ? study.up[i] : study.down[i];
+      first.push_back({significant(study.velocity[i] / kMillimetre, 4), up ? "stick" : "sliding",
+                       std::string(to_string(s.regime))});
+      settled.push_back(&s);
+    }
+  }
+  ReportTable table = measures_table("Over speed", {"speed [mm/s]", "begun in", "regime"}, first, settled);
+  if (rows.size() < study.velocity.size()) {
+    table.caption += fmt::format(" ({} of {} speeds; --csv writes all)", rows.size(), study.velocity.size());
+  }
+  table.numeric.insert(table.numeric.begin(), 0);
+  table.folded = true;
+  return table;
+}
+
+std::string capitalised(std::string sentence) {
+  if (!sentence.empty() && sentence[0] >= 'a' && sentence[0] <= 'z') sentence[0] = static_cast<char>(sentence[0] - 32);
+  return sentence + ".";
+}
+
+}  // namespace
+
+Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options) {
+  std::string lead;
+  for (const std::string& sentence : critical_sentences(of, study)) {
+    lead += (lead.empty() ? "" : " ") + capitalised(sentence);
+  }
+  const std::string between = bistable_sentence(study.critical);
+  if (!between.empty()) lead += " " + between;
+  Report report = study_report(of, "speed", "Motion over speed", std::move(lead), options);
+  if (study.own.regime == Regime::not_settled) report.warnings.push_back(seen_sentence(study.own));
+
+  ReportSection& section = report.sections.emplace_back(ReportSection{"speed", "Over the speed of the disc", {}});
+  Chart motion = over_speed(of, study, {"frequency", "stick-time", "peak-to-peak"});
+  motion.id = "speed-motion";
+  motion.title = "Frequency, stick and amplitude over speed";
+  motion.note = "Where the two ways differ, both motions go on where they have begun.";
+  Chart energy = over_speed(of, study, {"energy", "peak-speed"});
+  energy.id = "speed-energy";
+  energy.title = "Energy before break-away and fastest slip over speed";
+  section.items.emplace_back(std::move(motion));
+  section.items.emplace_back(std::move(energy));
+  section.items.emplace_back(growth_chart(study));
+  section.items.emplace_back(own_table(of, study));
+  section.items.emplace_back(speed_table(study));
+  add_machine_sections(of, "speed", options, report);
+  return report;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/numbers.hpp"
+#include "report/twin_sentences.hpp"
+#include "strokes.hpp"
+#include "study_parts.hpp"
+#include "tribofit/report/twin.hpp"
+#include "tribofit/version.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr std::size_t kBins = 400;
+
+/// The measured motion and those of the twins, under their names.
+struct NamedMotion {
+  std::string name;
+  const BlockMotion* motion;
+};
+
+std::vector<NamedMotion> motions_of(const Twin& twin) {
+  std::vector<NamedMotion> out;
+  if (twin.measured.size() > 0) out.push_back({"measured", &twin.measured});
+  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
+    if (twin.simulated[c].size() > 0) out.push_back({"simulated, " + column_name(twin, c), &twin.simulated[c]});
+  }
+  return out;
+}
+
+Stroke stroke_for(std::size_t k) {
+  constexpr Colour kColours[] = {Colour::black, Colour::red, Colour::blue};
+  constexpr Dash kDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
+  return {.colour = kColours[k % 3], .dash = kDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
+}
+
+/// Differences in standard errors; within the marks they may be chance.
+Chart differences_chart(const Twin& twin) {
+  Chart chart;
+  chart.id = "twin-differences";
+  chart.title = "Simulated less measured";
+  chart.note = "Beyond three standard errors a difference is not chance.";
+  chart.x = {.quantity = "difference", .unit = "standard errors"};
+  ChartAxis& names = chart.panels[0].axis;
+  names.falling = true;
+  for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
+  double largest = 4;
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
+    ChartLine line{column_name(twin, c), {}, {}, marked(c + 1, false)};
+    line.stroke.colour = stroke_for(c + 1).colour;
+    line.stroke.size = 8;
+    for (std::size_t k = 0; k < twin.measures.size(); ++k) {
+      const double d = twin.measures[k].simulated.at(c).difference;
+      if (!std::isfinite(d)) continue;
+      line.x.push_back(d);
+      line.y.push_back(static_cast<double>(k));
+      largest = std::max(largest, 1.1 * std::abs(d));
+    }
+    chart.lines.push_back(std::move(line));
+  }
+  chart.x.low = -largest, chart.x.high = largest;
+  for (const double at : {-3.0, 0.0, 3.0}) {
+    chart.marks.push_back(
+        {at, true, at == 0 ? Dash::solid : Dash::dashed, at == 0 ? "" : fmt::format("{:+.0f}", at), 0});
+  }
+  chart.height = 130 + 26 * static_cast<int>(twin.measures.size());
+  return chart;
+}
+
+Chart motion_chart(const Twin& twin, const std::string& friction_unit) {
+  Chart chart;
+  chart.id = "twin-motion";
+  chart.title = "Three cycles, measured and simulated";
+  chart.note =
+      "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within the "
+      "errors and a scatter of its own. Shaded: stick as measured.";
+  chart.x = {.quantity = "time since break-away", .unit = "s", .digits = 7};
+  chart.panels = {{.axis = {.quantity = "velocity v_{b}", .unit = "mm/s"}},
+                  {.axis = {.quantity = friction_unit == "N" ? "friction" : "mu", .unit = friction_unit}},
+                  {.axis = {.quantity = "displacement", .unit = "mm"}}};
+  std::size_t k = 0;
+  for (const NamedMotion& one : motions_of(twin)) {
+    const BlockMotion& m = *one.motion;
+    const std::vector<std::size_t> kept = kept_samples({m.velocity, m.friction}, kBins);
+    const std::vector<double> time = picked(m.time, kept, 1);
+    const Stroke stroke = stroke_for(k++);
+    const auto add = [&](const std::vector<double>& channel, double unit, std::size_t panel) {
+      ChartLine line{one.name, time, picked(channel, kept, unit), stroke};
+      line.panel = panel;
+      line.listed = panel == 0;
+      chart.lines.push_back(std::move(line));
+    };
+    add(m.velocity, kMillimetre, 0);
+    add(m.friction, 1, 1);
+    add(m.displacement, kMillimetre, 2);
+  }
+  const BlockMotion& measured = twin.measured;
+  for (std::size_t i = 0; i < measured.size();) {
+    std::size_t end = i;
+    while (end < measured.size() && measured.sticks[end] == measured.sticks[i]) ++end;
+    if (measured.sticks[i] != 0) {
+      chart.stretches.push_back({measured.time[i], measured.time[std::min(end, measured.size() - 1)], Shade::stick});
+    }
+    i = end;
+  }
+  if (measured.size() > 0) {
+    chart.marks.push_back({measured.disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
+  }
+  chart.height = 640;
+  return chart;
+}
+
+Chart portrait_chart(const Twin& twin) {
+  Chart chart;
+  chart.id = "twin-portrait";
+  chart.title = "Portraits, measured and simulated";
+  chart.x = {.quantity = "displacement of the block", .unit = "mm"};
+  chart.panels[0].axis = {.quantity = "velocity of the block", .unit = "mm/s"};
+  std::size_t k = 0;
+  for (const NamedMotion& one : motions_of(twin)) {
+    const BlockMotion& m = *one.motion;
+    const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity}, kBins);
+    chart.lines.push_back(
+        {one.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke_for(k++)});
+  }
+  chart.marks.push_back({twin.measured.disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
+  chart.height = 420;
+  return chart;
+}
+
+Animation animation_of(const Twin& twin) {
+  Animation out;
+  out.id = "twin-block";
+  out.title = "The block on its disc";
+  out.note = "Three cycles each, from break-away to break-away.";
+  out.disc_velocity = twin.measured.disc_velocity / kMillimetre;
+  for (const NamedMotion& one : motions_of(twin)) {
+    const BlockMotion& m = *one.motion;
+    out.blocks.push_back(animated(one.name, m.time, m.displacement, m.friction, m.sticks));
+  }
+  return out;
+}
+
+ReportTable measures_of(const Twin& twin) {
+  std::vector<std::vector<std::string>> cells = twin_cells(twin);
+  ReportTable table{"Measured motion and its twin", cells.front(), {cells.begin() + 1, cells.end()}, {}};
+  for (std::size_t k = 1; k + 1 < table.header.size(); ++k) table.numeric.push_back(k);
+  return table;
+}
+
+ReportSection model_section(const TwinIdentification& result) {
+  ReportSection section{"model", "Law and rig", {}};
+  const std::size_t count = std::min(result.trace.fits.size(), result.rigs.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    section.items.emplace_back(
+        ReportText{"Law: " + law_sentence(result.trace.fits[c], result.trace.motion), ReportText::Kind::item});
+    section.items.emplace_back(ReportText{"Rig beside it: " + rig_sentence(result.rigs[c]), ReportText::Kind::item});
+  }
+  return section;
+}
+
+ReportSection run_section(const TwinIdentification& result, const ReportOptions& options) {
+  ReportSection section{"run", "What was run", {}};
+  TerminalOptions terminal;
+  terminal.arguments = options.arguments;
+  terminal.inputs = options.inputs;
+  const Suggestion next = next_after_twin(result, terminal);
+  terminal.arguments.insert(terminal.arguments.begin(), "twin");
+  const std::string path = options.inputs.empty() ? result.trace.path : options.inputs.front();
+  section.items.emplace_back(ReportText{command_line(terminal, "", path), ReportText::Kind::command});
+  section.items.emplace_back(
+      ReportText{fmt::format("tribofit {}; checksum of the record: {:016x}", version, result.trace.checksum),
+                 ReportText::Kind::soft});
+  section.items.emplace_back(ReportText{"Next, " + next.reason + ":"});
+  section.items.emplace_back(ReportText{next.command, ReportText::Kind::command});
+  return section;
+}
+
+}  // namespace
+
+Report report_of(const TwinIdentification& result, const ReportOptions& options) {
+  const Identification& trace = result.trace;
+  const Twin& twin = result.twin;
+  Report report;
+  report.kind = "twin";
+  report.title = trace.path;
+  report.subtitle = "The measured motion beside those that law and rig predict";
+  report.lead = twin_verdict(result);
+  report.warnings = trace.warnings;
+  report.facts = {{"simulations of each law", std::to_string(twin.simulations)}};
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
+    const double rms = twin.rms_difference[c];
+    report.facts.emplace_back("off by, " + column_name(twin, c),
+                              std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
+  }
+  if (twin.reason.empty() && !twin.columns.empty()) {
+    ReportSection& motion = report.sections.emplace_back(ReportSection{"motion", "Measured and simulated motion", {}});
+    if (!motions_of(twin).empty()) {
+      motion.items.emplace_back(motion_chart(twin, friction_unit(trace.motion)));
+      motion.items.emplace_back(portrait_chart(twin));
+      motion.items.emplace_back(animation_of(twin));
+    }
+    ReportSection& measures =
+        report.sections.emplace_back(ReportSection{"measures", "Measures in standard errors", {}});
+    measures.items.emplace_back(differences_chart(twin));
+    measures.items.emplace_back(measures_of(twin));
+    measures.items.emplace_back(ReportText{twin_note(twin) + ".", ReportText::Kind::soft});
+    report.sections.push_back(model_section(result));
+  }
+  report.sections.push_back(run_section(result, options));
+  return report;
+}
+
+}  // namespace tribofit

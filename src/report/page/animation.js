@@ -1,0 +1,171 @@
+// A block on its disc in motion, drawn as it is seen from the side: the spring holds it, the disc runs under it. What was
+// measured and what was simulated move side by side, on the same scale and by the same clock.
+
+const slowness = [["10 times as fast", 10], ["as it is", 1], ["half as fast", 0.5], ["5 times slower", 0.2],
+  ["10 times slower", 0.1], ["20 times slower", 0.05], ["50 times slower", 0.02], ["100 times slower", 0.01],
+  ["500 times slower", 0.002]];
+
+const scene = { width: 420, height: 236, wall: 14, rest: 170, block: 64, deck: 96, reach: 150, plotTop: 132,
+  plotBottom: 206, plotLeft: 44, plotRight: 410 };
+
+function svgPart(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** Index of the last sample at or before a time. */
+function sampleAt(time, t) {
+  let low = 0, high = time.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (time[middle] <= t) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+/** Where the block is at a time of its loop, and whether it sticks. */
+function blockAt(block, t) {
+  const { time, displacement, sticks } = block, k = sampleAt(time, t), next = Math.min(k + 1, time.length - 1);
+  const step = time[next] - time[k], part = step > 0 ? (t - time[k]) / step : 0;
+  return { displacement: displacement[k] + part * (displacement[next] - displacement[k]), sticks: sticks[k] };
+}
+
+function springPath(from, to, y) {
+  const turns = 9, lead = 8, pitch = (to - from - 2 * lead) / turns;
+  let path = `M${from},${y}h${lead}`;
+  for (let k = 0; k < turns; ++k) path += `l${pitch / 4},-9l${pitch / 2},18l${pitch / 4},-9`;
+  return path + `H${to}`;
+}
+
+/** Displacement over the loop as an SVG path. */
+function loopPath(block, toX, toY) {
+  return block.time.map((t, k) => `${k ? "L" : "M"}${toX(t).toFixed(1)},${toY(block.displacement[k]).toFixed(1)}`)
+    .join("");
+}
+
+/** One block: {element, show(t)}. scale: pixels a millimetre, the same for all blocks beside each other. */
+function blockScene(block, animation, bounds) {
+  const s = scene, loop = block.time[block.time.length - 1] || 1;
+  const scale = s.reach / Math.max(bounds.high - bounds.low, 1e-12);
+  const toX = (t) => s.plotLeft + (t / loop) * (s.plotRight - s.plotLeft);
+  const toY = (x) => s.plotBottom - ((x - bounds.low) / Math.max(bounds.high - bounds.low, 1e-12)) *
+    (s.plotBottom - s.plotTop);
+  const spring = svgPart("path", { fill: "none", stroke: ink.black, "stroke-width": 1.6 });
+  const body = svgPart("rect", { y: s.deck - 34, width: s.block, height: 34, stroke: ink.black, "stroke-width": 1.6 });
+  const word = svgPart("text", { y: s.deck - 13, "text-anchor": "middle", "font-size": 13 });
+  const marks = svgPart("path", { stroke: ink.black, "stroke-width": 1.4 });
+  const dot = svgPart("circle", { r: 4.5, fill: ink.red, stroke: "#fff" });
+  const small = { "font-size": 12, fill: "#1b1b1b" };
+  const element = svgPart("svg", { viewBox: `0 0 ${s.width} ${s.height}`, role: "img", "aria-label":
+      `${block.name}: block on its disc, displacement from ${shortNumber(bounds.low)} to ${shortNumber(bounds.high)} mm` },
+  svgPart("text", { x: s.wall, y: 20, "font-size": 14, "font-weight": 600 }, block.name),
+  svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: ink.black, "stroke-width": 4 }), spring, body, word,
+  svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: ink.black }), marks,
+  svgPart("text", { x: s.width - 4, y: s.deck - 6, "text-anchor": "end", ...small },
+    `disc ${shortNumber(animation.disc_velocity)} mm/s \u2192`),
+  svgPart("path", { d: loopPath(block, toX, toY), fill: "none", stroke: ink.blue, "stroke-width": 1.4 }),
+  svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: "#444" }),
+  svgPart("text", { x: s.plotLeft - 4, y: s.plotTop + 6, "text-anchor": "end", ...small }, shortNumber(bounds.high)),
+  svgPart("text", { x: s.plotLeft - 4, y: s.plotBottom, "text-anchor": "end", ...small }, shortNumber(bounds.low)),
+  svgPart("text", { x: s.plotLeft - 4, y: (s.plotTop + s.plotBottom) / 2 + 4, "text-anchor": "end", ...small }, "mm"),
+  svgPart("text", { x: s.plotLeft, y: s.plotBottom + 16, ...small }, "0 s"),
+  svgPart("text", { x: s.plotRight, y: s.plotBottom + 16, "text-anchor": "end", ...small }, `${shortNumber(loop)} s`),
+  dot);
+  const show = (time) => {
+    const t = time % loop, now = blockAt(block, t);
+    const left = s.rest + (now.displacement - bounds.low) * scale - s.block / 2;
+    spring.setAttribute("d", springPath(s.wall, left, s.deck - 17));
+    body.setAttribute("x", left);
+    body.setAttribute("fill", now.sticks ? "#cfe3f1" : "#f7d9b0");
+    word.setAttribute("x", left + s.block / 2);
+    word.textContent = now.sticks ? "sticks" : "slips";
+    const pitch = 42, shift = (time * animation.disc_velocity * scale) % pitch;
+    let path = "";
+    for (let x = shift - pitch; x < s.width; x += pitch) if (x > 0) path += `M${x.toFixed(1)},${s.deck}v14`;
+    marks.setAttribute("d", path);
+    dot.setAttribute("cx", toX(t));
+    dot.setAttribute("cy", toY(now.displacement));
+    return { t, ...now };
+  };
+  return { element, show, loop };
+}
+
+function shortNumber(value) {
+  return String(Number(Number(value).toPrecision(3)));
+}
+
+/** The factor by which a loop takes about four seconds. */
+function usualSpeed(loop) {
+  let best = slowness[0][1];
+  for (const [, factor] of slowness) {
+    if (Math.abs(Math.log(loop / factor / 4)) < Math.abs(Math.log(loop / best / 4))) best = factor;
+  }
+  return best;
+}
+
+/** Puts an animation into `parent`: blocks side by side, play and pause, a slider of the time, the speed. */
+function animationItem(parent, animation) {
+  const blocks = animation.blocks.filter((block) => block.time.length > 1);
+  if (!blocks.length) return;
+  const all = blocks.flatMap((block) => block.displacement);
+  const bounds = { low: all.reduce((a, b) => Math.min(a, b)), high: all.reduce((a, b) => Math.max(a, b)) };
+  const scenes = blocks.map((block) => blockScene(block, animation, bounds));
+  const loop = Math.max(...scenes.map((one) => one.loop));
+  let time = 0, playing = false, before = null, seen = true, speed = usualSpeed(loop);
+
+  const button = make("button", { type: "button", "aria-pressed": "false", onclick: () => play(!playing) }, "Play");
+  const slider = make("input", { type: "range", min: "0", max: "1000", value: "0", "aria-label": "time of the loop",
+    oninput: () => { play(false); show((slider.value / 1000) * loop); } });
+  const select = make("select", { onchange: () => { speed = Number(select.value); } },
+    ...slowness.map(([name, factor]) => make("option", { value: String(factor) }, name)));
+  select.value = String(speed);
+  const shown = make("output", {});
+  const row = make("div", { className: "blocks" });
+  scenes.forEach((one) => row.append(one.element));
+  const figure = make("figure", { className: "animation", id: animation.id },
+    make("figcaption", {}, make("h3", {}, animation.title), animation.note ? make("p", {}, animation.note) : null), row,
+    make("div", { className: "tools" }, button, make("label", {}, "speed ", select), make("label", {}, "time ", slider),
+      shown));
+  parent.append(figure);
+
+  function show(at) {
+    time = at;
+    const words = scenes.map((one, k) => {
+      const now = one.show(at);
+      return `${blocks.length > 1 ? blocks[k].name + ": " : ""}${now.displacement.toFixed(3)} mm, ` +
+        (now.sticks ? "sticks" : "slips");
+    });
+    slider.value = String(Math.round(((at % loop) / loop) * 1000));
+    shown.textContent = `${(at % loop).toFixed(4)} s; ${words.join("; ")}`;
+  }
+
+  function step(now) {
+    if (!playing || !seen) return;
+    if (before !== null) show(time + Math.min(now - before, 200) / 1000 * speed);
+    before = now;
+    requestAnimationFrame(step);
+  }
+
+  function play(on) {
+    if (on === playing) return;
+    playing = on;
+    before = null;
+    button.textContent = on ? "Pause" : "Play";
+    button.setAttribute("aria-pressed", String(on));
+    if (on) requestAnimationFrame(step);
+  }
+
+  if (typeof IntersectionObserver === "function") {
+    new IntersectionObserver((entries) => {
+      const was = seen;
+      seen = entries[entries.length - 1].isIntersecting;
+      before = null;
+      if (playing && seen && !was) requestAnimationFrame(step);
+    }).observe(figure);
+  }
+  show(0);
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+  addEventListener("beforeprint", () => play(false));
+}
