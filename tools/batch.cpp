@@ -80,7 +80,7 @@ std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
   return std::pair{status.st_dev, status.st_ino};
 }
 
-void refuse_overwriting_inputs(const Campaign& campaign, const BatchOptions& batch) {
+void refuse_overwriting_inputs(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
   std::map<std::pair<dev_t, ino_t>, std::string> inputs;
   const auto add = [&](const std::string& path) {
     if (const auto identity = identity_of(path)) inputs.emplace(*identity, path);
@@ -93,11 +93,14 @@ void refuse_overwriting_inputs(const Campaign& campaign, const BatchOptions& bat
     if (found != inputs.end()) throw CLI::ValidationError("--out would overwrite " + found->second);
   };
   check((fs::path(batch.results) / "summary.csv").string());
+  if (const auto report = identity_of(s.report); report && inputs.count(*report) > 0) {
+    throw CLI::ValidationError("--report would overwrite " + inputs.at(*report));
+  }
   for (const Run& run : campaign.runs) check(result_path(batch.results, run.name));
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
-  if (!s.report.empty()) throw CLI::ValidationError("--report goes with one trace at a time; a batch has none yet");
+  if (!s.report.empty() && !s.shard.empty()) throw CLI::ValidationError("--report goes with `identify merge`");
   if (!s.json.empty()) throw CLI::ValidationError("--json goes with one trace at a time; --out has a file for each");
   if (!s.csv.empty()) throw CLI::ValidationError("--csv goes with one trace at a time");
   if (campaign.runs.size() > 1 && !s.second_file.empty()) {
@@ -113,7 +116,21 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
     throw CLI::ValidationError("--compare, --share and --vary go with `identify merge`");
   }
   check_comparison(s, batch.results);
-  refuse_overwriting_inputs(campaign, batch);
+  refuse_overwriting(s, {s.compare});
+  refuse_overwriting_inputs(s, campaign, batch);
+}
+
+/// How the report says what was run.
+ReportOptions shown_as(const Settings& s, const Campaign& campaign, std::vector<std::string> arguments) {
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  };
+  add("--pattern", s.pattern);
+  add("--out", s.out);
+  const std::vector<std::string> pooling = pooling_arguments(s);
+  arguments.insert(arguments.end(), pooling.begin(), pooling.end());
+  return {std::move(arguments), campaign.folder.empty() ? s.traces : std::vector{as_folder(campaign.folder)},
+          !s.instruments.empty()};
 }
 
 /// Makes the folder, or makes sure that it is one of this campaign.
@@ -236,7 +253,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
     outcome = fit_runs(campaign, batch);
     complain_of(campaign, outcome);
     if (s.shard.empty()) {
-      const Summarised all = summarise(s, ResultReader(batch.results));
+      const Summarised all = summarise(s, ResultReader(batch.results), shown_as(s, campaign, arguments));
       if (!s.quiet) print(all.summary.table);
       refused = complain_of(all);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "batch.hpp"
 #include "console.hpp"
@@ -27,12 +28,13 @@ constexpr const char* kFooter =
     "The summary is the same to the last byte as that of one batch. Runs without a whole result are named, and the\n"
     "status is 1; doing a shard again does only those.";
 
-int merge(const Settings& s, const std::string& folder) {
+int merge(const Settings& s, const std::string& folder, const ReportOptions& shown) {
   check_comparison(s, folder);
+  refuse_overwriting(s, {s.compare});
   const ResultReader results(folder);
   Summarised all;
   try {
-    all = summarise(s, results);
+    all = summarise(s, results, shown);
   } catch (const InputError& error) {  // it cannot be written
     complain(error.what());
     return kFailed;
@@ -63,9 +65,12 @@ void add_merge(CLI::App& app, int& status) {
   verb->add_option("RESULTS", *folder, "Folder of results, as given to --out")->required();
   add_pooling_options(*verb, *settings);
   add_compare_option(*verb, *settings);
+  add_report_option(*verb, *settings);
   verb->add_flag("--quiet", settings->quiet, "Do not print the table")->group("Output");
   verb->callback([settings, folder, verb, &status] {
     refuse_empty_values(*verb);
-    status = merge(*settings, *folder);
+    std::vector<std::string> arguments = pooling_arguments(*settings);
+    arguments.insert(arguments.begin(), "merge");
+    status = merge(*settings, *folder, {arguments, {as_folder(*folder)}});
   });
 }

@@ -97,6 +97,14 @@ void add_compare_option(CLI::App& app, Settings& s) {
       ->group("Batch");
 }
 
+std::vector<std::string> pooling_arguments(const Settings& s) {
+  std::vector<std::string> arguments;
+  for (const std::string& text : s.share) arguments.insert(arguments.end(), {"--share", text});
+  for (const std::string& text : s.vary) arguments.insert(arguments.end(), {"--vary", text});
+  if (!s.compare.empty()) arguments.insert(arguments.end(), {"--compare", s.compare});
+  return arguments;
+}
+
 std::vector<std::string> own_options(const CLI::App& app) {
   std::vector<std::string> arguments;
   for (const CLI::Option* option : app.get_options()) {

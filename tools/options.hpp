@@ -26,6 +26,8 @@ tribofit::Effect effect_named(const std::string& name);
 void refuse_clashes(const std::vector<tribofit::Effect>& effects);
 
 void add_compare_option(CLI::App& app, Settings& settings);
+/// --share, --vary and --compare as typed.
+std::vector<std::string> pooling_arguments(const Settings& settings);
 
 /// The options as typed that shape the analysis, for the next command.
 std::vector<std::string> own_options(const CLI::App& app);

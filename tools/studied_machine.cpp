@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -115,6 +116,7 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
         "(state --load)");
   }
   if (!placed) out.notes.push_back("no radius is known: speeds of the disc are omega r, rotational ones mean nothing");
+  out.record = std::make_shared<const Identification>(std::move(trace));
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "machine_options.hpp"
 #include "map_file.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "studied_machine.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -123,22 +124,30 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
   return axis;
 }
 
-/// Writes what was asked for and prints the rest. csv: writes the tables into the folder given.
-void deliver(const Request& r, const std::string& text, const std::function<std::string()>& json,
-             const std::function<void(const std::string&)>& csv) {
-  const Settings& s = r.settings;
-  std::optional<WholeFile> file;
-  if (!s.json.empty()) {
-    file.emplace(s.json == "-" ? "/dev/stdout" : s.json);
-    file->write(json());
-    file->finish();
+/// Writes what was asked for, all of it or none, and prints the rest.
+struct Delivery {
+  std::string text;  ///< for people
+  std::function<std::string()> json;
+  std::function<Report()> report;
+  std::function<void(const std::string&)> csv = {};  ///< writes the tables into the folder given
+
+  void write(const Request& r) const {
+    const Settings& s = r.settings;
+    std::optional<WholeFile> file;
+    if (!s.json.empty()) {
+      file.emplace(s.json == "-" ? "/dev/stdout" : s.json);
+      file->write(json());
+      file->finish();
+    }
+    ReportFiles drawn(s, report);
+    if (!s.csv.empty() && csv) csv(s.csv);
+    drawn.commit();
+    if (file) file->commit();
+    if (s.quiet || s.json == "-") return;
+    print(text);
+    if (!s.csv.empty()) print("\nTables in " + s.csv + "\n");
   }
-  if (!s.csv.empty() && csv) csv(s.csv);
-  if (file) file->commit();
-  if (s.quiet || s.json == "-") return;
-  print(text);
-  if (!s.csv.empty()) print("\nTables in " + s.csv + "\n");
-}
+};
 
 /// What every kind begins with.
 struct Begun {
@@ -146,10 +155,12 @@ struct Begun {
   SettleOptions settle;
   TerminalOptions terminal;
   JsonOptions json;
+  ReportOptions report;
 };
 
 Begun begin(Request& r, const CLI::App& kind) {
   refuse_empty_values(kind);
+  refuse_overwriting(r.settings, input_files(r.settings));
   Begun out;
   out.settle = settle_options(r);
   out.json.arguments = own_options(kind);
@@ -158,7 +169,16 @@ Begun begin(Request& r, const CLI::App& kind) {
   out.terminal = terminal_options(r.settings, shared_arguments(kind));
   out.terminal.inputs = r.settings.traces;
   out.terminal.csv_written = !r.settings.csv.empty();
+  out.report = {out.json.arguments, r.settings.traces, !r.settings.instruments.empty()};
   return out;
+}
+
+template <class Study>
+void deliver(const Request& r, const Begun& b, const Study& study) {
+  Delivery{render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
+           [&] { return report_of(b.of, study, b.report); },
+           [&](const std::string& folder) { write_study(folder, study); }}
+      .write(r);
 }
 
 void run_speed(Request& r, const CLI::App& kind) {
@@ -170,9 +190,7 @@ void run_speed(Request& r, const CLI::App& kind) {
   options.points = r.points;
   if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.of.machine);
   const SpeedStudy study = study_speed(b.of.machine, options);
-  deliver(
-      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
-      [&](const std::string& folder) { write_study(folder, study); });
+  deliver(r, b, study);
 }
 
 void run_phase(Request& r, const CLI::App& kind) {
@@ -187,17 +205,13 @@ void run_phase(Request& r, const CLI::App& kind) {
   options.cycles = r.cycles;
   options.settle = b.settle;
   const std::vector<Portrait> study = study_phase(b.of.machine, velocities, options);
-  deliver(
-      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
-      [&](const std::string& folder) { write_study(folder, study); });
+  deliver(r, b, study);
 }
 
 void run_response(Request& r, const CLI::App& kind) {
   const Begun b = begin(r, kind);
   const Response study = study_response(b.of.machine, r.harmonics, b.settle);
-  deliver(
-      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
-      [&](const std::string& folder) { write_study(folder, study); });
+  deliver(r, b, study);
 }
 
 void run_sensitivity(Request& r, const CLI::App& kind) {
@@ -209,9 +223,7 @@ void run_sensitivity(Request& r, const CLI::App& kind) {
   options.settle = b.settle;
   options.threads = r.settings.threads;
   const std::vector<Sensitivity> study = study_sensitivity(b.of.machine, options);
-  deliver(
-      r, render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
-      [&](const std::string& folder) { write_study(folder, study); });
+  deliver(r, b, study);
 }
 
 void run_map(Request& r, const CLI::App& kind) {
@@ -229,8 +241,10 @@ void run_map(Request& r, const CLI::App& kind) {
     return true;
   });
   file.finish();
-  deliver(r, render_map(b.of, request, file.rows(), measure, b.terminal),
-          [&] { return map_json(b.of, request, file.rows(), b.json); }, {});
+  Delivery{render_map(b.of, request, file.rows(), measure, b.terminal),
+           [&] { return map_json(b.of, request, file.rows(), b.json); },
+           [&] { return report_of(b.of, request, file.rows(), b.report); }}
+      .write(r);
 }
 
 CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const std::shared_ptr<Request>& r,
@@ -244,6 +258,7 @@ CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const st
   kind->add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
       ->check(CLI::IsMember({"stick", "rest", "sliding"}));
   add_output_options(*kind, r->settings);
+  add_report_option(*kind, r->settings);
   kind->get_option("--csv")->description("Write the tables of the study into this folder");
   kind->get_option("TRACE")->description("One trace (CSV) from which the machine is identified");
   kind->callback([r, kind, run, &status] {

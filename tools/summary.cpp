@@ -8,6 +8,7 @@
 
 #include "console.hpp"
 #include "inputs.hpp"
+#include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/comparison.hpp"
 #include "tribofit/report/figures.hpp"
@@ -61,7 +62,7 @@ void check_comparison(const Settings& s, const std::string& results) {
   }
 }
 
-Summarised summarise(const Settings& s, const ResultReader& results) {
+Summarised summarise(const Settings& s, const ResultReader& results, const ReportOptions& shown) {
   Summarised out;
   const std::vector<RunResult> runs = read_results(results.folder());
   Pooled pooled = pool_campaign(runs);
@@ -90,10 +91,12 @@ Summarised summarise(const Settings& s, const ResultReader& results) {
     std::error_code ignored;
     fs::remove(table, ignored);  // of an earlier summary; it would not fit this one
   }
+  ReportFiles drawn(s, [&] { return report_of(results, runs, pooled, comparison, shown); });
   const TerminalOptions options = terminal_options(s, {});
   out.summary = write_summary(results, options, json);
   out.summary.table += pooled_table(pooled, options);
   if (comparison) out.summary.table += render_comparison(*comparison, groups, options);
+  drawn.commit();
   return out;
 }
 

@@ -26,10 +26,11 @@ struct Summarised {
 };
 
 /// Writes all that is made of the results of a campaign: summary, what the runs say together, figures and, where a
-/// table of earlier values is named, the comparison with it. All of it for people is in the table that is returned.
-/// A sharing or a comparison that cannot be done is named; the rest is written all the same.
-/// Throws tribofit::InputError where nothing can be written.
-Summarised summarise(const Settings& settings, const tribofit::ResultReader& results);
+/// table of earlier values is named, the comparison with it, and the report where one is asked for (`shown`: how it
+/// says what was run). All of it for people is in the table that is returned. A sharing or a comparison that cannot be
+/// done is named; the rest is written all the same. Throws tribofit::InputError where nothing can be written.
+Summarised summarise(const Settings& settings, const tribofit::ResultReader& results,
+                     const tribofit::ReportOptions& shown);
 
 /// Says what could not be done; the exit status for it, 0 where there is nothing.
 int complain_of(const Summarised& all);

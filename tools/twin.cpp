@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "settings.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/whole_file.hpp"
@@ -41,7 +42,9 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   Identification& trace = result.trace;
   trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
   trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  ReportFiles drawn(s, [&] { return report_of(result, {arguments, {input.trace.path}, !s.instruments.empty()}); });
   if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
+  drawn.commit();
   if (!s.quiet && s.json != "-") print(render_twin(result, terminal_options(s, arguments_for(input, arguments))));
   if (result.twin.reason.empty()) return kDone;
   complain(trace.path + ": there is no twin: " + result.twin.reason);
@@ -57,6 +60,7 @@ void add_twin(CLI::App& app, int& status) {
   add_input_options(*verb, *settings);
   add_model_options(*verb, *settings);
   add_result_options(*verb, *settings);
+  add_report_option(*verb, *settings);
   verb->callback([settings, verb, &status] {
     refuse_empty_values(*verb);
     check_seed(*settings);
