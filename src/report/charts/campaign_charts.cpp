@@ -6,14 +6,14 @@
 
 #include "campaign_parts.hpp"
 #include "report/numbers.hpp"
+#include "report/report_parts.hpp"
 #include "report/study_sentences.hpp"
 #include "report/verdict.hpp"
-#include "tribofit/version.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kMostRows = 1000, kMostWarnings = 200;
+constexpr std::size_t kMostRows = 1000, kMostWarnings = 200, kMostPoints = 300;
 
 void add_table(std::string caption, CellRows cells, std::size_t words, ReportSection& section) {
   if (cells.rows.empty()) return;
@@ -137,7 +137,9 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
       line.bars = true;
       line.panel = chart.panels.size();
       line.listed = line.panel == 0;
-      for (const std::size_t r : of.groups()[of.shown[k]].runs) {
+      const std::vector<std::size_t>& runs = of.groups()[of.shown[k]].runs;
+      for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
+        const std::size_t r = runs[i];
         const ResultFit* fit = of.runs[r].fit(law, "joint");
         if (fit == nullptr || fit->parameters.size() <= p) continue;
         const ResultParameter& value = fit->parameters[p];
@@ -297,8 +299,8 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
                                                        : results.traces();
   Report report;
   report.kind = "campaign";
-  report.title = "Campaign " + (results.traces().empty() ? results.folder() : results.traces());
-  report.subtitle = fmt::format("{} runs", results.size());
+  report.title = file_name(results.traces().empty() ? results.folder() : results.traces());
+  report.subtitle = made_by("Campaign") + "; ± is one standard error, everywhere in this report.";
   report.lead = lead_of(of);
   report.facts = {{"runs", std::to_string(results.size())},
                   {"fitted", std::to_string(counts.fitted)},
@@ -311,12 +313,11 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   }
   add_sections(of, report);
   ReportSection& run = report.sections.emplace_back(ReportSection{"run", "What was run", {}});
-  TerminalOptions terminal;
-  terminal.arguments = options.arguments;
-  run.items.emplace_back(ReportText{command_line(terminal, "", input), ReportText::Kind::command});
-  run.items.emplace_back(
-      ReportText{fmt::format("tribofit {}; checksums of the traces stand in the results of the runs", version),
-                 ReportText::Kind::soft});
+  run.items.emplace_back(plain_text("This report is made by"));
+  run.items.emplace_back(ReportText{command_line(terminal_like(options), "", input), ReportText::Kind::command});
+  run.items.emplace_back(soft_text(made_by("Made") +
+                                   ". Charts by plotly.js (MIT licence). Checksums of the traces stand in the results "
+                                   "of the runs."));
   return report;
 }
 

@@ -9,9 +9,9 @@
 
 #include "report/drawing.hpp"
 #include "report/numbers.hpp"
+#include "report/report_parts.hpp"
 #include "report/study_sentences.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/version.hpp"
 
 namespace tribofit {
 namespace {
@@ -53,7 +53,7 @@ Report study_report(const StudiedMachine& of, const std::string& kind, const std
   Report report;
   report.kind = "study";
   report.title = title;
-  report.subtitle = of.source;
+  report.subtitle = made_by("Study") + "; the machine: " + of.source + ".";
   report.lead = std::move(lead);
   report.warnings = of.notes;
   std::string law = of.machine.model.name();
@@ -76,10 +76,11 @@ void add_machine_sections(const StudiedMachine& of, const std::string& kind, con
   ReportSection& run = report.sections.emplace_back(ReportSection{"run", "What was run", {}});
   std::vector<std::string> inputs = options.inputs;
   if (inputs.empty() && of.record) inputs = {of.record->path};
+  run.items.emplace_back(plain_text("This report is made by"));
   run.items.emplace_back(ReportText{study_command(kind, options.arguments, inputs), ReportText::Kind::command});
-  std::string made = fmt::format("tribofit {}", version);
-  if (of.record) made += fmt::format("; checksum of the record: {:016x}", of.record->checksum);
-  run.items.emplace_back(ReportText{made, ReportText::Kind::soft});
+  std::string made = made_by("Made") + ". Charts by plotly.js (MIT licence).";
+  if (of.record) made += fmt::format(" Checksum of the rows of the record (FNV-1a): {:016x}.", of.record->checksum);
+  run.items.emplace_back(soft_text(std::move(made)));
 }
 
 ReportTable measures_table(std::string caption, std::vector<std::string> header,

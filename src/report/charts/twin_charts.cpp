@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "report/numbers.hpp"
+#include "report/report_parts.hpp"
 #include "report/twin_sentences.hpp"
 #include "strokes.hpp"
 #include "study_parts.hpp"
 #include "tribofit/report/twin.hpp"
-#include "tribofit/version.hpp"
 
 namespace tribofit {
 namespace {
@@ -161,21 +161,12 @@ ReportSection model_section(const TwinIdentification& result) {
   return section;
 }
 
-ReportSection run_section(const TwinIdentification& result, const ReportOptions& options) {
-  ReportSection section{"run", "What was run", {}};
-  TerminalOptions terminal;
-  terminal.arguments = options.arguments;
-  terminal.inputs = options.inputs;
+ReportSection how_it_was_run(const TwinIdentification& result, const ReportOptions& options) {
+  TerminalOptions terminal = terminal_like(options);
   const Suggestion next = next_after_twin(result, terminal);
   terminal.arguments.insert(terminal.arguments.begin(), "twin");
   const std::string path = options.inputs.empty() ? result.trace.path : options.inputs.front();
-  section.items.emplace_back(ReportText{command_line(terminal, "", path), ReportText::Kind::command});
-  section.items.emplace_back(
-      ReportText{fmt::format("tribofit {}; checksum of the record: {:016x}", version, result.trace.checksum),
-                 ReportText::Kind::soft});
-  section.items.emplace_back(ReportText{"Next, " + next.reason + ":"});
-  section.items.emplace_back(ReportText{next.command, ReportText::Kind::command});
-  return section;
+  return run_section(command_line(terminal, "", path), {&result.trace, 1}, next);
 }
 
 }  // namespace
@@ -185,11 +176,13 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   const Twin& twin = result.twin;
   Report report;
   report.kind = "twin";
-  report.title = trace.path;
-  report.subtitle = "The measured motion beside those that law and rig predict";
+  report.title = file_name(trace.path);
+  report.subtitle = made_by("The measured motion beside those that law and rig predict,") +
+                    "; ± is one standard error, everywhere in this report.";
   report.lead = twin_verdict(result);
   report.warnings = trace.warnings;
-  report.facts = {{"simulations of each law", std::to_string(twin.simulations)}};
+  report.facts = facts_of(trace);
+  report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     const double rms = twin.rms_difference[c];
     report.facts.emplace_back("off by, " + column_name(twin, c),
@@ -209,7 +202,9 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
     measures.items.emplace_back(ReportText{twin_note(twin) + ".", ReportText::Kind::soft});
     report.sections.push_back(model_section(result));
   }
-  report.sections.push_back(run_section(result, options));
+  ReportSection& health = report.sections.emplace_back(ReportSection{"health", "Health of the data", {}});
+  health.items.emplace_back(health_table({&trace, 1}));
+  report.sections.push_back(how_it_was_run(result, options));
   return report;
 }
 

@@ -5,8 +5,8 @@ const slowness = [["10 times as fast", 10], ["as it is", 1], ["half as fast", 0.
   ["10 times slower", 0.1], ["20 times slower", 0.05], ["50 times slower", 0.02], ["100 times slower", 0.01],
   ["500 times slower", 0.002]];
 
-const scene = { width: 420, height: 236, wall: 14, rest: 170, block: 64, deck: 96, reach: 150, plotTop: 132,
-  plotBottom: 206, plotLeft: 44, plotRight: 410 };
+const scene = { width: 420, height: 242, wall: 14, rest: 170, block: 64, deck: 96, reach: 150, plotTop: 138,
+  plotBottom: 212, plotLeft: 44, plotRight: 410 };
 
 function svgPart(tag, attributes, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
@@ -63,13 +63,14 @@ function blockScene(block, animation, bounds) {
   svgPart("text", { x: s.wall, y: 20, "font-size": 14, "font-weight": 600 }, block.name),
   svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: ink.black, "stroke-width": 4 }), spring, body, word,
   svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: ink.black }), marks,
-  svgPart("text", { x: s.width - 4, y: s.deck - 6, "text-anchor": "end", ...small },
+  svgPart("text", { x: s.width - 4, y: s.deck + 28, "text-anchor": "end", ...small },
     `disc ${shortNumber(animation.disc_velocity)} mm/s \u2192`),
   svgPart("path", { d: loopPath(block, toX, toY), fill: "none", stroke: ink.blue, "stroke-width": 1.4 }),
   svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: "#444" }),
   svgPart("text", { x: s.plotLeft - 4, y: s.plotTop + 6, "text-anchor": "end", ...small }, shortNumber(bounds.high)),
   svgPart("text", { x: s.plotLeft - 4, y: s.plotBottom, "text-anchor": "end", ...small }, shortNumber(bounds.low)),
   svgPart("text", { x: s.plotLeft - 4, y: (s.plotTop + s.plotBottom) / 2 + 4, "text-anchor": "end", ...small }, "mm"),
+  svgPart("text", { x: s.plotLeft, y: s.plotTop - 8, ...small }, "displacement of the block"),
   svgPart("text", { x: s.plotLeft, y: s.plotBottom + 16, ...small }, "0 s"),
   svgPart("text", { x: s.plotRight, y: s.plotBottom + 16, "text-anchor": "end", ...small }, `${shortNumber(loop)} s`),
   dot);
@@ -105,10 +106,10 @@ function usualSpeed(loop) {
   return best;
 }
 
-/** Puts an animation into `parent`: blocks side by side, play and pause, a slider of the time, the speed. */
-function animationItem(parent, animation) {
+/** An animation: blocks side by side, play and pause, a slider of the time, the speed. */
+function animationFigure(animation) {
   const blocks = animation.blocks.filter((block) => block.time.length > 1);
-  if (!blocks.length) return;
+  if (!blocks.length) return make("div");
   const all = blocks.flatMap((block) => block.displacement);
   const bounds = { low: all.reduce((a, b) => Math.min(a, b)), high: all.reduce((a, b) => Math.max(a, b)) };
   const scenes = blocks.map((block) => blockScene(block, animation, bounds));
@@ -128,7 +129,6 @@ function animationItem(parent, animation) {
     make("figcaption", {}, make("h3", {}, animation.title), animation.note ? make("p", {}, animation.note) : null), row,
     make("div", { className: "tools" }, button, make("label", {}, "speed ", select), make("label", {}, "time ", slider),
       shown));
-  parent.append(figure);
 
   function show(at) {
     time = at;
@@ -168,4 +168,5 @@ function animationItem(parent, animation) {
   show(0);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
   addEventListener("beforeprint", () => play(false));
+  return figure;
 }
