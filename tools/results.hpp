@@ -36,18 +36,14 @@ class ReportFiles {
 template <class Result>
 void write_results(const Settings& s, const Result& result, const std::vector<std::string>& arguments,
                    const tribofit::ReportOptions& shown) {
-  std::optional<tribofit::WholeFile> json, page;
+  std::optional<tribofit::WholeFile> json;
   if (!s.json.empty()) {
     json.emplace(s.json == "-" ? "/dev/stdout" : s.json);
     json->write(to_json(result, {arguments}));
     json->finish();
   }
-  if (!s.report.empty()) {
-    page.emplace(s.report);
-    page->write(report_page(report_of(result, shown)));
-    page->finish();
-  }
+  ReportFiles drawn(s, [&] { return report_of(result, shown); });
   if (!s.csv.empty()) write_csv_folder(s.csv, result);
-  if (page) page->commit();
+  drawn.commit();
   if (json) json->commit();
 }

@@ -17,6 +17,7 @@ const itemMakers = {
     return make("details", {}, make("summary", {}, item.caption), whole);
   },
   chart: chartFigure,
+  animation: animationFigure,
 };
 
 /** Fills a section; charts that it has already are changed, not made anew. */
