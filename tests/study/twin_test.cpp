@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/twin.hpp"
 
 namespace {
 
@@ -192,6 +194,50 @@ TEST(Twin, WhatHasNoTwinSaysWhy) {
   for (Step& step : nowhere.steps) step.conditions.radius = {};
   input.trace = std::make_shared<Trace>(nowhere);
   EXPECT_THAT(identify_twin(input).twin.reason, HasSubstr("radius"));
+}
+
+template <class Item>
+const Item* item_of(const Report& report, const std::string& id) {
+  for (const ReportSection& section : report.sections) {
+    for (const ReportItem& item : section.items) {
+      const auto* found = std::get_if<Item>(&item);
+      if (found != nullptr && found->id == id) return found;
+    }
+  }
+  return nullptr;
+}
+
+TEST(Twin, ReportDrawsBothMotions) {
+  TwinOptions more;
+  more.simulations = 8;
+  const TwinIdentification result = identify_twin(record_with({}), {}, more);
+  const Report report = report_of(result);
+  const auto* chart = item_of<Chart>(report, "twin-portrait");
+  ASSERT_NE(chart, nullptr);
+  ASSERT_EQ(chart->lines.size(), 2u);
+  EXPECT_EQ(chart->lines[0].name, "measured");
+  EXPECT_EQ(chart->lines[1].name, "simulated, exponential");
+  // Nothing is hidden: both loops are those of the machine, to the scatter of break-away.
+  const PublishedTest test = published_test(0.015, BaseLaw::exponential);
+  const double top = 1e3 * test.radius * test.speed, limit = 1e3 * test.load * test.friction.mu_s / test.rig.stiffness;
+  for (const ChartLine& line : chart->lines) {
+    const double fastest = *std::max_element(line.y.begin(), line.y.end());
+    const double furthest = *std::max_element(line.x.begin(), line.x.end());
+    EXPECT_NEAR(fastest, top, 0.02 * top) << line.name;
+    EXPECT_NEAR(furthest, limit, 0.05 * limit) << line.name;
+  }
+  const auto* block = item_of<Animation>(report, "twin-block");
+  ASSERT_NE(block, nullptr);
+  ASSERT_EQ(block->blocks.size(), 2u);
+  EXPECT_NEAR(block->disc_velocity, top, 0.01 * top);
+  const auto* differences = item_of<Chart>(report, "twin-differences");
+  ASSERT_NE(differences, nullptr);
+  ASSERT_EQ(differences->lines.size(), 1u);
+  EXPECT_EQ(differences->panels[0].axis.names.size(), result.twin.measures.size());
+  for (std::size_t k = 0; k < differences->lines[0].x.size(); ++k) {
+    const auto measure = static_cast<std::size_t>(differences->lines[0].y[k]);
+    EXPECT_DOUBLE_EQ(differences->lines[0].x[k], result.twin.measures[measure].simulated[0].difference);
+  }
 }
 
 }  // namespace

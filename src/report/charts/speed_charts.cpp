@@ -17,16 +17,24 @@ constexpr const char* kDown = "begun in sliding (way down)";
 constexpr const char* kMeasured = "measured";
 constexpr const char* kRange = "95 % range of a critical speed";
 
-/// An upright mark at each critical speed.
+/// An upright mark at each critical speed; what happens at one speed shares a mark.
 void add_critical(const SpeedStudy& study, Chart& chart) {
+  constexpr double kSame = 1e-3;
+  const std::size_t first = chart.marks.size();
   const auto add = [&](double at, Dash dash, const char* text) {
-    if (std::isfinite(at)) chart.marks.push_back({at / kMillimetre, true, dash, text, 0});
+    if (!std::isfinite(at)) return;
+    for (std::size_t k = first; k < chart.marks.size(); ++k) {
+      ChartMark& mark = chart.marks[k];
+      if (std::abs(mark.at * kMillimetre / at - 1) > kSame) continue;
+      mark.text += std::string(", ") + text;
+      return;
+    }
+    chart.marks.push_back({at / kMillimetre, true, dash, text, 0});
   };
   const CriticalSpeed& c = study.critical;
   for (const double v : c.linear) add(v, Dash::dotted, "stability of sliding");
   add(c.stick_vanishes, Dash::dashed, "stick vanishes");
-  constexpr double kSame = 1.001;
-  if (!(c.stick_vanishes <= kSame * c.stick_returns)) add(c.stick_returns, Dash::dash_dotted, "stick returns");
+  add(c.stick_returns, Dash::dash_dotted, "stick returns");
 }
 
 /// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.

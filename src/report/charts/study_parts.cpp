@@ -55,7 +55,6 @@ Report study_report(const StudiedMachine& of, const std::string& kind, const std
   report.title = title;
   report.subtitle = made_by("Study") + "; the machine: " + of.source + ".";
   report.lead = std::move(lead);
-  report.warnings = of.notes;
   std::string law = of.machine.model.name();
   if (of.sharpness > 0) {
     law += fmt::format(", smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
@@ -73,6 +72,7 @@ void add_machine_sections(const StudiedMachine& of, const std::string& kind, con
                           Report& report) {
   ReportSection& machine = report.sections.emplace_back(ReportSection{"machine", "The machine", {}});
   machine.items.emplace_back(machine_table(of));
+  for (const std::string& note : of.notes) machine.items.emplace_back(soft_text("Note: " + note));
   ReportSection& run = report.sections.emplace_back(ReportSection{"run", "What was run", {}});
   std::vector<std::string> inputs = options.inputs;
   if (inputs.empty() && of.record) inputs = {of.record->path};
