@@ -88,8 +88,9 @@ const ChartLine* line_of(const Chart& chart, const std::string& name, std::size_
 
 TEST_F(CampaignReport, HasACounterpartOfEachFigure) {
   const Report all = report(false);
-  for (const char* id : {"fig05-rms-velocity", "fig06-velocity", "fig07-spectrum", "fig07-fundamental", "fig08-friction",
-                         "fig09-static-kinetic", "fig10-friction-1", "fig12-error-3", "scatter-exponential"}) {
+  for (const char* id :
+       {"fig05-rms-velocity", "fig06-velocity", "fig07-spectrum", "fig07-fundamental", "fig08-friction",
+        "fig09-static-kinetic", "fig10-friction-1", "fig12-error-3", "scatter-exponential"}) {
     const Chart* chart = chart_of(all, id);
     ASSERT_NE(chart, nullptr) << id;
     EXPECT_FALSE(chart->lines.empty()) << id;
@@ -128,6 +129,9 @@ TEST_F(CampaignReport, PublishedValuesStandBesideOurs) {
   const ChartLine* published = line_of(*chart_of(all, "fig09-static-kinetic"), "table.csv", 0);
   ASSERT_NE(published, nullptr);
   EXPECT_THAT(published->y, ::testing::ElementsAre(0.521, 0.512, 0.509));
+  const ChartLine* alpha = line_of(*chart_of(all, "table4-decay"), "table.csv", 0);
+  ASSERT_NE(alpha, nullptr);
+  EXPECT_THAT(alpha->y, ::testing::ElementsAre(0.03237, 0.04161, 0.05214));
   EXPECT_THAT(all.lead, HasSubstr("table.csv"));
 }
 

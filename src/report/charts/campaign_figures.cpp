@@ -131,6 +131,35 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
   return chart;
 }
 
+/// alpha and beta, the rest of Table 4 of [D]: a panel a law, both protocols.
+Chart decay_chart(const DrawnCampaign& of, const OverConditions& over) {
+  Chart chart = over_conditions(over, "table4-decay", "Decay factors of the laws");
+  chart.panels.clear();
+  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    std::string name, unit;
+    const auto value_of_group = [&](std::size_t g, const char* protocol) {
+      for (const PooledGroup::OfFit& fit : of.groups()[g].fits) {
+        if (fit.law != to_string(law) || fit.protocol != protocol || fit.parameters.size() < 3) continue;
+        name = fit.parameters[2].name, unit = fit.parameters[2].unit;
+        return mean_of(&fit.parameters[2]);
+      }
+      return Maybe{};
+    };
+    const std::size_t panel = chart.panels.size();
+    const auto add = [&](const char* line, const char* protocol, std::size_t k) {
+      add_over_conditions(
+          over, line, marked(k), panel, [&](std::size_t g) { return value_of_group(g, protocol); }, chart);
+    };
+    add("joint fit", "joint", 0);
+    add("published protocol", "published", 1);
+    if (name.empty()) continue;
+    add_earlier(of, over, name, panel, chart);
+    chart.panels.push_back({.axis = {.quantity = name, .unit = unit}});
+  }
+  chart.height = 110 + 180 * static_cast<int>(std::max<std::size_t>(1, chart.panels.size()));
+  return chart;
+}
+
 /// A chart with a panel for each of the groups shown.
 template <class AddLine>
 Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std::string& title, const ChartAxis& x,
@@ -242,6 +271,7 @@ ReportSection motion_figures(const DrawnCampaign& of) {
   add_drawn(fundamental_chart(of, over), section);
   add_drawn(cycles_chart(of, false), section);
   add_drawn(levels_chart(of, over), section);
+  add_drawn(decay_chart(of, over), section);
   return section;
 }
 

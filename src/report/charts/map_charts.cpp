@@ -91,6 +91,10 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const Rows&
       row.push_back(largest(rows, measure, down[j], down[j + 1], across[i], across[i + 1]) / info.si);
     }
   }
+  const bool any_gap = std::any_of(map.z.begin(), map.z.end(), [](const std::vector<double>& row) {
+    return std::any_of(row.begin(), row.end(), [](double z) { return !std::isfinite(z); });
+  });
+  if (any_gap) chart.note = "White: nothing there, the block slides or its motion did not settle.";
   chart.map = std::move(map);
   ChartLine edge = edge_of(request, rows);
   if (!edge.x.empty()) chart.lines.push_back(std::move(edge));

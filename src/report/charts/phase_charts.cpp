@@ -25,16 +25,20 @@ bool is_own(const StudiedMachine& of, const Portrait& portrait) {
   return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSame;
 }
 
-void add_loop(const std::string& name, const std::vector<double>& displacement, const std::vector<double>& velocity,
-              std::size_t bins, const Stroke& stroke, Chart& chart) {
-  const std::vector<std::size_t> kept = kept_samples({displacement, velocity}, bins);
-  chart.lines.push_back({name, picked(displacement, kept, kMillimetre), picked(velocity, kept, kMillimetre), stroke});
+/// motion: simulated or measured, in the plane of displacement and velocity.
+template <class AnyMotion>
+void add_loop(const std::string& name, const AnyMotion& motion, std::size_t bins, const Stroke& stroke, Chart& chart) {
+  const std::vector<std::size_t> kept = kept_samples({motion.displacement, motion.velocity}, motion.sticks, bins);
+  chart.lines.push_back(
+      {name, picked(motion.displacement, kept, kMillimetre), picked(motion.velocity, kept, kMillimetre), stroke});
 }
 
-/// A settled cycle with the sample it began with, so that the loop is closed.
-std::vector<double> closed(std::vector<double> channel) {
-  if (!channel.empty()) channel.push_back(channel.front());
-  return channel;
+/// A settled cycle, closed by the sample it began with.
+void add_cycle(const std::string& name, const SimulatedMotion& cycle, const Stroke& stroke, Chart& chart) {
+  add_loop(name, cycle, kCycleBins, stroke, chart);
+  ChartLine& line = chart.lines.back();
+  line.x.push_back(line.x.front());
+  line.y.push_back(line.y.front());
 }
 
 Chart plane(const std::string& id, const std::string& title) {
@@ -50,16 +54,15 @@ Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::si
   Chart chart = plane(fmt::format("phase-{}", number),
                       fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)));
   const Stroke start = {.colour = Colour::grey, .dash = Dash::dotted, .width = 1};
-  add_loop("from the start", portrait.start.displacement, portrait.start.velocity, kStartBins, start, chart);
+  add_loop("from the start", portrait.start, kStartBins, start, chart);
   if (portrait.cycle.size() > 0) {
-    add_loop("settled cycle", closed(portrait.cycle.displacement), closed(portrait.cycle.velocity), kCycleBins,
-             {.colour = Colour::black, .width = 2}, chart);
+    add_cycle("settled cycle", portrait.cycle, {.colour = Colour::black, .width = 2}, chart);
   }
   if (is_own(of, portrait)) {
     const BlockMotion measured = measured_motion(of);
     if (measured.size() > 0) {
-      add_loop(fmt::format("measured, {} cycles", measured.cycles), measured.displacement, measured.velocity,
-               kCycleBins, {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
+      add_loop(fmt::format("measured, {} cycles", measured.cycles), measured, kCycleBins,
+               {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
     }
   }
   chart.marks.push_back({portrait.velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
@@ -74,8 +77,7 @@ Chart all_portraits(const std::vector<const Portrait*>& drawn) {
   for (const Portrait* portrait : drawn) {
     const Stroke stroke = stroke_of(k++);
     if (portrait->cycle.size() == 0) continue;
-    add_loop(speed_text(*portrait), closed(portrait->cycle.displacement), closed(portrait->cycle.velocity), kCycleBins,
-             stroke, chart);
+    add_cycle(speed_text(*portrait), portrait->cycle, stroke, chart);
   }
   chart.height = 420;
   return chart;
@@ -104,7 +106,7 @@ Chart time_chart(const Portrait& portrait, std::size_t number) {
                   {.axis = {.quantity = "velocity v_{b}", .unit = "mm/s"}},
                   {.axis = {.quantity = "friction", .unit = "1"}}};
   const SimulatedMotion& m = portrait.start;
-  const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity, m.friction}, kStartBins);
+  const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity, m.friction}, m.sticks, kStartBins);
   const std::vector<double> time = picked(m.time, kept, 1);
   const auto add = [&](const char* name, const std::vector<double>& channel, double unit, std::size_t panel) {
     ChartLine line{name, time, picked(channel, kept, unit), stroke_of(0)};

@@ -16,8 +16,8 @@ Chart curve_chart(const Response& study) {
   Chart chart;
   chart.id = "response-curve";
   chart.title = "Amplitude that a force of each frequency would give";
-  chart.note = fmt::format("A(omega) = F/sqrt((k - m omega^{{2}})^{{2}} + (c omega)^{{2}}) with F = {} N.",
-                           significant(study.force, 4));
+  chart.note =
+      fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.", significant(study.force, 4));
   chart.x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true};
   chart.panels[0].axis = {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true};
   chart.lines.push_back({"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)});
@@ -80,6 +80,7 @@ ReportTable harmonics_table(const Response& study) {
     table.rows.push_back({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),
                           significant(h.displacement / kMillimetre, 4), significant(h.velocity / kMillimetre, 4)});
   }
+  table.folded = table.rows.size() > 30;
   return table;
 }
 

@@ -84,9 +84,17 @@ void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::siz
   chart.lines.push_back(std::move(line));
 }
 
+/// Speeds in equal ratios are seen apart on a logarithmic axis.
+ChartAxis speed_axis(const SpeedStudy& study) {
+  constexpr double kWide = 20;
+  const std::vector<double>& v = study.velocity;
+  const bool wide = !v.empty() && v.front() > 0 && v.back() > kWide * v.front();
+  return {.quantity = "speed of the disc", .unit = "mm/s", .logarithmic = wide};
+}
+
 Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const std::vector<std::string>& names) {
   Chart chart;
-  chart.x = {.quantity = "speed of the disc", .unit = "mm/s"};
+  chart.x = speed_axis(study);
   chart.panels.clear();
   for (const std::string& name : names) {
     const MeasureInfo& measure = measure_named(name);
@@ -115,7 +123,7 @@ Chart growth_chart(const SpeedStudy& study) {
   chart.id = "growth-rate";
   chart.title = "Growth of a small vibration about steady sliding";
   chart.note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.";
-  chart.x = {.quantity = "speed of the disc", .unit = "mm/s"};
+  chart.x = speed_axis(study);
   chart.panels[0].axis = {.quantity = "growth rate", .unit = "1/s"};
   chart.lines.push_back({"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)});
   add_range(study.linear_range, 0, chart);

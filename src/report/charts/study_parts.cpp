@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -46,6 +47,25 @@ ReportTable machine_table(const StudiedMachine& of) {
   return table;
 }
 
+/// The numbers of rig and drive, then the law.
+std::vector<std::pair<std::string, std::string>> facts_of(const StudiedMachine& of) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const char* name : {"mass", "stiffness", "damping-ratio", "load", "radius", "speed", "velocity"}) {
+    const Variable v = variable_named(of.machine, name);
+    facts.emplace_back(name == std::string("velocity") ? "omega r" : v.name,
+                       significant(value_of(of.machine, v.name) / v.si, 4) + (v.unit == "1" ? "" : " " + v.unit));
+  }
+  const double natural = of.machine.rig.natural_frequency() / (2 * std::numbers::pi);
+  facts.emplace_back("natural frequency", significant(natural, 4) + " Hz");
+  std::string law = of.machine.model.name();
+  if (of.sharpness > 0) {
+    law += fmt::format(", smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
+  }
+  facts.emplace_back("law", std::move(law));
+  facts.emplace_back("friction", machine_sentences(of)[1]);
+  return facts;
+}
+
 }  // namespace
 
 Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
@@ -55,12 +75,7 @@ Report study_report(const StudiedMachine& of, const std::string& kind, const std
   report.title = title;
   report.subtitle = made_by("Study") + "; the machine: " + of.source + ".";
   report.lead = std::move(lead);
-  std::string law = of.machine.model.name();
-  if (of.sharpness > 0) {
-    law += fmt::format(", smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
-  }
-  const std::vector<std::string> sentences = machine_sentences(of);
-  report.facts = {{"law", std::move(law)}, {"rig and drive", sentences[0]}, {"friction", sentences[1]}};
+  report.facts = facts_of(of);
   report.facts.emplace_back("study", kind);
   if (!options.inputs.empty() || of.record) {
     report.facts.emplace_back("record", of.record ? of.record->path : options.inputs.front());
@@ -114,11 +129,25 @@ std::vector<double> in_unit(std::span<const double> values, double unit) {
   return out;
 }
 
-std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels, std::size_t bins) {
+std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels,
+                                      std::span<const std::uint8_t> sticks, std::size_t bins) {
+  std::vector<Span> phases;
+  for (std::size_t i = 0; i < sticks.size(); i = phases.back().end) {
+    std::size_t end = i;
+    while (end < sticks.size() && sticks[end] == sticks[i]) ++end;
+    phases.push_back({i, end});
+  }
+  if (phases.size() > bins / 4) phases = {{0, sticks.size()}};  // too many to be told apart
+  const std::size_t of_phase = std::max<std::size_t>(2, 2 * bins / std::max<std::size_t>(1, phases.size()));
   std::set<std::size_t> kept;
-  for (const std::span<const double> channel : channels) {
-    const std::vector<std::size_t> of_channel = drawn_samples(channel, bins);
-    kept.insert(of_channel.begin(), of_channel.end());
+  for (const Span& phase : phases) {
+    const bool stick = sticks[phase.begin] != 0 && phases.size() > 1;
+    const std::size_t here = phases.size() == 1 ? bins : stick ? of_phase / 4 : of_phase - of_phase / 4;
+    for (const std::span<const double> channel : channels) {
+      for (const std::size_t i : drawn_samples(channel.subspan(phase.begin, phase.size()), here)) {
+        kept.insert(phase.begin + i);
+      }
+    }
   }
   return {kept.begin(), kept.end()};
 }
@@ -133,7 +162,7 @@ std::vector<double> picked(std::span<const double> values, std::span<const std::
 Animation::Block animated(const std::string& name, std::span<const double> time, std::span<const double> displacement,
                           std::span<const double> friction, std::span<const std::uint8_t> sticks) {
   constexpr std::size_t kBins = 250;
-  const std::vector<std::size_t> kept = kept_samples({displacement, friction}, kBins);
+  const std::vector<std::size_t> kept = kept_samples({displacement, friction}, sticks, kBins);
   Animation::Block block{
       name, picked(time, kept, 1), picked(displacement, kept, kMillimetre), picked(friction, kept, 1), {}};
   for (double& t : block.time) t -= time.front();

@@ -83,7 +83,7 @@ Chart motion_chart(const Twin& twin, const std::string& friction_unit) {
   std::size_t k = 0;
   for (const NamedMotion& one : motions_of(twin)) {
     const BlockMotion& m = *one.motion;
-    const std::vector<std::size_t> kept = kept_samples({m.velocity, m.friction}, kBins);
+    const std::vector<std::size_t> kept = kept_samples({m.velocity, m.friction}, m.sticks, kBins);
     const std::vector<double> time = picked(m.time, kept, 1);
     const Stroke stroke = stroke_for(k++);
     const auto add = [&](const std::vector<double>& channel, double unit, std::size_t panel) {
@@ -121,7 +121,7 @@ Chart portrait_chart(const Twin& twin) {
   std::size_t k = 0;
   for (const NamedMotion& one : motions_of(twin)) {
     const BlockMotion& m = *one.motion;
-    const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity}, kBins);
+    const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity}, m.sticks, kBins);
     chart.lines.push_back(
         {one.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke_for(k++)});
   }
