@@ -64,7 +64,7 @@ ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& ob
       const double e = std::abs((mu - model[i]) / mu);
       Bin& bin = bins[bin_of(v, bins_per_velocity)];
       ++bin.samples;
-      const double direction = v < 0 ? -1 : 1;
+      const double direction = model[i] < 0 ? -1 : 1;  // of the slip: noise may turn v round near rest
       bin.friction += direction * mu;
       bin.fitted += direction * model[i];
       bin.relative += e;

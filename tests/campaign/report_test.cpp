@@ -107,7 +107,8 @@ TEST_F(CampaignReport, HasACounterpartOfEachFigure) {
 }
 
 TEST_F(CampaignReport, LevelsOverTheRadiusAreTheTruth) {
-  const Chart& chart = *chart_of(report(false), "fig09-static-kinetic");
+  const Report all = report(false);
+  const Chart& chart = *chart_of(all, "fig09-static-kinetic");
   const ChartLine* mu_s = line_of(chart, "exponential law", 0);
   const ChartLine* drop = line_of(chart, "exponential law", 2);
   ASSERT_TRUE(mu_s != nullptr && drop != nullptr);

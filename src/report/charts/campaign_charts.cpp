@@ -259,7 +259,7 @@ std::string lead_of(const DrawnCampaign& of) {
   for (const std::string& trend : trend_sentences(of.pooled.trends)) {
     if (of.pooled.trends.trends.empty() || trend.rfind("none", 0) == 0) continue;
     text += " Trend: " + trend + ".";
-    if (text.size() > 600) break;
+    if (text.size() > 300) break;
   }
   return text;
 }

@@ -68,8 +68,8 @@ Maybe fundamental_of(const DrawnCampaign& of, std::size_t group) {
 Chart fundamental_chart(const DrawnCampaign& of, const OverConditions& over) {
   Chart chart = over_conditions(over, "fig07-fundamental", "Stick-slip frequency and amplitude");
   chart.panels = {{.axis = {.quantity = "frequency", .unit = "Hz"}},
-                  {.axis = {.quantity = "fundamental of v_{r}", .unit = "mm/s"}},
-                  {.axis = {.quantity = "peaks of v_{r}", .unit = "mm/s"}}};
+                  {.axis = {.quantity = "fundamental", .unit = "mm/s"}},
+                  {.axis = {.quantity = "peak of v_{r}", .unit = "mm/s"}}};
   const auto measure = [&](const char* name, std::size_t panel) {
     add_over_conditions(
         over, "this campaign", marked(0), panel,
@@ -80,7 +80,8 @@ Chart fundamental_chart(const DrawnCampaign& of, const OverConditions& over) {
   add_over_conditions(
       over, "this campaign", marked(0), 1, [&](std::size_t g) { return fundamental_of(of, g); }, chart);
   measure("amplitude", 2);
-  chart.height = 560;
+  chart.note += " The fundamental is the amplitude of the sine of that frequency in v_r.";
+  chart.height = 600;
   return chart;
 }
 
@@ -289,7 +290,7 @@ ReportSection law_figures(const DrawnCampaign& of) {
     Chart friction = friction_chart(*figures, of.friction_unit()), error = error_chart(*figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
     friction.title = "Friction over velocity, " + of.name_of(of.shown[k]);
-    friction.note = "Means in bins of v_{r} of " + run + ", and what the laws say there.";
+    friction.note = "Means in bins of v_r of " + run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
     error.title = "Relative error (Eq 5), " + of.name_of(of.shown[k]);
     error.note = "Of the mean friction of each bin.";

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
+#include <utility>
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
@@ -62,7 +62,13 @@ std::string DrawnCampaign::earlier_name() const {
 
 DrawnCampaign drawn_campaign(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
                              const std::optional<ComparisonReport>& comparison) {
-  return {results, runs, pooled, comparison ? &*comparison : nullptr, thinned(pooled.groups.size(), kShownGroups)};
+  std::vector<std::size_t> order, shown;  // as the charts over the conditions have them
+  const OverConditions over(pooled.groups);
+  for (const OverConditions::Series& series : over.series()) {
+    order.insert(order.end(), series.groups.begin(), series.groups.end());
+  }
+  for (const std::size_t k : thinned(order.size(), kShownGroups)) shown.push_back(order[k]);
+  return {results, runs, pooled, comparison ? &*comparison : nullptr, std::move(shown)};
 }
 
 OverConditions::OverConditions(std::span<const PooledGroup> groups) {

@@ -130,6 +130,7 @@ function annotationsOf(chart) {
     ? { xref: "x", x: log(chart.x, mark.at), xanchor: "left", yref: "paper", y: 1, yanchor: "top", textangle: 0 }
     : { xref: "paper", x: 0, xanchor: "left", yref: nth("y", mark.panel), y: log(chart.panels[mark.panel || 0].axis, mark.at),
       yanchor: "bottom" })).map((place, k) => ({ ...place, text: marked((chart.marks || []).filter((m) => m.text)[k].text),
+    yshift: place.yref === "paper" ? -15 * (k % 3) : 0, // words of upright marks that are close stand below each other
     showarrow: false, font: { size: 11 }, bgcolor: "rgba(255,255,255,0.7)" }));
   for (const label of chart.labels || []) {
     words.push({ x: log(chart.x, label.x), y: log(chart.panels[label.panel || 0].axis, label.y), yref: nth("y", label.panel),
