@@ -30,7 +30,7 @@ function prose(text) {
 /** A table; columns named in `numeric` are set to the right. */
 function table(caption, header, rows, numeric = []) {
   const align = (k) => (numeric.includes(k) ? { className: "number" } : {});
-  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, content);
+  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, String(content).replace("+/-", "±"));
   return make("div", { className: "scroll", tabindex: "0", role: "region", "aria-label": caption || "table" },
     make("table", {}, caption ? make("caption", {}, caption) : null,
       make("thead", {}, make("tr", {}, ...header.map((name, k) => cell("th", name, k, { scope: "col" })))),
