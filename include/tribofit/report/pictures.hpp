@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tribofit/report/report.hpp"
+
+namespace tribofit {
+
+/// Charts of a report as pictures for a paper: a file of each, as wide as a column of a journal (85 mm), with a
+/// sans-serif face of 8 points and units in the titles of its axes. Their captions belong to the paper: figures.txt
+/// beside them has title and note of each. gnuplot draws them, which must be installed when they are written.
+
+enum class PictureFormat { svg, pdf, png };
+inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
+
+/// "svg", "pdf", "png".
+std::string name_of(PictureFormat format);
+
+/// Whether gnuplot is found.
+bool can_write_pictures();
+
+/// Pictures of all charts of a report, made and on the disc but without their names until commit().
+///
+/// Lines that the page shows only when its legend is used are left out. Names in the charts are shown as they are,
+/// whatever they hold. Throws InputError where gnuplot is missing or fails, or the folder cannot be written; nothing is
+/// left then. Cost: linear in points, and a fraction of a second for each picture.
+class PictureFiles {
+ public:
+  PictureFiles(const Report& report, const std::string& folder, PictureFormat format);
+  ~PictureFiles();
+  PictureFiles(PictureFiles&&) noexcept;
+  PictureFiles& operator=(PictureFiles&&) noexcept;
+
+  /// Gives the files their names: ID.svg (pdf, png) of each chart and figures.txt.
+  void commit();
+
+ private:
+  struct Files;
+  std::unique_ptr<Files> files_;
+};
+
+/// Writes the pictures of a report into `folder`, all of them or none.
+void write_pictures(const Report& report, const std::string& folder, PictureFormat format);
+
+}  // namespace tribofit

@@ -1,0 +1,289 @@
+#include "report/charts/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "report/charts/gnuplot_text.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kMillimetresPerPixel = 0.16;  // of the height a chart has on the page
+constexpr double kEdge = 1;                    // blank at the edges
+constexpr double kBetweenPanels = 2.2, kLeastPanel = 14;
+constexpr double kColourBox = 2.5;
+
+bool drawn(const ChartLine& line) {
+  return line.shown;
+}
+
+/// Adds what a line shows at its k-th point where its abscissa is within the range (any where `within` is null).
+template <class Add>
+void each_ordinate(const ChartLine& line, const Scale* within, Add add) {
+  const std::size_t count = line.x.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (within != nullptr) {
+      const double part = within->part(line.x[k]);
+      if (!(part >= -1e-9 && part <= 1 + 1e-9)) continue;
+    }
+    if (k < line.y.size()) add(line.y[k]);
+    if (k < line.low.size()) add(line.low[k]);
+    if (k < line.high.size()) add(line.high[k]);
+  }
+}
+
+Extent extent_of_abscissa(const Chart& chart) {
+  Extent extent(chart.x.logarithmic);
+  for (const ChartLine& line : chart.lines) {
+    if (!drawn(line)) continue;
+    for (std::size_t k = 0; k < line.x.size(); ++k) {
+      const bool there =
+          (k < line.y.size() && std::isfinite(line.y[k])) || (k < line.low.size() && std::isfinite(line.low[k]));
+      if (there) extent.add(line.x[k]);
+    }
+  }
+  for (const ChartBars& bars : chart.bars) {
+    extent.add(0);
+    for (const double value : bars.values) extent.add(value);
+  }
+  if (chart.map) {
+    for (const double edge : cell_edges(chart.map->x, chart.x.logarithmic)) extent.add(edge);
+  }
+  return extent;
+}
+
+Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
+  const bool logarithmic = chart.panels[panel].axis.logarithmic;
+  Extent extent(logarithmic);
+  for (const ChartLine& line : chart.lines) {
+    if (drawn(line) && line.panel == panel) each_ordinate(line, &x, [&](double value) { extent.add(value); });
+  }
+  for (const ChartMark& mark : chart.marks) {
+    if (!mark.upright && mark.panel == panel) extent.add(mark.at);
+  }
+  if (chart.map && panel == 0) {
+    for (const double edge : cell_edges(chart.map->y, logarithmic)) extent.add(edge);
+  }
+  return extent;
+}
+
+/// Points at the very edge would be cut in half; a line or a map may reach it.
+double margin_of_abscissa(const Chart& chart) {
+  if (!chart.bars.empty()) return 0.04;
+  for (const ChartLine& line : chart.lines) {
+    if (drawn(line) && (!line.stroke.joined || line.stroke.symbol != Symbol::none)) return 0.03;
+  }
+  return 0;
+}
+
+void add_key(std::vector<Key>& keys, const ChartLine& line) {
+  if (!line.listed || !drawn(line)) return;
+  auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == line.name; });
+  if (at == keys.end()) at = keys.insert(keys.end(), {line.name, nullptr, nullptr, nullptr, nullptr, 0, 0});
+  if (!line.low.empty() && !line.bars && at->band == nullptr) at->band = &line;
+  if (!line.y.empty() && at->line == nullptr) at->line = &line;
+}
+
+std::vector<Key> keys_of(const Chart& chart) {
+  std::vector<Key> keys;
+  for (const ChartLine& line : chart.lines) add_key(keys, line);
+  for (const ChartBars& bars : chart.bars) keys.push_back({bars.name, nullptr, nullptr, &bars, nullptr, 0, 0});
+  if (keys.size() == 1) keys.clear();  // one alone needs no name
+  std::set<Shade> shades;
+  for (const Stretch& stretch : chart.stretches) {
+    if (!shades.insert(stretch.shade).second) continue;
+    keys.push_back({meaning_of(stretch.shade), nullptr, nullptr, nullptr, &stretch, 0, 0});
+  }
+  return keys;
+}
+
+/// Sets the entries side by side, as many as go into a row. Returns the height they take.
+double place(std::vector<Key>& keys) {
+  constexpr double kBetween = 3;
+  double x = kEdge, depth = 0;
+  for (Key& key : keys) {
+    key.name = shortened(key.name, kPictureWidth - 2 * kEdge - kKeySample - kKeyGap);
+    const double width = kKeySample + kKeyGap + width_of(key.name);
+    if (x > kEdge && x + width > kPictureWidth - kEdge) {
+      x = kEdge;
+      depth += kTextLine;
+    }
+    key.x = x;
+    key.y = depth;
+    x += width + kBetween;
+  }
+  const double height = keys.empty() ? 0 : depth + kTextLine;
+  for (Key& key : keys) key.y = kEdge + height - kTextLine / 2 - key.y;
+  return height;
+}
+
+double widest(const Scale& scale) {
+  double width = 0;
+  for (const Scale::Tic& tic : scale.tics) width = std::max(width, width_of(tic.text));
+  return width;
+}
+
+/// Names of things may not take more than a part of the picture.
+void shorten_names(Scale& scale, double most) {
+  if (!scale.named) return;
+  for (Scale::Tic& tic : scale.tics) tic.text = shortened(tic.text, most);
+}
+
+/// A title that is longer than its axis goes on two lines, broken at the blank nearest to its middle.
+TitleLines broken(const std::string& title, double length) {
+  if (title.empty()) return {};
+  const std::string line = one_line(title);
+  if (width_of(line) <= length) return {line};
+  std::size_t best = std::string::npos;
+  for (std::size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1)) {
+    const auto off = [&](std::size_t k) {
+      return std::abs(2 * static_cast<double>(k) - static_cast<double>(line.size()));
+    };
+    if (best == std::string::npos || off(at) < off(best)) best = at;
+  }
+  if (best == std::string::npos) return {line};
+  return {line.substr(0, best), line.substr(best + 1)};
+}
+
+/// Heights of the panels: what is left of the chart's height beside axis and gaps, by their parts.
+std::vector<double> heights_of(const Chart& chart) {
+  const double gaps = kBetweenPanels * static_cast<double>(chart.panels.size() - 1);
+  const double all = kMillimetresPerPixel * chart.height - 2 * kTextLine - kTicGap - 2 * kEdge - gaps;
+  double parts = 0;
+  for (const ChartPanel& panel : chart.panels) parts += panel.part;
+  std::vector<double> heights;
+  for (const ChartPanel& panel : chart.panels) {
+    heights.push_back(std::max(kLeastPanel, parts > 0 ? all * panel.part / parts : 0));
+  }
+  return heights;
+}
+
+void add_colours(const Chart& chart, PictureLayout& layout, double height) {
+  const HeatMap& map = *chart.map;
+  Extent extent(false);
+  for (const std::vector<double>& row : map.z) {
+    for (const double value : row) extent.add(value);
+  }
+  ChartAxis axis;
+  axis.quantity = map.quantity;
+  axis.unit = map.unit;
+  axis.low = map.low;
+  axis.high = map.high;
+  layout.colours = scale_of(axis, extent, 0, static_cast<int>(height / 8));
+}
+
+/// Margins left and right; sets where titles go. Returns the right edge of the data.
+double place_across(const Chart& chart, PictureLayout& layout, const std::vector<double>& heights) {
+  double tics = 0;
+  std::size_t lines = 0;
+  for (std::size_t k = 0; k < chart.panels.size(); ++k) {
+    shorten_names(layout.y[k], 0.42 * kPictureWidth);
+    tics = std::max(tics, widest(layout.y[k]));
+    layout.titles.push_back(broken(layout.y[k].title, heights[k] + kBetweenPanels));
+    lines = std::max(lines, layout.titles.back().size());
+  }
+  layout.title_x = kEdge + kTextLine / 2;
+  const double left = kEdge + static_cast<double>(lines) * kTextLine + tics + kTicGap + 0.4;
+  double right = kPictureWidth - kEdge - 1.5;
+  if (chart.map) {
+    const bool titled = !layout.colours.title.empty();
+    layout.colour_title_x = kPictureWidth - kEdge - kTextLine / 2;
+    layout.colour_box.width = kColourBox;
+    layout.colour_box.left =
+        kPictureWidth - kEdge - (titled ? kTextLine + 0.6 : 0) - widest(layout.colours) - kTicGap - kColourBox;
+    right = layout.colour_box.left - 2;
+  }
+  for (Area& area : layout.panels) {
+    area.left = left;
+    area.width = right - left;
+  }
+  return right;
+}
+
+/// Number of tics that have room beside each other.
+int tics_across(const Chart& chart, double width) {
+  const Extent extent = extent_of_abscissa(chart);
+  const Scale trial = scale_of(chart.x, extent, 0, 5);
+  return std::max(2, static_cast<int>(width / (widest(trial) + 5)));
+}
+
+/// The last number of the abscissa may reach beyond the data.
+void keep_last_tic_inside(PictureLayout& layout) {
+  for (const Scale::Tic& tic : layout.x.tics) {
+    const double at = layout.panels.front().left + layout.x.part(tic.at) * layout.panels.front().width;
+    const double over = at + width_of(tic.text) / 2 - (kPictureWidth - 0.3);
+    if (over <= 0 || layout.upright_names || layout.colour_box.width > 0) continue;
+    for (Area& area : layout.panels) area.width -= over;
+  }
+}
+
+/// Names of the abscissa stand on end where they would touch. Returns the height of its numbers or names.
+double place_names(PictureLayout& layout) {
+  if (!layout.x.named) return kTextLine;
+  const double room = layout.panels.front().width / static_cast<double>(layout.x.tics.size());
+  layout.upright_names = widest(layout.x) + 1.5 > room;
+  if (!layout.upright_names) return kTextLine;
+  shorten_names(layout.x, 30);
+  return widest(layout.x) + 0.5;
+}
+
+void place_upwards(PictureLayout& layout, const std::vector<double>& heights, double keys_height, double names_height) {
+  double bottom = kEdge + keys_height + (keys_height > 0 ? 1 : 0);
+  if (!layout.x.title.empty()) {
+    layout.x_title_y = bottom + kTextLine / 2;
+    bottom += kTextLine;
+  }
+  bottom += names_height + kTicGap;
+  for (std::size_t k = heights.size(); k-- > 0;) {
+    layout.panels[k].bottom = bottom;
+    layout.panels[k].height = heights[k];
+    bottom += heights[k] + kBetweenPanels;
+  }
+  layout.height = bottom - kBetweenPanels + kEdge + 1;
+  layout.colour_box.bottom = layout.panels.back().bottom;
+  layout.colour_box.height = layout.panels.front().bottom + layout.panels.front().height - layout.colour_box.bottom;
+}
+
+}  // namespace
+
+std::vector<double> cell_edges(const std::vector<double>& centres, bool logarithmic) {
+  std::vector<double> at = centres, edges;
+  if (logarithmic) {
+    for (double& value : at) value = std::log(value);
+  }
+  if (at.size() == 1) {
+    edges = {at[0] - 0.5, at[0] + 0.5};
+  } else if (at.size() > 1) {
+    edges.push_back(at[0] - (at[1] - at[0]) / 2);
+    for (std::size_t k = 1; k < at.size(); ++k) edges.push_back((at[k - 1] + at[k]) / 2);
+    edges.push_back(at.back() + (at.back() - at[at.size() - 2]) / 2);
+  }
+  if (logarithmic) {
+    for (double& value : edges) value = std::exp(value);
+  }
+  return edges;
+}
+
+PictureLayout layout_of(const Chart& chart) {
+  PictureLayout layout;
+  const std::vector<double> heights = heights_of(chart);
+  layout.panels.resize(heights.size());
+  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart), 5);
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    const double margin = chart.map ? 0 : 0.05;
+    const int most = std::max(3, static_cast<int>(heights[k] / 6));
+    layout.y.push_back(scale_of(chart.panels[k].axis, extent_of_panel(chart, k, layout.x), margin, most));
+  }
+  if (chart.map) add_colours(chart, layout, heights.front());
+  layout.keys = keys_of(chart);
+  place_across(chart, layout, heights);
+  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart),
+                      tics_across(chart, layout.panels.front().width));
+  const double names = place_names(layout);
+  keep_last_tic_inside(layout);
+  place_upwards(layout, heights, place(layout.keys), names);
+  return layout;
+}
+
+}  // namespace tribofit
