@@ -109,6 +109,7 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
   if (campaign.runs.size() > 1 && !s.continued_in.empty()) {
     throw CLI::ValidationError("--continue goes with one trace at a time");
   }
+  if (!s.figures.empty() && !s.shard.empty()) throw CLI::ValidationError("--figures goes with `identify merge`");
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
     throw CLI::ValidationError("--out is the folder of the traces; name another");
   }

@@ -33,6 +33,7 @@ void check_usage(const Settings& s, const std::vector<Input>& inputs) {
     alone(!s.json.empty(), "--json");
     alone(!s.csv.empty(), "--csv");
     alone(!s.report.empty(), "--report");
+    alone(!s.figures.empty(), "--figures");
     alone(!s.second_file.empty(), "--with");
     alone(!s.continued_in.empty(), "--continue");
   }

@@ -9,6 +9,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/own_files.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/report/pictures.hpp"
 
 using namespace tribofit;
 
@@ -65,6 +66,11 @@ void add_output_options(CLI::App& app, Settings& s) {
 
 void add_report_option(CLI::App& app, Settings& s) {
   app.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)")->group("Output");
+  app.add_option("--figures", s.figures, "Write a picture of each chart into this folder, 85 mm wide, for a paper")
+      ->group("Output");
+  app.add_option("--format", s.picture_format, "Of --figures: svg (default), pdf or png")
+      ->check(CLI::IsMember({"svg", "pdf", "png"}))
+      ->group("Output");
 }
 
 Effect effect_named(const std::string& name) {
@@ -111,6 +117,7 @@ std::vector<std::string> own_options(const CLI::App& app) {
     const std::string name = option->get_name();
     if (option->count() == 0 || option->get_positional()) continue;
     if (name == "--json" || name == "--csv" || name == "--report" || name == "--quiet") continue;
+    if (name == "--figures" || name == "--format") continue;
     if (name == "--out" || name == "--shard" || name == "--again" || name == "--pattern") continue;
     const bool of_runs = app.get_option_no_throw("--share") != nullptr;
     if (of_runs && (name == "--share" || name == "--vary")) continue;  // of what is said of all runs together
@@ -156,8 +163,25 @@ static void check_report(const Settings& s) {
   if (s.report == s.json || same_file(s.report, s.json)) throw CLI::ValidationError("--report and --json are one file");
 }
 
+/// Wrong usage: pictures that cannot be drawn here, or whose folder is another output.
+static void check_figures(const Settings& s) {
+  if (s.figures.empty()) {
+    if (!s.picture_format.empty()) throw CLI::ValidationError("--format goes with --figures FOLDER");
+    return;
+  }
+  if (s.figures == s.json || s.figures == s.report) {
+    throw CLI::ValidationError("--figures is a folder; name another than the file of --json or --report");
+  }
+  if (!can_write_pictures()) {
+    throw CLI::ValidationError(
+        "--figures: gnuplot, which draws the pictures, is not installed; install it (Debian: apt install gnuplot-nox, "
+        "or scripts/setup figures), or save charts from the page of --report");
+  }
+}
+
 void refuse_overwriting(const Settings& s, const std::vector<std::string>& inputs) {
   check_report(s);
+  check_figures(s);
   for (const std::string& input : inputs) {
     if (!s.report.empty() && same_file(s.report, input)) {
       throw CLI::ValidationError("--report would overwrite " + input);

@@ -8,31 +8,36 @@
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/report/pictures.hpp"
 #include "tribofit/report/report.hpp"
 #include "tribofit/report/whole_file.hpp"
 
-/// What is drawn of a report (--report), on the disc but without a name until commit(). make: gives the report, and is
-/// only called where something was asked for.
+/// What is drawn of a report (--report, --figures), on the disc but without names until commit(). make: gives the
+/// report, and is only called where something was asked for.
 class ReportFiles {
  public:
   template <class Make>
   ReportFiles(const Settings& s, Make&& make) {
-    if (s.report.empty()) return;
+    if (s.report.empty() && s.figures.empty()) return;
     const tribofit::Report report = make();
+    if (!s.figures.empty()) pictures_.emplace(report, s.figures, picture_format(s));
+    if (s.report.empty()) return;
     page_.emplace(s.report);
     page_->write(report_page(report));
     page_->finish();
   }
   void commit() {
+    if (pictures_) pictures_->commit();
     if (page_) page_->commit();
   }
 
  private:
+  std::optional<tribofit::PictureFiles> pictures_;
   std::optional<tribofit::WholeFile> page_;
 };
 
-/// Writes what was asked for of one result (--json, --report, --csv), all of it or none: JSON and page are on the disc
-/// before the CSV gets its names, and get their own after it. shown: how the page says what was run.
+/// Writes what was asked for of one result (--json, --report, --figures, --csv), all of it or none: the others are on
+/// the disc before the CSV gets its names, and get their own after it. shown: how the page says what was run.
 template <class Result>
 void write_results(const Settings& s, const Result& result, const std::vector<std::string>& arguments,
                    const tribofit::ReportOptions& shown) {

@@ -178,6 +178,11 @@ std::vector<std::string> input_files(const Settings& s) {
   return files;
 }
 
+PictureFormat picture_format(const Settings& s) {
+  if (s.picture_format == "pdf") return PictureFormat::pdf;
+  return s.picture_format == "png" ? PictureFormat::png : PictureFormat::svg;
+}
+
 TerminalOptions terminal_options(const Settings& s, const std::vector<std::string>& arguments) {
   TerminalOptions options;
   options.colour = wants_colour();

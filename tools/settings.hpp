@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/pictures.hpp"
 #include "tribofit/report/terminal.hpp"
 
 /// What a user types after `identify`, as typed.
@@ -23,8 +24,9 @@ struct Settings {
   bool profile = false;
 
   std::string json, csv, report;
-  std::string out, shard, pattern;  // a batch
-  std::string compare;              // table of earlier values
+  std::string figures, picture_format;  // folder, and "svg" where the other is empty
+  std::string out, shard, pattern;      // a batch
+  std::string compare;                  // table of earlier values
   bool again = false;
   std::vector<std::string> share, vary;  // parameters common to runs
   int threads = 0;
@@ -38,6 +40,9 @@ tribofit::IdentifyOptions options_from(const Settings& settings);
 
 /// Files that are read besides the traces.
 std::vector<std::string> input_files(const Settings& settings);
+
+/// That of --figures.
+tribofit::PictureFormat picture_format(const Settings& settings);
 
 /// How to show a result here and now.
 tribofit::TerminalOptions terminal_options(const Settings& settings, const std::vector<std::string>& arguments);

@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/report/pictures.hpp"
 
 namespace {
 
@@ -65,6 +66,37 @@ TEST_F(Identify, ReportIsOnePageBesideTheOtherOutputs) {
   EXPECT_THAT(page, HasSubstr("\"command\":\"identify --radius 15mm trace.csv\""));
   EXPECT_THAT(shop_.names(), ::testing::UnorderedElementsAre("trace.csv", "r.html", "r.json", "out"));
   EXPECT_THAT(contents(shop_ / "r.json"), ::testing::Not(HasSubstr("--report")));
+}
+
+TEST_F(Identify, FiguresAreFilesInAFolder) {
+  if (!tribofit::can_write_pictures()) GTEST_SKIP() << "gnuplot is not installed (scripts/setup figures)";
+  for (const std::string format : {"svg", "pdf"}) {
+    const Outcome outcome = shop_.identify("--radius 15mm --quiet --figures " + format + " --format " + format +
+                                           " --json r.json trace.csv");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
+    const std::string captions = contents(shop_ / format / "figures.txt");
+    std::size_t pictures = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(shop_ / format)) {
+      if (entry.path().extension() != "." + format) continue;
+      ++pictures;
+      EXPECT_THAT(captions, HasSubstr(entry.path().filename().string() + "\n"));
+      EXPECT_LT(entry.file_size(), 400000u) << entry.path();
+    }
+    EXPECT_GE(pictures, 6u);
+  }
+  EXPECT_THAT(shop_.names(), ::testing::UnorderedElementsAre("trace.csv", "r.json", "svg", "pdf"));
+  EXPECT_THAT(contents(shop_ / "r.json"), ::testing::Not(HasSubstr("--fi")));
+}
+
+TEST_F(Identify, NothingIsLeftWhereGnuplotFails) {
+  shop_.write("gnuplot", "#!/bin/sh\necho 'out of paper' >&2\nexit 1\n");
+  const Outcome outcome = shop_.shell(
+      "chmod +x gnuplot; PATH=.:$PATH; identify --radius 15mm --quiet --figures out --json r.json --csv tables "
+      "trace.csv");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("out of paper"));
+  EXPECT_THAT(shop_.names(), ::testing::UnorderedElementsAre("trace.csv", "gnuplot"));
 }
 
 TEST_F(Identify, ResultsAreTheSameForAnyNumberOfThreads) {

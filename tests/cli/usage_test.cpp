@@ -55,6 +55,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"EmptyRadius", "--radius '' a.csv", "--radius is given an empty"},
                       Wrong{"EmptyJson", "--json '' a.csv", "--json is given an empty"},
                       Wrong{"EmptyTrace", "--radius 15mm ''", "a trace is given an empty"},
+                      Wrong{"FormatOfNothing", "--format pdf a.csv", "--format goes with --figures"},
+                      Wrong{"UnknownFormat", "--figures out --format eps a.csv", "svg"},
+                      Wrong{"FiguresOfTwo", "--figures out a.csv b.csv", "one trace"},
+                      Wrong{"FiguresOntoTheJson", "--figures x --json x a.csv", "folder"},
+                      Wrong{"FiguresOfAShard", "--figures x --shard 1/2 --out y a.csv b.csv", "identify merge"},
                       Wrong{"NegativeSeed", "--seed -1 a.csv", "--seed"},
                       Wrong{"SeedTooLarge", "--seed 18446744073709551616 a.csv", "--seed"},
                       Wrong{"DiagnoseNothing", "diagnose", "no trace given"},
@@ -86,6 +91,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"SimulateEffectTwice", "simulate --effect viscous --effect viscous --out b.csv", "twice"},
                       Wrong{"OptionsBeforeTheVerb", "--radius 15mm effects", "effects"}),
     [](const auto& param_info) { return param_info.param.name; });
+
+TEST(Usage, FiguresNeedGnuplot) {
+  const Workshop shop;
+  shop.write("a.csv", good_trace());
+  const Outcome outcome = shop.shell("PATH=/nowhere; identify --radius 15mm --figures out a.csv");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("gnuplot"), HasSubstr("not installed")));
+}
 
 TEST(Usage, HelpAndVersion) {
   const Workshop shop;
