@@ -124,9 +124,9 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
   return found;
 }
 
-void require_channels(const IdentifyOptions& options, const Motion& motion, std::vector<std::string>& warnings,
+void require_channels(const std::vector<Effect>& effects, const Motion& motion, std::vector<std::string>& warnings,
                       bool& analysed) {
-  const Channels needs = FrictionModel(BaseLaw::exponential, options.effects).needs();
+  const Channels needs = FrictionModel(BaseLaw::exponential, effects).needs();
   const auto missing = [&](bool needed, bool present, const char* channel) {
     if (!needed || present) return;
     warnings.push_back(std::string("an effect needs the channel '") + channel + "', which this trace does not have");
@@ -160,7 +160,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
                        Purpose purpose = Purpose::law) {
   Identification out;
   out.path = input.path;
-  Trace trace = input.trace ? *input.trace : read_trace(input.path, with_declared(input.read, options.instruments));
+  Trace trace = *read_input(input, options);
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
@@ -174,12 +174,13 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   }
   out.motion = compute_motion(std::move(trace), options.instruments, motion_options);
   out.segmentation = find_cycles(out.motion);
+  leave_out(options.selection, out.motion, out.segmentation);
   out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 
   compare_declared(out.motion, options.instruments, purpose, out.warnings);
-  require_channels(options, out.motion, out.warnings, out.analysed);
+  require_channels(options.effects, out.motion, out.warnings, out.analysed);
   for (const std::string& obstacle : obstacles(out.motion, out.segmentation, purpose)) {
     out.warnings.push_back(obstacle);
     out.analysed = false;
@@ -188,10 +189,11 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
 }
 
 /// Fits every model of the plan to one trace.
-void fit_all(const IdentifyOptions& options, Identification& out) {
+void fit_all(const IdentifyOptions& options, Identification& out, FitDetail detail = FitDetail::full) {
   // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
+  constexpr std::size_t kBare = 80, kQuick = 250, kFull = 1000;
   const std::vector<Effect> effects = of_friction(options.effects);
-  const std::size_t values_per_slip = effects.empty() ? 80 : 1000;
+  const std::size_t values_per_slip = effects.empty() ? kBare : detail == FitDetail::quick ? kQuick : kFull;
   const Observations observations =
       observe(out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, effects).needs(), values_per_slip);
   if (observations.cycles < 3) {
@@ -310,10 +312,28 @@ Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, co
 }  // namespace
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
-  Identification out = prepare({path, options.read, {}}, options, options.motion);
-  require_formulas(options.effects, out);
-  if (out.analysed) fit_all(options, out);
+  Identification out = prepare_trace({path, options.read, {}}, options);
+  fit_trace(options, out);
   return out;
+}
+
+std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options) {
+  if (input.trace) return input.trace;
+  return std::make_shared<const Trace>(read_trace(input.path, with_declared(input.read, options.instruments)));
+}
+
+Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {
+  IdentifyOptions of_motion = options;  // what effects of friction need is a matter of their fit
+  std::erase_if(of_motion.effects, [](const Effect& effect) { return !is_of_motion(effect); });
+  return prepare(input, of_motion, options.motion);
+}
+
+void fit_trace(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
+  trace.fits.clear();
+  trace.best = 0;
+  require_channels(of_friction(options.effects), trace.motion, trace.warnings, trace.analysed);
+  require_formulas(options.effects, trace);
+  if (trace.analysed) fit_all(options, trace, detail);
 }
 
 RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& options) {
@@ -384,7 +404,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     const TraceInput& input = inputs[k];
     out.traces.push_back(prepare_to_diagnose(input, options, motions[k]));
     Identification& trace = out.traces.back();
-    require_channels(given, trace.motion, trace.warnings, trace.analysed);
+    require_channels(given.effects, trace.motion, trace.warnings, trace.analysed);
     require_formulas(own, trace);
     out.analysed &= trace.analysed;
   }

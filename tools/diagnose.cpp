@@ -121,6 +121,7 @@ void add_diagnose(CLI::App& app, int& status) {
       ->allow_extra_args(false)
       ->group("Reading");
   add_model_options(*verb, *settings);
+  add_selection_options(*verb, *settings);
   add_output_options(*verb, *settings);
   add_report_option(*verb, *settings);
   verb->callback([settings, verb, &status] {

@@ -90,6 +90,8 @@ void add_batch_options(CLI::App& app, Settings& s) {
 
 void add_fit_options(CLI::App& app, Settings& s) {
   add_model_options(app, s);
+  add_parameter_options(app, s);
+  add_selection_options(app, s);
   app.add_option("--protocol", s.protocol, "joint, published, or both (default)")
       ->check(CLI::IsMember({"both", "joint", "published"}))
       ->group("Law and fit");

@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
   add_manifest(app, status);
   add_merge(app, status);
   add_diagnose(app, status);
+  add_explore(app, status);
   add_rig(app, status);
   add_twin(app, status);
   add_effects(app, status);

@@ -50,6 +50,22 @@ void add_model_options(CLI::App& app, Settings& s) {
   fit("--seed", s.seed_text, "Seed of the random starts (default 1)");
 }
 
+void add_selection_options(CLI::App& app, Settings& s) {
+  app.add_option("--cycles", s.cycles, "Fit these cycles only, FIRST..LAST (numbers as in cycles.csv, from 0)")
+      ->group("Law and fit");
+  app.add_option("--exclude", s.excluded, "Leave out cycles that reach into this time: 2.5s..3.1s (repeatable)")
+      ->allow_extra_args(false)
+      ->group("Law and fit");
+}
+
+void add_parameter_options(CLI::App& app, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    app.add_option(name, value, help)->allow_extra_args(false)->group("Law and fit");
+  };
+  add("--start", s.start_values, "Where the search begins: mu_s=0.5,frictional-lag.tau=2ms (repeatable)");
+  add("--bounds", s.bounds, "Between which values: alpha=0.01..0.2s/mm; equal ones hold it (repeatable)");
+}
+
 void add_result_options(CLI::App& app, Settings& s) {
   app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
       ->group("Output");

@@ -11,6 +11,10 @@
 void add_input_options(CLI::App& app, Settings& settings);
 /// Laws, effects and how they are fitted.
 void add_model_options(CLI::App& app, Settings& settings);
+/// Which cycles and stretches of time are fitted.
+void add_selection_options(CLI::App& app, Settings& settings);
+/// Where parameters begin and between which bounds they lie.
+void add_parameter_options(CLI::App& app, Settings& settings);
 /// Where the result goes, for verbs that write no tables.
 void add_result_options(CLI::App& app, Settings& settings);
 /// The same with tables as CSV.

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "chosen.hpp"
 #include "console.hpp"
 #include "options.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -156,6 +157,8 @@ IdentifyOptions options_from(const Settings& s) {
   }
 
   refuse_clashes(options.effects);
+  options.fit.given = given_from(s, options.laws, options.effects);
+  options.selection = selection_from(s);
 
   options.published_protocol = s.protocol == "both";
   options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;

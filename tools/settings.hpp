@@ -22,6 +22,9 @@ struct Settings {
   std::string protocol = "both", loss = "squares";
   int starts = 5, folds = 5;
   bool profile = false;
+  std::vector<std::string> start_values, bounds;  // of parameters by name
+  std::string cycles;                             // that take part
+  std::vector<std::string> excluded;              // stretches of time
 
   std::string json, csv, report;
   std::string figures, picture_format;  // folder, and "svg" where the other is empty

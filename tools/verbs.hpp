@@ -10,6 +10,7 @@ void add_identify(CLI::App& app, int& status);
 void add_manifest(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
 void add_diagnose(CLI::App& app, int& status);
+void add_explore(CLI::App& app, int& status);
 void add_rig(CLI::App& app, int& status);
 void add_twin(CLI::App& app, int& status);
 void add_effects(CLI::App& app, int& status);

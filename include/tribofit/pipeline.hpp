@@ -38,6 +38,7 @@ struct IdentifyOptions {
   int threads = 0;                 ///< 0: as many as there are; the result does not depend on it
   std::vector<Effect> effects;     ///< added to every law
   bool published_protocol = true;  ///< fit by the published protocol too, beside the joint one
+  Selection selection;             ///< what part of the record is fitted
 };
 
 /// Everything known about one trace.
@@ -110,5 +111,18 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
 
 /// The stages in order: read, move, segment, fit.
 Identification identify(const std::string& path, const IdentifyOptions& options = {});
+
+/// A trace as it is read for the stages that follow: with what options.instruments declares of its conditions.
+std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options = {});
+
+/// The stages up to the cycles: read, move, segment. Effects of the motion among options.effects are corrected.
+Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options = {});
+
+/// The stage after them, for a trace that prepare_trace() made with the same effects of the motion and the same
+/// selection: fits take the place of those it has. Warnings are added to those it has.
+/// quick: effects are fitted to means of a few samples where a slip has many, which moves parameters by a small part of
+/// their error; the bare laws are always.
+enum class FitDetail { full, quick };
+void fit_trace(const IdentifyOptions& options, Identification& trace, FitDetail detail = FitDetail::full);
 
 }  // namespace tribofit

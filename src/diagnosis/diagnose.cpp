@@ -60,7 +60,10 @@ std::size_t count_cycles(std::span<const Record> records) {
   std::size_t cycles = 0;
   for (const Record& record : records) {
     const bool sticks = record.segmentation->kind == MotionKind::stick_slip;
-    cycles += sticks ? record.segmentation->cycles.size() : kFewestCycles;
+    const auto& all = record.segmentation->cycles;
+    const auto taken = std::count_if(all.begin(), all.end(),
+                                     [&](const Cycle& cycle) { return record.segmentation->takes_part(cycle); });
+    cycles += sticks ? static_cast<std::size_t>(taken) : kFewestCycles;
   }
   return cycles;
 }
@@ -139,6 +142,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
       observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40), leaves.noise);
   Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
   bench.threads = options.threads;
+  bench.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   const std::vector<BaseLaw> laws = base_laws(records, given);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fit/starts.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/solver.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
@@ -144,6 +145,7 @@ double noise_of(const Level& level, const Trial& trial) {
 }
 
 Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start) {
+  if (bench.cancelled && bench.cancelled()) throw DiagnosisCancelled();
   Trial trial;
   trial.model = model;
   const Observations& observations = level.observations;

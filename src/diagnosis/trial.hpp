@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,6 +56,7 @@ struct Bench {
   double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
 
   int threads = 1;  ///< over candidates
+  std::function<bool()> cancelled = {};  ///< asked before each trial, which then throws DiagnosisCancelled
 
   Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,
         double break_away_scatter);

@@ -81,6 +81,15 @@ struct Job {
 SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
   if (!job.options.start.empty()) starts = {job.options.start};
+  for (auto& s : starts) apply_given(job.model, job.options.given, job.bounds, s);
+  for (std::size_t k = 1; k < starts.size();) {  // where all is given, all starts are one
+    const auto here = starts.begin() + static_cast<std::ptrdiff_t>(k);
+    if (std::find(starts.begin(), here, *here) == here) {
+      ++k;
+    } else {
+      starts.erase(here);
+    }
+  }
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
   const SolverOptions quick = quick_search();
   std::vector<SolverResult> tries;
@@ -115,6 +124,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
 /// [D] 3.2: levels from extremes, then the decay factor alone.
 SolverResult published_estimate(Job& job, const CycleExtremes& extremes, std::vector<double>& start) {
   start = start_from_data(job.model, job.observations, job.bounds);
+  apply_given(job.model, job.options.given, job.bounds, start);
   const std::array<double, 2> levels = extremes.means();
   SolverResult failed;
   failed.p = start;
@@ -274,6 +284,19 @@ void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors
   set_floor(Floor(fit.floor), fit);
 }
 
+/// Starts that were given and cannot be had.
+void tell_moved_starts(const Job& job, Fit& fit) {
+  for (std::size_t k = 0; k < job.model.parameters().size(); ++k) {
+    const FrictionModel::Slot& slot = job.model.parameters()[k];
+    for (const GivenParameter& known : job.options.given) {
+      if (!known.start || known.name != slot.full_name()) continue;
+      if (*known.start >= job.bounds.lower[k] && *known.start <= job.bounds.upper[k]) continue;
+      fit.messages.push_back(known.name + " cannot start where it was told to: that is beyond its bounds, on the nearer " +
+                             "of which the search began");
+    }
+  }
+}
+
 Fit failed_fit(Fit fit, const std::string& why) {
   fit.messages.insert(fit.messages.begin(), why);
   fit.converged = false;
@@ -319,7 +342,9 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   }
   Job job{model, records, observations, instruments, options};
   job.bounds = bounds_of(model, observations);
+  apply_given(model, options.given, job.bounds);
   const Bounds given = job.bounds;
+  tell_moved_starts(job, fit);
   if (options.loss != Loss::squares) {
     job.loss = {options.loss, options.loss_scale * mean_floor(records).noise};
   }

@@ -80,7 +80,7 @@ std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& 
   std::vector<Residual> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
-    if (cycle.stick.size() < kShortestStick) continue;
+    if (cycle.stick.size() < kShortestStick || !segmentation.takes_part(cycle)) continue;
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
     const std::size_t pieces = std::max<std::size_t>(1, length / kStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
@@ -97,7 +97,9 @@ std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& s
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, kStretch);
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
-      parts.push_back(about_parabola(motion.friction, i, i + stretch));
+      if (segmentation.takes_part(Span{i, i + stretch})) {
+        parts.push_back(about_parabola(motion.friction, i, i + stretch));
+      }
     }
   }
   return parts;
@@ -120,6 +122,7 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   double noise = 0;
   for (const Cycle& cycle : segmentation.cycles) {
     if (cycle.stick.size() == 0 || !std::isfinite(cycle.break_away_friction)) continue;
+    if (!segmentation.takes_part(cycle)) continue;
     const std::size_t i = cycle.slip.begin;
     const double u = motion.time[i] / motion.time.back();
     std::vector<double> row = {1, u, u * u, static_cast<double>(cycle.direction)};

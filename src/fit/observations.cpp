@@ -40,11 +40,11 @@ double friction_after(const Motion& motion, const Segmentation& segmentation, st
   return sum / static_cast<double>(end - begin);
 }
 
-/// A stick that began before the record is taken to be as long as the others were.
-void fill_stick_times(std::vector<Observations::Range>& slips) {
+/// A stick that began before the record is taken to be as long as the others were. takes_part: which slips are known.
+void fill_stick_times(std::vector<Observations::Range>& slips, const std::vector<bool>& takes_part) {
   std::vector<double> known;
-  for (const auto& slip : slips) {
-    if (std::isfinite(slip.stick_time)) known.push_back(slip.stick_time);
+  for (std::size_t k = 0; k < slips.size(); ++k) {
+    if (takes_part[k] && std::isfinite(slips[k].stick_time)) known.push_back(slips[k].stick_time);
   }
   if (known.empty()) return;
   const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
@@ -66,12 +66,12 @@ void trim_rest(const Motion& motion, Span& samples) {
 
 /// Takes out of each stick time what the levels of its own re-stick and break-away made of it. A break-away that is
 /// high by chance is reached later: left in, its scatter would pass for ageing. What stays is how long the disc took.
-void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips) {
+void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips, const std::vector<bool>& takes_part) {
   constexpr double kLeastLeft = 0.1;
   std::vector<double> pulled(slips.size(), std::numeric_limits<double>::quiet_NaN());
   double sum = 0, count = 0;
   for (std::size_t k = 1; k < slips.size(); ++k) {
-    if (!slips[k].from_stick) continue;
+    if (!slips[k].from_stick || !takes_part[k] || !takes_part[k - 1]) continue;
     pulled[k] = slips[k].break_away_friction - slips[k].direction * slips[k - 1].tail_friction;
     if (!std::isfinite(pulled[k])) continue;
     sum += pulled[k];
@@ -84,9 +84,23 @@ void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips
   }
 }
 
-/// One range per slip of the segmentation; slips without stick are cut into pieces of about equal length.
+/// Drops the slips that take no part; those that are left are the units of evidence.
+void keep(const std::vector<bool>& takes_part, std::vector<Observations::Range>& slips) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < slips.size(); ++k) {
+    if (!takes_part[k]) continue;
+    slips[kept] = slips[k];
+    slips[kept].cycle = kept;
+    ++kept;
+  }
+  slips.resize(kept);
+}
+
+/// One range per slip of the segmentation that takes part; slips without stick are cut into pieces of about equal
+/// length.
 std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Observations::Range> ranges;
+  std::vector<bool> takes_part;
   std::size_t slipping = 0;
   for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
   const bool pieces = segmentation.kind == MotionKind::always_slipping;
@@ -119,10 +133,12 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
         range.break_away_friction = cycle.break_away_friction;
       }
       ranges.push_back(range);
+      takes_part.push_back(pieces ? segmentation.takes_part(range.samples) : segmentation.takes_part(cycle));
     }
   }
-  fill_stick_times(ranges);
-  free_stick_times_of_their_own_level(ranges);
+  fill_stick_times(ranges, takes_part);
+  free_stick_times_of_their_own_level(ranges, takes_part);
+  keep(takes_part, ranges);
   return ranges;
 }
 

@@ -130,6 +130,26 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   return bounds;
 }
 
+void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, Bounds& bounds) {
+  for (std::size_t k = 0; k < model.parameters().size(); ++k) {
+    for (const GivenParameter& known : given) {
+      if (!known.bounds || known.name != model.parameters()[k].full_name()) continue;
+      bounds.lower[k] = known.bounds->lower;
+      bounds.upper[k] = known.bounds->upper;
+    }
+  }
+}
+
+void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, const Bounds& bounds,
+                 std::vector<double>& start) {
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    for (const GivenParameter& known : given) {
+      if (known.start && known.name == model.parameters()[k].full_name()) start[k] = *known.start;
+    }
+    start[k] = std::clamp(start[k], bounds.lower[k], bounds.upper[k]);
+  }
+}
+
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations,
                                     const Bounds& bounds) {
   std::vector<double> p;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tribofit/fit/observations.hpp"
+#include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/model.hpp"
 
 namespace tribofit {
@@ -14,6 +14,12 @@ struct Bounds {
   std::vector<double> lower, upper;
 };
 Bounds bounds_of(const FrictionModel& model, const Observations& observations);
+
+/// Takes over the bounds that were given.
+void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, Bounds& bounds);
+/// Takes over the starts that were given, within the bounds.
+void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, const Bounds& bounds,
+                 std::vector<double>& start);
 
 /// Start from the data: mu_s, mu_k and the decay factor from the best of a grid of decay factors, for each of which the
 /// two levels follow linearly from mean friction over speed; effects from their catalogue start.

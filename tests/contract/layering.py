@@ -15,7 +15,7 @@ import tempfile
 # In the order in which data flow. The pipeline is no directory but include/tribofit/pipeline.hpp and src/pipeline.cpp: it
 # calls the rooms above it for one trace; what deals with many traces or with its results lies below it.
 ROOMS = ["ingest", "kinematics", "segmentation", "friction", "oscillator", "fit", "diagnosis", "study", "pipeline",
-         "campaign", "report"]
+         "campaign", "report", "workbench"]
 # What a room must know nothing of, as it would appear in an #include.
 STRANGERS = {
     "friction": {"CSV": r"(libfccp/)?csv\.h"},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <limits>
 #include <string>
@@ -17,6 +18,13 @@ struct DiagnosisOptions {
   std::vector<Effect> from_the_start = {};  ///< of the catalogue, in every model beside the base law
   /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
   std::function<void(std::string_view, double)> progress;
+  /// Asked between trials, from any thread; once it says yes, diagnose() throws DiagnosisCancelled. Empty: never.
+  std::function<bool()> cancelled = {};
+};
+
+/// The diagnosis was given up because DiagnosisOptions::cancelled said so.
+struct DiagnosisCancelled : std::exception {
+  const char* what() const noexcept override { return "the diagnosis was cancelled"; }
 };
 
 /// What the diagnosis says in one word.

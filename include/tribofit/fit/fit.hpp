@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,16 @@ std::string_view to_string(Protocol protocol);
 
 enum class Loss { squares, huber, soft_l1 };
 
+/// What is said of one parameter beforehand, in SI.
+struct GivenParameter {
+  std::string name;             ///< see FrictionModel::Slot::full_name(); models without it take no notice
+  std::optional<double> start;  ///< the search begins here, from every start
+  struct Bounds {
+    double lower = 0, upper = 0;
+  };
+  std::optional<Bounds> bounds;  ///< in place of the plausible ones; where they are equal the value is held
+};
+
 struct FitOptions {
   Protocol protocol = Protocol::joint;
   Loss loss = Loss::squares;
@@ -31,6 +42,7 @@ struct FitOptions {
   int folds = 5;              ///< contiguous blocks of cycles held out in turn
   bool profile = false;       ///< profile likelihood intervals beside the others
   std::vector<double> start;  ///< values (SI) to begin with, instead of several starts; empty: from the data
+  std::vector<GivenParameter> given;
 };
 
 /// Rise of the squares where a parameter is held at a value [SI] and all others are refitted, in units of the rise at

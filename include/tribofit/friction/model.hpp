@@ -24,6 +24,8 @@ class FrictionModel {
   struct Slot {
     Parameter parameter;
     std::string effect;  ///< key; empty for the base law
+    /// As the command line names it: "mu_s", "frictional-lag.tau".
+    std::string full_name() const { return effect.empty() ? parameter.name : effect + "." + parameter.name; }
   };
 
   BaseLaw law() const { return law_; }

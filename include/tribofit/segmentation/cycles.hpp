@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,7 +70,34 @@ struct Segmentation {
   Measure branch_difference;
   double rms_velocity = 0;         ///< of the block velocity [m/s]
   std::vector<std::string> notes;  ///< what a person should know ("never sticks", "the first slip is cut off")
+  std::vector<Span> left_out;      ///< samples that take no part in fits, see leave_out()
+
+  /// Whether none of these samples is left out.
+  bool takes_part(const Span& samples) const;
+  /// The same for stick and slip of a cycle: it takes part as a whole or not at all.
+  bool takes_part(const Cycle& cycle) const;
 };
+
+/// What part of a record is fitted.
+struct Selection {
+  /// Numbers of cycles as in cycles.csv, the first is 0; both ends take part.
+  struct Cycles {
+    std::size_t first = 0, last = 0;
+  };
+  /// A stretch of time [s].
+  struct Stretch {
+    double from = 0, to = 0;
+  };
+  std::optional<Cycles> cycles;   ///< only these; none: all
+  std::vector<Stretch> excluded;  ///< cycles that reach into one of them take no part
+
+  bool empty() const { return !cycles && excluded.empty(); }
+};
+
+/// Leaves out what `selection` does not take: cycles keep their numbers, and measures of the motion are those of the
+/// whole record; fits, diagnoses and the floor do not see what is left out. A note says how much is left. Where
+/// nothing sticks there are no cycles to be chosen, which a note says, too.
+void leave_out(const Selection& selection, const Motion& motion, Segmentation& segmentation);
 
 /// Finds stick and slip by hysteresis on |v_r| with thresholds from the trace's own noise.
 ///

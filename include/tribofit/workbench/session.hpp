@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/report.hpp"
+
+namespace tribofit {
+
+/// What a user of the workbench has switched on.
+struct WorkbenchChoice {
+  BaseLaw law = BaseLaw::exponential;
+  std::vector<std::string> effects;   ///< as the command line names them: "viscous", "rate-state:healing"
+  std::vector<std::string> formulas;  ///< as --formula takes them
+  std::vector<GivenParameter> given;  ///< starts and bounds; the law's models without such a parameter take no notice
+  Selection selection;
+};
+
+/// A model that was visited.
+struct WorkbenchRung {
+  std::size_t number = 0;  ///< from 0, in the order of first visits
+  WorkbenchChoice choice;
+  FitDetail detail = FitDetail::quick;  ///< how finely it has been fitted so far
+  Fit fit;
+  std::string command;  ///< that fits the same model; at full detail it gives the same numbers
+  double seconds = 0;   ///< that the fit took
+};
+
+/// What a page shows of a rung.
+struct WorkbenchPicture {
+  WorkbenchRung rung;
+  Report report;
+};
+
+/// What a diagnosis asked for by a page has come to.
+struct WorkbenchDiagnosis {
+  enum class State { none, running, done, cancelled, failed };
+  State state = State::none;
+  std::string doing;     ///< while it runs
+  double part = 0;       ///< done, 0 to 1
+  std::string sentence;  ///< the verdict, or why it failed
+  std::string command;   ///< that makes the same diagnosis
+  WorkbenchChoice found;  ///< the last rung of its ladder
+  struct Step {
+    std::string added;  ///< key; empty for the base law
+    double held_out_rmse = 0, held_out_std_error = 0, rmse = 0;  ///< [1 or N]
+  };
+  std::vector<Step> ladder;
+  double floor_rmse = 0;  ///< [1 or N]
+};
+
+/// What the workbench is begun with.
+struct WorkbenchOptions {
+  TraceInput input;
+  IdentifyOptions identify;  ///< of `effects` none: they are in `begin`
+  WorkbenchChoice begin;
+  std::vector<std::string> arguments;  ///< options of the command line that are no part of a choice
+  std::vector<std::string> notes, warnings;  ///< of the input, beside those of the trace
+  bool instruments_declared = false;
+};
+
+/// One trace under study: read, moved and segmented once, then fitted again for every choice. Knows nothing of pages
+/// and servers. Every function may be called from any thread; fits are made one at a time.
+///
+/// A fit is that of identify() for the same choice: from the data and not from what was shown before, so that coming
+/// back to a rung gives the same numbers. FitDetail::quick begins from fewer starts and fits effects to means of a few
+/// samples; FitDetail::full is what the command line does, to the last bit.
+class WorkbenchSession {
+ public:
+  /// Reads the trace. Throws InputError, also where the trace cannot carry an analysis.
+  explicit WorkbenchSession(WorkbenchOptions options);
+  ~WorkbenchSession();  ///< cancels a diagnosis
+  WorkbenchSession(const WorkbenchSession&) = delete;
+  WorkbenchSession& operator=(const WorkbenchSession&) = delete;
+
+  const WorkbenchChoice& begin() const;
+  /// The trace as it was prepared, without fits.
+  const Identification& trace() const;
+
+  /// Fits a choice and adds it to the rungs; one that was visited is not fitted again unless more detail is asked for.
+  /// Throws InputError that says why it cannot be fitted; the session goes on.
+  /// wanted: asked when its turn has come; where it says no, nothing is done and Superseded thrown. Empty: yes.
+  WorkbenchPicture show(const WorkbenchChoice& choice, FitDetail detail, const std::function<bool()>& wanted = {});
+  struct Superseded {};
+
+  /// Every rung visited, without pictures.
+  std::vector<WorkbenchRung> rungs() const;
+
+  /// The command that fits the choice.
+  std::string command_of(const WorkbenchChoice& choice) const;
+
+  /// Begins a diagnosis of the part of the record that is chosen, with its formulas as candidates beside the catalogue.
+  /// False where one runs already.
+  bool begin_diagnosis(const WorkbenchChoice& choice);
+  void cancel_diagnosis();
+  WorkbenchDiagnosis diagnosis() const;
+
+  /// The session as JSON: trace with its checksum, options, choices in order.
+  std::string save() const;
+  /// Visits the choices of a saved session again. Throws InputError where it is of another trace or no session.
+  void load(std::string_view json, const std::string& file);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What a saved session says of its beginning: options and trace, for the command line. Throws InputError.
+struct SavedWorkbench {
+  std::vector<std::string> arguments;
+  std::string trace;
+};
+SavedWorkbench saved_workbench(std::string_view json, const std::string& file);
+
+}  // namespace tribofit

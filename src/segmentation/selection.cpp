@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "tribofit/segmentation/cycles.hpp"
+
+namespace tribofit {
+
+namespace {
+
+Span whole(const Cycle& cycle) {
+  return {cycle.stick.size() > 0 ? cycle.stick.begin : cycle.slip.begin, cycle.slip.end};
+}
+
+void leave_out_cycles(const Selection::Cycles& chosen, const Motion& motion, Segmentation& segmentation) {
+  if (segmentation.kind != MotionKind::stick_slip) {
+    segmentation.notes.push_back("there are no cycles of stick and slip to choose from: all of the motion takes part");
+    return;
+  }
+  const auto& cycles = segmentation.cycles;
+  if (cycles.empty()) return;
+  const std::size_t begin = chosen.first < cycles.size() ? whole(cycles[chosen.first]).begin : motion.size();
+  const std::size_t end = chosen.last < cycles.size() ? whole(cycles[chosen.last]).end : motion.size();
+  segmentation.left_out.push_back({0, begin});
+  segmentation.left_out.push_back({std::max(begin, end), motion.size()});
+}
+
+/// First sample at or after a time.
+std::size_t sample_at(const Motion& motion, double time) {
+  return static_cast<std::size_t>(std::lower_bound(motion.time.begin(), motion.time.end(), time) - motion.time.begin());
+}
+
+}  // namespace
+
+bool Segmentation::takes_part(const Span& samples) const {
+  return std::none_of(left_out.begin(), left_out.end(),
+                      [&](const Span& out) { return out.begin < samples.end && samples.begin < out.end; });
+}
+
+bool Segmentation::takes_part(const Cycle& cycle) const {
+  return takes_part(whole(cycle));
+}
+
+void leave_out(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
+  if (selection.empty()) return;
+  if (selection.cycles) leave_out_cycles(*selection.cycles, motion, segmentation);
+  for (const Selection::Stretch& stretch : selection.excluded) {
+    segmentation.left_out.push_back({sample_at(motion, stretch.from), sample_at(motion, stretch.to)});
+  }
+  std::erase_if(segmentation.left_out, [](const Span& span) { return span.begin >= span.end; });
+  if (segmentation.kind != MotionKind::stick_slip) return;
+  const auto& cycles = segmentation.cycles;
+  const auto left = std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.takes_part(c); });
+  segmentation.notes.push_back(fmt::format("{} of {} cycles take part in the fit, the others were left out by request",
+                                           left, cycles.size()));
+}
+
+}  // namespace tribofit

@@ -1,0 +1,130 @@
+#include "answers.hpp"
+
+#include <utility>
+
+#include "choice_json.hpp"
+#include "report/charts/report_json.hpp"
+#include "report/numbers.hpp"
+
+namespace tribofit::workbench {
+
+namespace {
+
+/// Why the trace cannot show the effect; empty where it can.
+std::string lacking(const EffectInfo& info, const Motion& motion) {
+  if (info.needs.load && motion.load.empty()) return "needs the channel 'load'";
+  if (info.needs.temperature && motion.temperature.empty()) return "needs the channel 'temperature'";
+  if (info.needs.angle && motion.disc_angle.empty() && !motion.conditions.speed.known()) return "needs the disc angle";
+  return "";
+}
+
+Json effect_json(const EffectInfo& info, const std::string& name, const Motion& motion) {
+  return {{"name", name},
+          {"group", to_string(info.group)},
+          {"statement", info.statement},
+          {"equation", info.equation},
+          {"lacking", lacking(info, motion)}};
+}
+
+Json catalogue_json(const Motion& motion) {
+  Json list = Json::array();
+  for (const Effect& effect : effect_catalogue()) {
+    const EffectInfo info = describe(effect);
+    if (info.key == "speed-ripple" || info.key == "velocity-high-pass") continue;  // undone where they are found
+    list.push_back(effect_json(info, info.key, motion));
+    for (const EffectForm& form : info.forms) {
+      const std::string name = info.key + ":" + form.name;
+      list.push_back(effect_json(describe(make_effect(name)), name, motion));
+    }
+  }
+  return list;
+}
+
+std::string_view name_of(WorkbenchDiagnosis::State state) {
+  switch (state) {
+    case WorkbenchDiagnosis::State::none:
+      return "none";
+    case WorkbenchDiagnosis::State::running:
+      return "running";
+    case WorkbenchDiagnosis::State::done:
+      return "done";
+    case WorkbenchDiagnosis::State::cancelled:
+      return "cancelled";
+    case WorkbenchDiagnosis::State::failed:
+      break;
+  }
+  return "failed";
+}
+
+}  // namespace
+
+Json problem_json(const std::string& problem, const std::string& why, const std::string& suggestion) {
+  return {{"problem", problem}, {"why", why}, {"suggestion", suggestion}};
+}
+
+Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters) {
+  const Fit& fit = rung.fit;
+  Json json = {{"number", rung.number},
+               {"name", fit.model.name()},
+               {"choice", choice_json(rung.choice)},
+               {"held_out_rmse", number(fit.error.held_out_rmse)},
+               {"held_out_std_error", number(held_out_std_error(fit))},
+               {"rmse", number(fit.error.rmse)},
+               {"mean_relative", number(fit.error.mean_relative)},
+               {"floor_rmse", number(fit.floor.rmse)},
+               {"unit", friction_unit(motion)},
+               {"cycles", fit.cycles},
+               {"converged", fit.converged},
+               {"full", rung.detail == FitDetail::full},
+               {"command", rung.command},
+               {"fit_ms", 1e3 * rung.seconds}};
+  if (!with_parameters) return json;
+  json["messages"] = fit.messages;
+  json["parameters"] = Json::array();
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    Json parameter = parameter_json(fit.parameters[k], motion);
+    parameter["full_name"] = fit.model.parameters()[k].full_name();
+    json["parameters"].push_back(std::move(parameter));
+  }
+  return json;
+}
+
+Json rungs_json(const WorkbenchSession& session) {
+  Json list = Json::array();
+  for (const WorkbenchRung& rung : session.rungs()) list.push_back(rung_json(rung, session.trace().motion, false));
+  return list;
+}
+
+Json begin_json(const WorkbenchSession& session) {
+  const Identification& trace = session.trace();
+  return {{"trace", trace_json(trace)},
+          {"cycles", trace.segmentation.cycles.size()},
+          {"sticks", trace.segmentation.kind == MotionKind::stick_slip},
+          {"laws", {"exponential", "fractional", "coulomb"}},
+          {"effects", catalogue_json(trace.motion)},
+          {"begin", choice_json(session.begin())},
+          {"rungs", rungs_json(session)}};
+}
+
+Json picture_json(const WorkbenchPicture& picture, const WorkbenchSession& session) {
+  return {{"rung", rung_json(picture.rung, session.trace().motion, true)},
+          {"rungs", rungs_json(session)},
+          {"report", report_json(picture.report)}};
+}
+
+Json diagnosis_json(const WorkbenchDiagnosis& diagnosis) {
+  Json json = {{"state", name_of(diagnosis.state)}, {"doing", diagnosis.doing},       {"part", diagnosis.part},
+               {"sentence", diagnosis.sentence},    {"command", diagnosis.command},
+               {"floor_rmse", number(diagnosis.floor_rmse)}};
+  json["found"] = diagnosis.state == WorkbenchDiagnosis::State::done ? choice_json(diagnosis.found) : Json(nullptr);
+  json["ladder"] = Json::array();
+  for (const auto& step : diagnosis.ladder) {
+    json["ladder"].push_back({{"added", text_or_null(step.added)},
+                              {"held_out_rmse", number(step.held_out_rmse)},
+                              {"held_out_std_error", number(step.held_out_std_error)},
+                              {"rmse", number(step.rmse)}});
+  }
+  return json;
+}
+
+}  // namespace tribofit::workbench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "report/json_parts.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/workbench/session.hpp"
+
+namespace tribofit::workbench {
+
+/// What the server says of a session, as JSON.
+
+/// {"problem", "why", "suggestion"}
+Json problem_json(const std::string& problem, const std::string& why, const std::string& suggestion);
+
+/// Trace, laws, catalogue and choice to begin with.
+Json begin_json(const WorkbenchSession& session);
+
+/// A rung with its errors and parameters; without the parameters where it is only listed.
+Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters);
+Json rungs_json(const WorkbenchSession& session);
+
+Json picture_json(const WorkbenchPicture& picture, const WorkbenchSession& session);
+
+Json diagnosis_json(const WorkbenchDiagnosis& diagnosis);
+
+}  // namespace tribofit::workbench

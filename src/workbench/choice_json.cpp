@@ -1,0 +1,206 @@
+#include "choice_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+
+namespace tribofit::workbench {
+
+namespace {
+
+constexpr int kDeepest = 8;
+constexpr std::size_t kMostEffects = 16, kMostStretches = 200, kLongestFormula = 2000;
+const std::vector<std::string> kLaws = {"exponential", "fractional", "coulomb"};
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& advice) { throw InputError(problem, advice); }
+
+double finite(const Json& json, const std::string& what) {
+  if (!json.is_number() || !std::isfinite(json.get<double>())) refuse(what + " is not a number", "give a number");
+  return json.get<double>();
+}
+
+std::pair<double, double> range(const Json& json, const std::string& what) {
+  if (!json.is_array() || json.size() != 2) refuse(what + " is not a pair of numbers", "give the lower and the upper end");
+  const std::pair<double, double> out = {finite(json[0], what), finite(json[1], what)};
+  if (out.first > out.second) refuse(what + " runs from high to low", "give the lower end first");
+  return out;
+}
+
+std::vector<std::string> texts(const Json& json, const char* key, std::size_t most) {
+  std::vector<std::string> out;
+  if (!json.contains(key)) return out;
+  if (!json[key].is_array() || json[key].size() > most) {
+    refuse(fmt::format("'{}' is not a list of at most {} texts", key, most), "choose fewer");
+  }
+  for (const Json& item : json[key]) {
+    if (!item.is_string() || item.get_ref<const std::string&>().size() > kLongestFormula) {
+      refuse(fmt::format("an entry of '{}' is no text, or too long", key), "write it shorter");
+    }
+    out.push_back(item.get<std::string>());
+  }
+  return out;
+}
+
+BaseLaw law_from(const Json& json) {
+  const std::string name = json.contains("law") && json["law"].is_string() ? json["law"].get<std::string>() : "";
+  const auto law = find_law(name);
+  if (!law) refuse("there is no law '" + name + "'", "did you mean '" + nearest_name(name, kLaws) + "'?");
+  return *law;
+}
+
+/// The shown unit of a parameter in SI; nothing for a parameter that the model does not have.
+std::optional<double> unit_of(const FrictionModel& model, const std::string& name) {
+  for (const FrictionModel::Slot& slot : model.parameters()) {
+    if (slot.full_name() == name) return slot.parameter.si;
+  }
+  return std::nullopt;
+}
+
+GivenParameter& entry_of(const std::string& name, std::vector<GivenParameter>& given) {
+  const auto found = std::find_if(given.begin(), given.end(), [&](const auto& g) { return g.name == name; });
+  if (found != given.end()) return *found;
+  given.push_back({name, std::nullopt, std::nullopt});
+  return given.back();
+}
+
+/// Starts and bounds of the parameters that the model has; a page keeps those of models that it may come back to.
+std::vector<GivenParameter> given_from(const Json& json, const FrictionModel& model) {
+  std::vector<GivenParameter> given;
+  const auto each = [&](const char* key, auto&& take) {
+    if (!json.contains(key)) return;
+    if (!json[key].is_object()) refuse(fmt::format("'{}' is not a set of named values", key), "write {\"mu_s\": 0.5}");
+    for (const auto& [name, value] : json[key].items()) {
+      const auto unit = unit_of(model, name);
+      if (unit) take(entry_of(name, given), value, *unit, name);
+    }
+  };
+  each("start", [](GivenParameter& entry, const Json& value, double unit, const std::string& name) {
+    entry.start = finite(value, "the start of " + name) * unit;
+  });
+  each("bounds", [](GivenParameter& entry, const Json& value, double unit, const std::string& name) {
+    const auto [low, high] = range(value, "the range of " + name);
+    entry.bounds = GivenParameter::Bounds{low * unit, high * unit};
+  });
+  return given;
+}
+
+Selection selection_from(const Json& json) {
+  Selection selection;
+  if (json.contains("cycles") && !json["cycles"].is_null()) {
+    constexpr double kMost = 1e9;
+    const auto [first, last] = range(json["cycles"], "the range of cycles");
+    if (first < 0 || last > kMost || first != std::floor(first) || last != std::floor(last)) {
+      refuse("the range of cycles is not made of whole numbers", "count cycles from 0");
+    }
+    selection.cycles = {static_cast<std::size_t>(first), static_cast<std::size_t>(last)};
+  }
+  if (!json.contains("excluded")) return selection;
+  if (!json["excluded"].is_array() || json["excluded"].size() > kMostStretches) {
+    refuse("what is left out is not a list of stretches of time", "leave out fewer stretches");
+  }
+  for (const Json& item : json["excluded"]) {
+    const auto [from, to] = range(item, "a stretch that is left out");
+    if (from < to) selection.excluded.push_back({from, to});
+  }
+  return selection;
+}
+
+/// The number of units that makes up exactly this SI value, where there is one.
+double in_units(double si, double unit) {
+  const double nearest = si / unit;
+  for (const double near : {nearest, std::nextafter(nearest, HUGE_VAL), std::nextafter(nearest, -HUGE_VAL)}) {
+    if (near * unit == si) return near;
+  }
+  return nearest;
+}
+
+/// Shortest text that reads back as the same number.
+std::string exact(double value) { return fmt::format("{}", value); }
+
+}  // namespace
+
+Json parsed(std::string_view text, const std::string& what) {
+  bool deep = false;
+  const auto watch = [&](int depth, Json::parse_event_t, Json&) {
+    deep |= depth > kDeepest;
+    return depth <= kDeepest;
+  };
+  try {
+    Json json = Json::parse(text.begin(), text.end(), watch);
+    if (deep) refuse(what + " is nested too deeply", "write it as this program does");
+    return json;
+  } catch (const Json::exception& error) {
+    refuse(what + " is not JSON: " + error.what(), "write it as this program does");
+  }
+}
+
+std::vector<Effect> effects_of(const WorkbenchChoice& choice) {
+  std::vector<Effect> effects;
+  for (const std::string& name : choice.effects) effects.push_back(make_effect(name));
+  for (const std::string& formula : choice.formulas) effects.emplace_back(Formula(formula));
+  return effects;
+}
+
+FrictionModel model_of(const WorkbenchChoice& choice) { return FrictionModel(choice.law, effects_of(choice)); }
+
+Json choice_json(const WorkbenchChoice& choice) {
+  Json json = {{"law", to_string(choice.law)}, {"effects", choice.effects}, {"formulas", choice.formulas}};
+  json["start"] = json["bounds"] = Json::object();
+  const FrictionModel model = model_of(choice);
+  for (const GivenParameter& known : choice.given) {
+    const double unit = unit_of(model, known.name).value_or(1);
+    if (known.start) json["start"][known.name] = in_units(*known.start, unit);
+    if (known.bounds) {
+      json["bounds"][known.name] = {in_units(known.bounds->lower, unit), in_units(known.bounds->upper, unit)};
+    }
+  }
+  json["cycles"] = nullptr;
+  if (choice.selection.cycles) json["cycles"] = {choice.selection.cycles->first, choice.selection.cycles->last};
+  json["excluded"] = Json::array();
+  for (const auto& stretch : choice.selection.excluded) json["excluded"].push_back({stretch.from, stretch.to});
+  return json;
+}
+
+WorkbenchChoice choice_from(const Json& json) {
+  if (!json.is_object()) refuse("this is no choice", "send law, effects and formulas");
+  WorkbenchChoice choice;
+  choice.law = law_from(json);
+  choice.effects = texts(json, "effects", kMostEffects);
+  choice.formulas = texts(json, "formulas", kMostEffects);
+  choice.given = given_from(json, model_of(choice));
+  choice.selection = selection_from(json);
+  return choice;
+}
+
+std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
+  std::vector<std::string> out = {"--law", std::string(to_string(choice.law))};
+  const auto add = [&](const char* option, std::string value) {
+    out.emplace_back(option);
+    out.push_back(std::move(value));
+  };
+  for (const std::string& effect : choice.effects) add("--effect", effect);
+  for (const std::string& formula : choice.formulas) add("--formula", formula);
+  const FrictionModel model = model_of(choice);
+  for (const GivenParameter& known : choice.given) {
+    const double unit = unit_of(model, known.name).value_or(1);
+    if (known.start) add("--start", known.name + "=" + exact(in_units(*known.start, unit)));
+    if (known.bounds) {
+      add("--bounds",
+          known.name + "=" + exact(in_units(known.bounds->lower, unit)) + ".." +
+                          exact(in_units(known.bounds->upper, unit)));
+    }
+  }
+  const Selection& selection = choice.selection;
+  if (selection.cycles) add("--cycles", fmt::format("{}..{}", selection.cycles->first, selection.cycles->last));
+  for (const auto& stretch : selection.excluded) add("--exclude", exact(stretch.from) + "s.." + exact(stretch.to) + "s");
+  return out;
+}
+
+bool same(const WorkbenchChoice& a, const WorkbenchChoice& b) { return choice_json(a) == choice_json(b); }
+
+}  // namespace tribofit::workbench

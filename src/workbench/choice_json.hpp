@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/json_parts.hpp"
+#include "tribofit/workbench/session.hpp"
+
+namespace tribofit::workbench {
+
+/// Choices as JSON, in the units people read: {"law", "effects", "formulas", "start": {NAME: VALUE},
+/// "bounds": {NAME: [LOWER, UPPER]}, "cycles": [FIRST, LAST] or null, "excluded": [[FROM, TO]]}.
+
+/// JSON of a page or of a file, not more than a few levels deep. Throws InputError with the place where it is broken.
+Json parsed(std::string_view text, const std::string& what);
+
+/// The model of a choice. Throws InputError for effects that do not exist or do not go together, and formulas that do
+/// not parse.
+FrictionModel model_of(const WorkbenchChoice& choice);
+/// Its effects, formulas among them.
+std::vector<Effect> effects_of(const WorkbenchChoice& choice);
+
+Json choice_json(const WorkbenchChoice& choice);
+/// Throws InputError for what is no choice: unknown names and values that are no numbers.
+WorkbenchChoice choice_from(const Json& json);
+
+/// The part of the command line that says the choice.
+std::vector<std::string> arguments_of(const WorkbenchChoice& choice);
+
+/// Both are the same choice.
+bool same(const WorkbenchChoice& a, const WorkbenchChoice& b);
+
+}  // namespace tribofit::workbench

@@ -1,0 +1,231 @@
+#include "tribofit/workbench/server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <new>
+#include <utility>
+
+#include "answers.hpp"
+#include "choice_json.hpp"
+#include "guard.hpp"
+#include "served_page.hpp"
+#include "tribofit/report/page.hpp"
+
+namespace tribofit {
+
+using namespace workbench;
+
+namespace {
+
+constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kJson = "application/json";
+constexpr std::size_t kLargestBody = 256 * 1024, kThreads = 16, kMostPages = 256, kLongestName = 64;
+enum Status { kDone = 200, kForbidden = 403, kUnknown = 404, kWrongMethod = 405, kTooLarge = 413, kWrongType = 415,
+              kUnfit = 422, kBroken = 500 };
+
+void answer(httplib::Response& response, const Json& json, int status = kDone) {
+  response.status = status;
+  response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), kJson);
+}
+
+void refuse(httplib::Response& response, int status, const std::string& why, const std::string& suggestion) {
+  response.set_header("Connection", "close");
+  answer(response, problem_json("the request is refused", why, suggestion), status);
+}
+
+std::string only(const httplib::Request& request, const char* header) {
+  // Two of a kind are a trick: no browser sends them.
+  return request.get_header_value_count(header) > 1 ? "(several)" : request.get_header_value(header);
+}
+
+}  // namespace
+
+struct WorkbenchServer::State {
+  explicit State(WorkbenchSession& given) : session(given) {}
+
+  WorkbenchSession& session;
+  httplib::Server http;
+  std::string token = fresh_token();
+  int port = 0;
+  ServedPage page;
+  std::atomic<bool> stopping{false};
+  std::mutex mutex;
+  std::map<std::string, double> newest;  ///< turn of each page
+
+  bool admits(const httplib::Request& request, httplib::Response& response) const;
+  void add_handlers();
+  void show(const Json& asked, httplib::Response& response);
+  bool is_newest(const std::string& page_name, double turn) {
+    const std::lock_guard lock(mutex);
+    const auto found = newest.find(page_name);
+    return found != newest.end() && found->second == turn;
+  }
+  void take_turn(const std::string& page_name, double turn) {
+    const std::lock_guard lock(mutex);
+    if (newest.size() >= kMostPages && newest.count(page_name) == 0) newest.clear();
+    double& last = newest[page_name];
+    last = std::max(last, turn);
+  }
+  template <class Do>
+  void post(const char* path, Do&& what);
+};
+
+/// Whether a request comes from a page of this server and can be read.
+bool WorkbenchServer::State::admits(const httplib::Request& request, httplib::Response& response) const {
+  const Caller caller = {only(request, "Host"), only(request, "Origin"), only(request, "Sec-Fetch-Site")};
+  if (const std::string why = refusal(caller, port); !why.empty()) {
+    refuse(response, kForbidden, why, "open the address that `identify explore` prints");
+    return false;
+  }
+  const bool in_address = request.path == "/" && request.get_param_value_count("token") == 1;
+  const std::string given = in_address ? request.get_param_value("token") : only(request, "X-Workbench-Token");
+  if (!same_secret(given, token)) {
+    refuse(response, kForbidden, "the token is missing or wrong", "open the address that `identify explore` prints");
+    return false;
+  }
+  if (request.method != "GET" && request.method != "POST") {
+    refuse(response, kWrongMethod, "there is only GET and POST", "use the page");
+    return false;
+  }
+  if (request.method == "GET") return true;
+  const bool plain = !request.has_header("Transfer-Encoding") && !request.has_header("Content-Encoding") &&
+                     only(request, "Content-Type").rfind(kJson, 0) == 0;
+  if (!plain) {
+    refuse(response, kWrongType, "the body is not plain JSON", "use the page");
+    return false;
+  }
+  if (request.get_header_value<std::uint64_t>("Content-Length") > kLargestBody) {
+    refuse(response, kTooLarge, "the body is too large", "choose fewer effects and stretches");
+    return false;
+  }
+  return true;
+}
+
+/// An answer to a body of JSON; what cannot be done is said with its reason.
+template <class Do>
+void WorkbenchServer::State::post(const char* path, Do&& what) {
+  http.Post(path, [this, what = std::forward<Do>(what)](const httplib::Request& request, httplib::Response& response) {
+    try {
+      what(parsed(request.body, "the request"), response);
+    } catch (const InputError& error) {
+      answer(response, problem_json("this cannot be done", error.problem(), error.advice()), kUnfit);
+    } catch (const WorkbenchSession::Superseded&) {
+      answer(response, {{"superseded", true}});
+    } catch (const Json::exception&) {
+      answer(response, problem_json("this cannot be done", "the request lacks something", "use the page"), kUnfit);
+    } catch (const std::bad_alloc&) {
+      answer(response, problem_json("this cannot be done", "there is not enough memory", "choose a part of the record"),
+             kBroken);
+    }
+  });
+}
+
+void WorkbenchServer::State::show(const Json& asked, httplib::Response& response) {
+  const std::string name = asked.at("page").get<std::string>();
+  const auto turn = asked.at("turn").get<double>();
+  if (name.size() > kLongestName) throw InputError("the name of the page is too long", "use the page");
+  take_turn(name, turn);
+  const auto detail = asked.value("full", false) ? FitDetail::full : FitDetail::quick;
+  const WorkbenchChoice choice = choice_from(asked.at("choice"));
+  const WorkbenchPicture picture =
+      session.show(choice, detail, [&] { return !stopping && is_newest(name, turn); });
+  Json json = picture_json(picture, session);
+  json["turn"] = turn;
+  answer(response, json);
+}
+
+void WorkbenchServer::State::add_handlers() {
+  http.Get("/", [this](const httplib::Request&, httplib::Response& response) {
+    response.set_content(page.html, "text/html; charset=utf-8");
+  });
+  http.Get("/api/begin", [this](const httplib::Request&, httplib::Response& response) {
+    answer(response, begin_json(session));
+  });
+  http.Get("/api/session", [this](const httplib::Request&, httplib::Response& response) {
+    response.set_content(session.save(), kJson);
+  });
+  http.Get("/api/diagnosis", [this](const httplib::Request&, httplib::Response& response) {
+    answer(response, diagnosis_json(session.diagnosis()));
+  });
+  post("/api/show", [this](const Json& asked, httplib::Response& response) { show(asked, response); });
+  post("/api/diagnose", [this](const Json& asked, httplib::Response& response) {
+    const bool begun = session.begin_diagnosis(choice_from(asked.at("choice")));
+    answer(response, {{"begun", begun}});
+  });
+  post("/api/cancel", [this](const Json&, httplib::Response& response) {
+    session.cancel_diagnosis();
+    answer(response, {{"cancelled", true}});
+  });
+}
+
+WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(std::make_unique<State>(session)) {
+  State& s = *state_;
+  s.page = served_page(session.trace().path);
+  s.http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };  // owned by the server
+  s.http.set_keep_alive_max_count(1);  // idle connections would hold a thread each
+  s.http.set_keep_alive_timeout(1);
+  s.http.set_read_timeout(1);
+  s.http.set_write_timeout(5);
+  s.http.set_payload_max_length(kLargestBody);
+  s.http.set_tcp_nodelay(true);
+  s.http.set_socket_options([](socket_t) {});  // by default it would share its port
+  s.http.set_default_headers({{"Content-Security-Policy", s.page.policy},
+                              {"X-Content-Type-Options", "nosniff"},
+                              {"X-Frame-Options", "DENY"},
+                              {"Referrer-Policy", "no-referrer"},
+                              {"Cache-Control", "no-store"},
+                              {"Cross-Origin-Resource-Policy", "same-origin"},
+                              {"Cross-Origin-Opener-Policy", "same-origin"}});
+  s.http.set_pre_routing_handler([&s](const httplib::Request& request, httplib::Response& response) {
+    return s.admits(request, response) ? httplib::Server::HandlerResponse::Unhandled
+                                       : httplib::Server::HandlerResponse::Handled;
+  });
+  s.http.set_error_handler([](const httplib::Request&, httplib::Response& response) {
+    if (!response.body.empty()) return;
+    const int status = response.status;
+    const char* why = status == kUnknown    ? "there is nothing of that name"
+                      : status == kTooLarge ? "the body is too large"
+                                            : "the request cannot be read";
+    answer(response, problem_json("the request is refused", why, "use the page"), status);
+  });
+  s.http.set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+    answer(response, problem_json("this cannot be done", "something failed", "choose another model"), kBroken);
+  });
+  s.add_handlers();
+  if (port == 0) {
+    s.port = s.http.bind_to_any_port(kLoopback);
+  } else if (s.http.bind_to_port(kLoopback, port)) {
+    s.port = port;
+  }
+  if (s.port <= 0) {
+    throw InputError(port == 0 ? "no port of 127.0.0.1 can be listened on"
+                               : fmt::format("--port: {} cannot be listened on: it is taken, or not allowed", port),
+                     "leave --port out to take a free one");
+  }
+}
+
+WorkbenchServer::~WorkbenchServer() { stop(); }
+
+int WorkbenchServer::port() const { return state_->port; }
+
+std::string WorkbenchServer::address() const {
+  return fmt::format("http://{}:{}/?token={}", kLoopback, state_->port, state_->token);
+}
+
+const std::string& WorkbenchServer::token() const { return state_->token; }
+
+void WorkbenchServer::run() { state_->http.listen_after_bind(); }
+
+void WorkbenchServer::stop() {
+  state_->stopping = true;
+  state_->session.cancel_diagnosis();
+  state_->http.stop();
+}
+
+}  // namespace tribofit

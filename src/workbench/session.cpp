@@ -1,0 +1,313 @@
+#include "tribofit/workbench/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "choice_json.hpp"
+#include "diagnosis_run.hpp"
+#include "report/verdict.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/version.hpp"
+
+namespace tribofit {
+
+using namespace workbench;
+
+namespace {
+
+constexpr std::size_t kMostRungs = 200;
+
+/// A trace with one set of corrections of its motion, and what it said before any fit.
+struct Prepared {
+  Identification trace;
+  std::vector<std::string> warnings, segmentation_notes;
+  bool analysed = true;
+};
+
+Prepared prepared(const WorkbenchOptions& options, const IdentifyOptions& identify) {
+  Prepared out;
+  out.trace = prepare_trace(options.input, identify);
+  out.trace.notes.insert(out.trace.notes.end(), options.notes.begin(), options.notes.end());
+  out.trace.warnings.insert(out.trace.warnings.begin(), options.warnings.begin(), options.warnings.end());
+  out.warnings = out.trace.warnings;
+  out.segmentation_notes = out.trace.segmentation.notes;
+  out.analysed = out.trace.analysed;
+  return out;
+}
+
+std::string corrections_of(const std::vector<Effect>& effects) {
+  std::string keys;
+  for (const Effect& effect : effects) {
+    if (is_of_motion(effect)) keys += describe(effect).spelled() + " ";
+  }
+  return keys;
+}
+
+/// What is drawn beside a rung: the law alone, fitted to the same part of the record.
+const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<WorkbenchRung>& rungs) {
+  for (const WorkbenchRung& other : rungs) {
+    const bool bare = other.choice.law == rung.choice.law && other.choice.effects.empty() &&
+                      other.choice.formulas.empty() && other.number != rung.number;
+    if (bare && other.fit.cycles == rung.fit.cycles) return &other;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+struct WorkbenchSession::State {
+  WorkbenchOptions options;
+  std::map<std::string, Prepared> prepared_by_corrections;
+  std::vector<WorkbenchRung> rungs;
+  mutable std::mutex fitting;  ///< guards the prepared traces
+  mutable std::mutex visited;  ///< guards the rungs
+  DiagnosisRun diagnosis;
+
+  IdentifyOptions identify_options(const WorkbenchChoice& choice, FitDetail detail) const {
+    IdentifyOptions out = options.identify;
+    out.laws = {choice.law};
+    out.effects = effects_of(choice);
+    out.published_protocol = false;
+    out.selection = choice.selection;
+    out.fit.given = choice.given;
+    if (detail == FitDetail::quick) out.fit.starts = 1;
+    return out;
+  }
+
+  /// The trace with the corrections that the effects ask for and the part that is selected, as before any fit.
+  Identification& fresh(const IdentifyOptions& identify) {
+    const std::string key = corrections_of(identify.effects);
+    auto found = prepared_by_corrections.find(key);
+    if (found == prepared_by_corrections.end()) {
+      IdentifyOptions whole = identify;
+      whole.selection = {};
+      found = prepared_by_corrections.emplace(key, prepared(options, whole)).first;
+    }
+    Prepared& source = found->second;
+    Identification& trace = source.trace;
+    trace.warnings = source.warnings;
+    trace.analysed = source.analysed;
+    trace.segmentation.notes = source.segmentation_notes;
+    trace.segmentation.left_out.clear();
+    trace.fits.clear();
+    leave_out(identify.selection, trace.motion, trace.segmentation);
+    return trace;
+  }
+
+  std::optional<WorkbenchRung> visited_rung(const WorkbenchChoice& choice) const {
+    const std::lock_guard lock(visited);
+    for (const WorkbenchRung& rung : rungs) {
+      if (same(rung.choice, choice)) return rung;
+    }
+    return std::nullopt;
+  }
+
+  /// Puts a rung into its place among those visited.
+  void note(WorkbenchRung& rung, bool known) {
+    const std::lock_guard lock(visited);
+    if (!known) {
+      if (rungs.size() >= kMostRungs) {
+        throw InputError(fmt::format("{} models have been visited, more are not kept", kMostRungs),
+                         "save the session and begin anew");
+      }
+      rung.number = rungs.size();
+      rungs.push_back(rung);
+    } else {
+      rungs[rung.number] = rung;
+    }
+  }
+
+  WorkbenchRung fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify, FitDetail detail,
+                       Identification& trace) const;
+};
+
+WorkbenchRung WorkbenchSession::State::fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify,
+                                              FitDetail detail, Identification& trace) const {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t said = trace.warnings.size();
+  fit_trace(identify, trace, detail);
+  WorkbenchRung rung;
+  rung.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const bool fits = trace.analysed && !trace.fits.empty() && !trace.fits[0].parameters.empty();
+  if (!fits) {
+    std::string why = "no fit is possible";
+    if (trace.warnings.size() > said) {
+      why = trace.warnings.back();
+    } else if (!trace.fits.empty() && !trace.fits[0].messages.empty()) {
+      why = trace.fits[0].messages.front();
+    }
+    throw InputError(why, "choose another effect, or more of the record");
+  }
+  rung.choice = choice;
+  rung.detail = detail;
+  rung.fit = trace.fits[0];
+  return rung;
+}
+
+WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.options = std::move(options);
+  s.options.identify.effects.clear();
+  s.options.identify.selection = {};
+  s.options.identify.fit.given.clear();
+  s.options.input.trace = read_input(s.options.input, s.options.identify);
+  const Identification& trace = s.fresh(s.options.identify);
+  if (!trace.analysed) {
+    throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
+                     "`identify` without 'explore' says more", {trace.path, 0, ""});
+  }
+  model_of(s.options.begin);
+}
+
+WorkbenchSession::~WorkbenchSession() { cancel_diagnosis(); }
+
+const WorkbenchChoice& WorkbenchSession::begin() const { return state_->options.begin; }
+
+const Identification& WorkbenchSession::trace() const { return state_->prepared_by_corrections.at("").trace; }
+
+WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail detail,
+                                        const std::function<bool()>& wanted) {
+  State& s = *state_;
+  const std::lock_guard lock(s.fitting);
+  if (wanted && !wanted()) throw Superseded();
+  const IdentifyOptions identify = s.identify_options(choice, detail);
+  const std::optional<WorkbenchRung> known = s.visited_rung(choice);
+  Identification& trace = s.fresh(identify);
+  WorkbenchPicture picture;
+  if (known && (known->detail == FitDetail::full || detail == FitDetail::quick)) {
+    picture.rung = *known;
+    trace.fits = {known->fit};
+  } else {
+    picture.rung = s.fitted(choice, identify, detail, trace);
+    if (known) picture.rung.number = known->number;
+    picture.rung.command = command_of(choice);
+    s.note(picture.rung, known.has_value());
+  }
+  trace.best = 0;
+  {
+    const std::lock_guard visited(s.visited);
+    if (const WorkbenchRung* other = beside(picture.rung, s.rungs)) trace.fits.push_back(other->fit);
+  }
+  ReportOptions report;
+  report.arguments = s.options.arguments;
+  const std::vector<std::string> own = arguments_of(choice);
+  report.arguments.insert(report.arguments.end(), own.begin(), own.end());
+  report.instruments_declared = s.options.instruments_declared;
+  picture.report = report_of(trace, report);
+  return picture;
+}
+
+std::vector<WorkbenchRung> WorkbenchSession::rungs() const {
+  const std::lock_guard lock(state_->visited);
+  return state_->rungs;
+}
+
+std::string WorkbenchSession::command_of(const WorkbenchChoice& choice) const {
+  TerminalOptions terminal;
+  terminal.arguments = state_->options.arguments;
+  const std::vector<std::string> own = arguments_of(choice);
+  terminal.arguments.insert(terminal.arguments.end(), own.begin(), own.end());
+  return command_line(terminal, "", state_->options.input.path);
+}
+
+bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
+  State& s = *state_;
+  IdentifyOptions identify = s.options.identify;
+  identify.selection = choice.selection;
+  WorkbenchChoice candidates;
+  candidates.formulas = choice.formulas;
+  identify.effects = effects_of(candidates);
+  for (const std::string& name : choice.effects) {  // corrections of the motion stay as they are
+    if (const Effect effect = make_effect(name); is_of_motion(effect)) identify.effects.push_back(effect);
+  }
+  TerminalOptions terminal;
+  terminal.arguments = {"diagnose"};
+  const auto add = [&](const std::vector<std::string>& more) {
+    terminal.arguments.insert(terminal.arguments.end(), more.begin(), more.end());
+  };
+  add(s.options.arguments);
+  WorkbenchChoice part;
+  part.formulas = choice.formulas;
+  part.selection = choice.selection;
+  for (const Effect& effect : identify.effects) {
+    if (is_of_motion(effect)) part.effects.push_back(describe(effect).spelled());
+  }
+  std::vector<std::string> own = arguments_of(part);
+  own.erase(own.begin(), own.begin() + 2);  // the law: both climb
+  add(own);
+  return s.diagnosis.begin(s.options.input, identify, part, command_line(terminal, "", s.options.input.path));
+}
+
+void WorkbenchSession::cancel_diagnosis() { state_->diagnosis.cancel(); }
+
+WorkbenchDiagnosis WorkbenchSession::diagnosis() const { return state_->diagnosis.status(); }
+
+std::string WorkbenchSession::save() const {
+  const State& s = *state_;
+  Json json = {{"kind", "tribofit workbench"},
+               {"tool", tool_json({})},
+               {"trace", s.options.input.path},
+               {"checksum", fmt::format("{:016x}", s.options.input.trace->checksum)},
+               {"arguments", s.options.arguments}};
+  json["rungs"] = Json::array();
+  for (const WorkbenchRung& rung : rungs()) {
+    json["rungs"].push_back({{"choice", choice_json(rung.choice)},
+                             {"held_out_rmse", number(rung.fit.error.held_out_rmse)},
+                             {"rmse", number(rung.fit.error.rmse)},
+                             {"command", rung.command}});
+  }
+  return text_of(json);
+}
+
+namespace {
+
+Json session_json(std::string_view text, const std::string& file) {
+  Json json;
+  try {
+    json = parsed(text, "the session");
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), error.advice(), {file, 0, ""});
+  }
+  const bool whole = json.is_object() && json.value("kind", Json()) == "tribofit workbench" &&
+                     json.value("trace", Json()).is_string() && json.value("arguments", Json()).is_array() &&
+                     json.value("rungs", Json()).is_array() && json.value("checksum", Json()).is_string();
+  if (!whole) throw InputError("is no saved session of the workbench", "give a file that its page saved", {file, 0, ""});
+  return json;
+}
+
+}  // namespace
+
+void WorkbenchSession::load(std::string_view text, const std::string& file) {
+  const Json json = session_json(text, file);
+  if (json["checksum"] != fmt::format("{:016x}", state_->options.input.trace->checksum)) {
+    throw InputError("is a session of another trace: the data differ from those it was saved with",
+                     "give the trace it names, " + json["trace"].get<std::string>() + ", as it was", {file, 0, ""});
+  }
+  for (const Json& rung : json["rungs"]) {
+    if (!rung.is_object() || !rung.contains("choice")) continue;
+    const WorkbenchChoice choice = choice_from(rung["choice"]);
+    show(choice, FitDetail::quick);
+    state_->options.begin = choice;
+  }
+}
+
+SavedWorkbench saved_workbench(std::string_view text, const std::string& file) {
+  const Json json = session_json(text, file);
+  SavedWorkbench out;
+  out.trace = json["trace"].get<std::string>();
+  for (const Json& argument : json["arguments"]) {
+    if (!argument.is_string()) throw InputError("holds options that are no texts", "save it again", {file, 0, ""});
+    out.arguments.push_back(argument.get<std::string>());
+  }
+  return out;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,174 @@
+// Uses the workbench in Chromium as a person would.
+// usage: node workbench_test.mjs DRIVER CHROMIUM IDENTIFY FOLDER
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [driver, chromium, identify, folder] = process.argv.slice(2);
+const playwright = await import(pathToFileURL(driver));
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+const run = (...words) => execFileSync(identify, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
+run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "10s", "--rate", "10kHz", "--effect",
+  "frictional-lag:tau=4ms", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "lag.csv");
+
+/** Starts the server; resolves with its address once it is printed. */
+async function explore(...words) {
+  const server = spawn(identify, ["explore", ...words], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  let said = "";
+  const address = await new Promise((resolve, reject) => {
+    server.stdout.on("data", (data) => {
+      said += data;
+      const found = said.match(/http:\/\/127\.0\.0\.1:\d+\/\?token=[0-9a-f]{32}/);
+      if (found) resolve(found[0]);
+    });
+    server.on("exit", (code) => reject(new Error(`explore ended with ${code}`)));
+  });
+  const ended = new Promise((resolve) => server.on("exit", (code) => resolve(code)));
+  return { server, address, ended };
+}
+
+const browser = await playwright.chromium.launch({ executablePath: chromium,
+  args: process.getuid() === 0 ? ["--no-sandbox"] : [] });
+
+/** A page in which any complaint of the browser, and any address but the server's, fails the test. */
+async function open(address, width) {
+  const context = await browser.newContext({ viewport: { width, height: 900 }, acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(60000);
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(error.stack));
+  const origin = new URL(address).origin;
+  page.on("request", (request) => {
+    if (!request.url().startsWith(`${origin}/`) && !/^(data|blob):/.test(request.url())) complaints.push(request.url());
+  });
+  await page.goto(address);
+  await settled(page);
+  return { page, complaints, close: () => context.close() };
+}
+
+const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.bench === "settled" &&
+  document.documentElement.dataset.drawn === "all");
+/** Does something and waits for the picture of the model it leads to. */
+async function change(page, action) {
+  await page.evaluate(() => { document.documentElement.dataset.bench = "waiting"; });
+  await action();
+  await settled(page);
+}
+const shownError = async (page) => Number.parseFloat(await page.textContent("#shown-error"));
+
+/** The hidden effect is switched on and the error falls; then everything else that a person can change. */
+async function watchTheErrorFall(address, width) {
+  const { page, complaints, close } = await open(address, width);
+  const before = await shownError(page);
+  const rungsBefore = await page.locator("#bench-rungs tbody tr").count();
+  await change(page, () => page.check("#effect-frictional-lag"));
+  const after = await shownError(page);
+  console.log(`at ${width} px the held-out error falls from ${before} to ${after}; answered after ` +
+    `${await page.evaluate(() => document.documentElement.dataset.answerMs)} ms`);
+  assert.ok(after < 0.75 * before, `the error fell from ${before} to ${after} only`);
+  assert.ok(await page.locator("#bench-rungs tbody tr").count() >= rungsBefore);
+  await page.screenshot({ path: join(folder, `lag-${width}.png`), fullPage: false });
+
+  // The command shown gives the same number.
+  const command = await page.textContent("#bench-command");
+  const json = execFileSync("sh", ["-c", `${command.replace(/^identify/, `'${identify}'`)} --json -`], { cwd: folder, encoding: "utf8" });
+  const fit = JSON.parse(json).fits[0];
+  assert.equal(Number(fit.error.held_out_rmse.toPrecision(4)), after);
+
+  // Back by a click, with the same number.
+  await change(page, () => page.locator("#bench-rungs button").first().click());
+  assert.equal(await shownError(page), before);
+  assert.equal(await page.isChecked("#effect-frictional-lag"), false);
+
+  // A start dragged with the keyboard, bounds, cycles and a stretch that is left out.
+  await change(page, async () => {
+    await page.focus("#slide-mu_s");
+    await page.keyboard.press("ArrowRight");
+  });
+  assert.match(await page.textContent("#bench-command"), /--start mu_s=/);
+  await change(page, () => page.fill("#cycles-to", "20").then(() => page.keyboard.press("Enter")));
+  assert.match(await page.textContent("#bench-command"), /--cycles 0\.\.20/);
+  await page.fill("#exclude-from", "1");
+  await page.fill("#exclude-to", "1.2");
+  await change(page, () => page.click("#exclude"));
+  assert.match(await page.textContent("#bench-command"), /--exclude 1s\.\.1\.2s/);
+
+  // A formula that does not parse is refused with its reason, and the page lives on. The browser notes the refusal.
+  await page.fill("#bench-formula", "hump = a*exp(-v; a=0.02");
+  await page.click("#apply-formula");
+  await page.waitForSelector("#bench-trouble:not([hidden])");
+  assert.match(await page.textContent("#bench-trouble"), /formula/);
+  await page.fill("#bench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
+  await change(page, () => page.click("#apply-formula"));
+  assert.equal(await page.isHidden("#bench-trouble"), true);
+  const others = complaints.filter((text) => !/422/.test(text));
+  assert.deepEqual(others, [], `complaints at ${width} px`);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(overflow <= 0, `the page is ${overflow} px wider than ${width} px`);
+  await page.screenshot({ path: join(folder, `all-${width}.png`), fullPage: true });
+  await close();
+}
+
+/** Another page of the same session: its own choice, the same ladder. */
+async function twoAtOnce(address) {
+  const [a, b] = await Promise.all([open(address, 1280), open(address, 1280)]);
+  await Promise.all([change(a.page, () => a.page.check("#law-fractional")), change(b.page, () => b.page.check("#effect-viscous"))]);
+  assert.match(await a.page.textContent("#shown-model"), /^fractional$/);
+  assert.match(await b.page.textContent("#shown-model"), /viscous/);
+  assert.deepEqual([...a.complaints, ...b.complaints], []);
+  await Promise.all([a.close(), b.close()]);
+}
+
+async function diagnose(address) {
+  const { page, complaints, close } = await open(address, 1280);
+  await page.click("#bench-diagnose");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "running");
+  await page.click("#bench-cancel");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "cancelled");
+  await page.click("#bench-diagnose");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "done", null, { timeout: 120000 });
+  await change(page, () => page.click("#take-finding"));
+  assert.match(await page.textContent("#shown-model"), /lag/);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#bench-save")]);
+  const file = join(folder, "session.json");
+  await download.saveAs(file);
+  assert.ok(JSON.parse(readFileSync(file, "utf8")).rungs.length > 3);
+  assert.deepEqual(complaints, []);
+  await close();
+}
+
+/** The server ends while a page waits: within two seconds, and the page says so. */
+async function stopInMidFit({ server, address, ended }) {
+  const { page, close } = await open(address, 1280);
+  await page.check("#effect-rate-state");
+  const begin = performance.now();
+  server.kill("SIGTERM");
+  assert.equal(await ended, 0);
+  assert.ok(performance.now() - begin < 2000, "the server took more than two seconds to end");
+  await page.check("#effect-viscous");
+  await page.waitForSelector("#bench-trouble:not([hidden])");
+  assert.match(await page.textContent("#bench-trouble"), /does not answer/);
+  await close();
+}
+
+const begun = await explore("--radius", "15mm", "lag.csv");
+for (const width of [1280, 390]) await watchTheErrorFall(begun.address, width);
+await twoAtOnce(begun.address);
+await diagnose(begun.address);
+const { page: stranger, close } = await open(begun.address, 1280);
+const refused = await stranger.goto(begun.address.replace(/token=.*/, "token=0"));
+assert.equal(refused.status(), 403);
+await close();
+await stopInMidFit(begun);
+const again = await explore("--session", "session.json");
+const { page: restored, close: closeRestored } = await open(again.address, 1280);
+assert.ok(await restored.locator("#bench-rungs tbody tr").count() > 3);
+await closeRestored();
+again.server.kill("SIGINT");
+assert.equal(await again.ended, 0);
+await browser.close();
+console.log("the workbench: all as it should be");

@@ -1,0 +1,53 @@
+#include "workbench/choice_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tribofit/ingest/input_error.hpp"
+
+namespace tribofit::workbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string complaint_of(const std::string& text) {
+  try {
+    choice_from(parsed(text, "the request"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Choice, is_read_in_the_units_people_see) {
+  const WorkbenchChoice choice = choice_from(parsed(
+      R"({"law":"exponential","effects":["frictional-lag"],"start":{"alpha":0.05,"frictional-lag.tau":2,"beta":9},
+          "bounds":{"mu_s":[0.4,0.6]},"cycles":[3,40],"excluded":[[2.5,3.1]]})",
+      "the request"));
+  EXPECT_THAT(arguments_of(choice),
+              ElementsAre("--law", "exponential", "--effect", "frictional-lag", "--start", "alpha=0.05", "--start",
+                          "frictional-lag.tau=2", "--bounds", "mu_s=0.4..0.6", "--cycles", "3..40", "--exclude",
+                          "2.5s..3.1s"));
+  EXPECT_DOUBLE_EQ(*choice.given[0].start, 50);    // s/m
+  EXPECT_DOUBLE_EQ(*choice.given[1].start, 2e-3);  // s
+  EXPECT_TRUE(same(choice, choice_from(choice_json(choice))));
+}
+
+TEST(Choice, that_cannot_be_says_why) {
+  EXPECT_THAT(complaint_of("[1,2"), HasSubstr("is not JSON"));
+  EXPECT_THAT(complaint_of("[[[[[[[[[[[[1]]]]]]]]]]]]"), HasSubstr("nested too deeply"));
+  EXPECT_THAT(complaint_of("{}"), HasSubstr("there is no law"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponental"})"), HasSubstr("exponential"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","effects":["frictional-leg"]})"), HasSubstr("frictional-lag"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","effects":["viscous","viscous"]})"), HasSubstr("viscous"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","formulas":["hump = a*exp(-v"]})"), HasSubstr("formula"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","start":{"mu_s":"high"}})"), HasSubstr("mu_s is not a number"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","bounds":{"mu_s":[2,1]}})"), HasSubstr("from high to low"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","cycles":[1.5,3]})"), HasSubstr("whole numbers"));
+  EXPECT_THAT(complaint_of(R"({"law":"exponential","excluded":[[1]]})"), HasSubstr("pair of numbers"));
+  EXPECT_THAT(complaint_of(R"({"law":7,"effects":7})"), HasSubstr("there is no law"));
+}
+
+}  // namespace
+}  // namespace tribofit::workbench

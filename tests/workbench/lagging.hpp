@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "cli/command.hpp"
+#include "tribofit/workbench/session.hpp"
+
+namespace workbench_test {
+
+/// A trace in which friction follows v_r with a delay of 4 ms, made by the command under test.
+struct Lagging {
+  Workshop workshop;
+  std::string path;
+
+  explicit Lagging(const std::string& duration = "8s") : path((workshop / "lag.csv").string()) {
+    workshop.identify("simulate --radius 15mm --speed 4rpm --duration " + duration +
+                      " --rate 10kHz --effect frictional-lag:tau=4ms --noise-mu 0.003 --noise-v 0.02mm/s --seed 7 "
+                      "--out lag.csv");
+  }
+
+  tribofit::WorkbenchOptions options() const {
+    tribofit::WorkbenchOptions out;
+    out.input.path = path;
+    out.input.read.conditions.radius = {0.015, "command line"};
+    out.arguments = {"--radius", "15mm"};
+    return out;
+  }
+};
+
+/// One for all tests of a program: it takes a moment.
+inline const Lagging& lagging() {
+  static const Lagging made;
+  return made;
+}
+
+}  // namespace workbench_test

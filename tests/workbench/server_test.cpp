@@ -1,0 +1,289 @@
+#include "tribofit/workbench/server.hpp"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "lagging.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/report/page.hpp"
+#include "workbench/guard.hpp"
+
+namespace tribofit {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+using workbench_test::lagging;
+
+constexpr const char* kType = "application/json";
+
+/// A server with its session and a thread that runs it.
+class Server : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_report_page()) GTEST_SKIP() << "this build has no page";
+    session.emplace(lagging().options());
+    server.emplace(*session, 0);
+    thread = std::thread([this] { server->run(); });
+    for (int k = 0; k < 100 && !client().Get(page()); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  void TearDown() override {
+    if (!server) return;
+    server->stop();
+    thread.join();
+  }
+
+  httplib::Client client() const {
+    httplib::Client made("127.0.0.1", server->port());
+    made.set_read_timeout(60);
+    return made;
+  }
+  std::string page() const { return "/?token=" + server->token(); }
+  httplib::Headers headers(httplib::Headers more = {}) const {
+    more.emplace("X-Workbench-Token", server->token());
+    return more;
+  }
+  int status_of(const std::string& path, const httplib::Headers& sent) const {
+    const auto answer = client().Get(path, sent);
+    return answer ? answer->status : 0;
+  }
+  static std::string asked(const std::string& choice, int turn = 1, const std::string& name = "p") {
+    return R"({"page":")" + name + R"(","turn":)" + std::to_string(turn) + R"(,"choice":)" + choice + "}";
+  }
+  httplib::Result show(const std::string& choice, int turn = 1, const std::string& name = "p") const {
+    return client().Post("/api/show", headers(), asked(choice, turn, name), kType);
+  }
+  /// Sends bytes as they are, for what no client would send; the first line of the answer.
+  std::string raw(const std::string& request) const {
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(server->port()));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    std::string answer;
+    if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+      [[maybe_unused]] const auto sent = ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
+      char buffer[4096];
+      for (ssize_t n = 0; (n = ::recv(socket, buffer, sizeof buffer, 0)) > 0;) {
+        answer.append(buffer, static_cast<std::size_t>(n));
+      }
+    }
+    ::close(socket);
+    return answer.substr(0, answer.find("\r\n"));
+  }
+
+  std::optional<WorkbenchSession> session;
+  std::optional<WorkbenchServer> server;
+  std::thread thread;
+};
+
+TEST_F(Server, shows_a_model_and_its_error) {
+  const auto bare = show(R"({"law":"exponential"})"), lag = show(R"({"law":"exponential","effects":["frictional-lag"]})", 2);
+  ASSERT_TRUE(bare && lag);
+  ASSERT_EQ(bare->status, 200) << bare->body;
+  ASSERT_EQ(lag->status, 200) << lag->body;
+  const Json first = Json::parse(bare->body), second = Json::parse(lag->body);
+  EXPECT_LT(second["rung"]["held_out_rmse"].get<double>(), 0.7 * first["rung"]["held_out_rmse"].get<double>());
+  EXPECT_EQ(second["rungs"].size(), 2u);
+  EXPECT_FALSE(second["report"]["sections"].empty());
+}
+
+TEST_F(Server, lets_in_only_who_has_the_token) {
+  EXPECT_EQ(status_of(page(), {}), 200);
+  EXPECT_EQ(status_of("/", {}), 403);
+  EXPECT_EQ(status_of("/?token=", {}), 403);
+  EXPECT_EQ(status_of("/?token=" + std::string(32, '0'), {}), 403);
+  EXPECT_EQ(status_of(page() + "&token=x", {}), 403);
+  EXPECT_EQ(status_of("/api/begin", {}), 403);
+  EXPECT_EQ(status_of("/api/begin?token=" + server->token(), {}), 403);  // there in the header only
+  EXPECT_EQ(status_of("/api/begin", {{"X-Workbench-Token", server->token() + "0"}}), 403);
+  EXPECT_EQ(status_of("/api/begin", headers()), 200);
+  const auto post = client().Post("/api/show", asked("{}"), kType);
+  ASSERT_TRUE(post);
+  EXPECT_EQ(post->status, 403);
+}
+
+TEST_F(Server, answers_its_own_pages_only) {
+  const std::string own = "127.0.0.1:" + std::to_string(server->port());
+  EXPECT_EQ(status_of("/api/begin", headers({{"Origin", "http://" + own}})), 200);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Sec-Fetch-Site", "same-origin"}})), 200);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Origin", "http://evil.example"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Origin", "null"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Origin", "https://" + own}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Sec-Fetch-Site", "cross-site"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Sec-Fetch-Site", "same-site"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Host", "evil.example"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Host", "127.0.0.1:1"}})), 403);
+  EXPECT_EQ(status_of("/api/begin", headers({{"Host", "localhost:" + std::to_string(server->port())}})), 200);
+  const std::string line = "GET /api/begin HTTP/1.1\r\nX-Workbench-Token: " + server->token() + "\r\n";
+  EXPECT_THAT(raw(line + "\r\n"), HasSubstr("403"));
+  EXPECT_THAT(raw(line + "Host: " + own + "\r\nHost: evil.example\r\n\r\n"), HasSubstr("403"));
+}
+
+TEST_F(Server, serves_no_files) {
+  const std::string rest = " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->port()) +
+                           "\r\nX-Workbench-Token: " + server->token() + "\r\n\r\n";
+  for (const char* path : {"/../etc/passwd", "/../../../../etc/passwd", "/%2e%2e/etc/passwd", "/..%2fetc%2fpasswd",
+                           "//etc/passwd", "//", "/.", "/etc/passwd", "/api", "/api/", "/api/show/", "/lag.csv",
+                           "/api/begin/../../etc/passwd", "/index.html", "/api/begin%00", "/\\..\\etc\\passwd"}) {
+    EXPECT_THAT(raw(std::string("GET ") + path + rest), HasSubstr("404")) << path;
+  }
+  EXPECT_THAT(raw("DELETE /api/begin" + rest), HasSubstr("405"));
+  EXPECT_THAT(raw("GET /" + std::string(20000, 'a') + rest), Not(HasSubstr("200")));
+}
+
+TEST_F(Server, takes_small_plain_bodies_only) {
+  const auto large = client().Post("/api/show", headers(), std::string(300 * 1024, ' '), kType);
+  ASSERT_TRUE(large);
+  EXPECT_EQ(large->status, 413);
+  const auto form = client().Post("/api/show", headers(), "a=b", "application/x-www-form-urlencoded");
+  ASSERT_TRUE(form);
+  EXPECT_EQ(form->status, 415);
+  const auto zipped = client().Post("/api/show", headers({{"Content-Encoding", "gzip"}}), "{}", kType);
+  ASSERT_TRUE(zipped);
+  EXPECT_EQ(zipped->status, 415);
+  for (const std::string& broken : {std::string("{"), std::string("[]"), std::string("{}"), std::string(5000, '['),
+                                    asked("7"), asked(R"({"law":"no"})")}) {
+    const auto answer = client().Post("/api/show", headers(), broken, kType);
+    ASSERT_TRUE(answer) << broken;
+    EXPECT_EQ(answer->status, 422) << broken;
+    EXPECT_TRUE(Json::parse(answer->body).contains("problem")) << broken;
+  }
+  EXPECT_EQ(show(R"({"law":"exponential"})")->status, 200);
+}
+
+TEST_F(Server, says_what_is_wrong_and_lives_on) {
+  const auto bad = show(R"({"law":"exponential","formulas":["hump = a*exp(-v"]})");
+  ASSERT_TRUE(bad);
+  EXPECT_EQ(bad->status, 422);
+  const Json said = Json::parse(bad->body);
+  EXPECT_THAT(said["why"].get<std::string>(), HasSubstr("hump"));
+  EXPECT_FALSE(said["suggestion"].get<std::string>().empty());
+  EXPECT_EQ(show(R"({"law":"exponential"})", 2)->status, 200);
+}
+
+TEST_F(Server, forbids_its_page_what_it_does_not_need) {
+  const auto answer = client().Get(page());
+  ASSERT_TRUE(answer);
+  const std::string policy = answer->get_header_value("Content-Security-Policy");
+  EXPECT_THAT(policy, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(policy, HasSubstr("connect-src 'self'"));
+  EXPECT_THAT(policy, HasSubstr("frame-ancestors 'none'"));
+  EXPECT_THAT(policy, Not(HasSubstr("unsafe-eval")));
+  EXPECT_THAT(policy.substr(policy.find("script-src"), policy.find(';', policy.find("script-src"))),
+              Not(HasSubstr("script-src 'unsafe-inline'")));
+  EXPECT_EQ(answer->get_header_value("X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(answer->get_header_value("Referrer-Policy"), "no-referrer");
+  EXPECT_EQ(answer->get_header_value("Access-Control-Allow-Origin"), "");
+}
+
+TEST_F(Server, serves_two_pages_at_once) {
+  const auto ask_often = [&](const std::string& name, const std::string& choice) {
+    int good = 0;
+    for (int turn = 1; turn <= 5; ++turn) {
+      const auto answer = show(choice, turn, name);
+      if (answer && answer->status == 200 && Json::parse(answer->body).value("turn", 0) == turn) ++good;
+    }
+    return good;
+  };
+  int first = 0, second = 0;
+  std::thread other([&] { first = ask_often("a", R"({"law":"fractional"})"); });
+  second = ask_often("b", R"({"law":"exponential","effects":["viscous"]})");
+  other.join();
+  EXPECT_EQ(first, 5);
+  EXPECT_EQ(second, 5);
+  EXPECT_EQ(session->rungs().size(), 2u);
+}
+
+TEST_F(Server, gives_up_what_a_page_no_longer_wants) {
+  std::vector<std::thread> askers;
+  std::atomic<int> shown{0}, superseded{0};
+  for (int turn = 1; turn <= 8; ++turn) {
+    askers.emplace_back([&, turn] {
+      const auto answer =
+          show(R"({"law":"exponential","start":{"mu_s":0.4)" + std::to_string(turn) + "}}", turn, "dragging");
+      if (!answer || answer->status != 200) return;
+      ++(Json::parse(answer->body).contains("superseded") ? superseded : shown);
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  for (std::thread& asker : askers) asker.join();
+  EXPECT_EQ(shown + superseded, 8);
+  EXPECT_GE(shown, 1);
+  EXPECT_LE(session->rungs().size(), static_cast<std::size_t>(shown));
+}
+
+TEST_F(Server, listens_on_this_machine_only) {
+  httplib::Client outside("127.0.0.2", server->port());
+  outside.set_connection_timeout(1);
+  EXPECT_FALSE(outside.Get(page()));
+  EXPECT_THROW(WorkbenchServer(*session, server->port()), InputError);
+}
+
+TEST(Token, is_long_and_never_the_same) {
+  const std::string a = workbench::fresh_token(), b = workbench::fresh_token();
+  EXPECT_EQ(a.size(), 32u);
+  EXPECT_NE(a, b);
+  EXPECT_TRUE(workbench::same_secret(a, a));
+  EXPECT_FALSE(workbench::same_secret(a, b));
+  EXPECT_FALSE(workbench::same_secret("", a));
+  EXPECT_FALSE(workbench::same_secret(a + "0", a));
+}
+
+/// The real command: it prints its address, answers there, and ends within two seconds of a signal, in the middle of a
+/// fit.
+TEST(Explore, ends_in_the_middle_of_a_fit) {
+  if (!has_report_page()) GTEST_SKIP() << "this build has no page";
+  const Workshop& workshop = lagging().workshop;
+  int pipe_ends[2];
+  ASSERT_EQ(::pipe(pipe_ends), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::dup2(pipe_ends[1], STDOUT_FILENO);
+    ::close(pipe_ends[0]);
+    ::execl(TRIBOFIT_IDENTIFY, "identify", "explore", "--radius", "15mm", lagging().path.c_str(), nullptr);
+    ::_exit(127);
+  }
+  ::close(pipe_ends[1]);
+  std::string said;
+  char byte = 0;
+  while (said.find("Ctrl-C") == std::string::npos && ::read(pipe_ends[0], &byte, 1) == 1) said += byte;
+  const std::size_t at = said.find("http://127.0.0.1:");
+  ASSERT_NE(at, std::string::npos) << said;
+  const int port = std::stoi(said.substr(at + 17));
+  const std::string token = said.substr(said.find("token=") + 6, 32);
+  std::thread asker([&] {
+    httplib::Client client("127.0.0.1", port);
+    client.Post("/api/show", {{"X-Workbench-Token", token}},
+                R"({"page":"p","turn":1,"full":true,"choice":{"law":"exponential","effects":["rate-state"],)"
+                R"("formulas":["a = k*exp(-v/w)*sin(t*f); k=0.01, w=6, f=3"]}})",
+                kType);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  const auto begin = std::chrono::steady_clock::now();
+  ::kill(child, SIGTERM);
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  asker.join();
+  ::close(pipe_ends[0]);
+  EXPECT_FALSE(workshop.names().empty());
+}
+
+}  // namespace
+}  // namespace tribofit

@@ -1,0 +1,158 @@
+#include "tribofit/workbench/session.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "lagging.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "workbench/choice_json.hpp"
+
+namespace tribofit {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+using workbench_test::lagging;
+
+WorkbenchChoice with(std::vector<std::string> effects) {
+  WorkbenchChoice choice;
+  choice.effects = std::move(effects);
+  return choice;
+}
+
+TEST(Session, finds_the_hidden_lag) {
+  WorkbenchSession session(lagging().options());
+  const WorkbenchRung bare = session.show({}, FitDetail::quick).rung;
+  const WorkbenchRung lag = session.show(with({"frictional-lag"}), FitDetail::quick).rung;
+  EXPECT_LT(lag.fit.error.held_out_rmse, 0.7 * bare.fit.error.held_out_rmse);
+  const FitParameter& tau = lag.fit.parameters.back();
+  EXPECT_NEAR(tau.value, 4e-3, 4 * tau.std_error);
+}
+
+TEST(Session, gives_the_numbers_of_the_command_it_shows) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice choice = with({"frictional-lag"});
+  choice.formulas = {"hump = a*exp(-v/w); a=0.002, w=6mm/s"};
+  choice.given = {{"alpha", 61.7, GivenParameter::Bounds{1.0 / 3, 1e4}}, {"frictional-lag.tau", 1.7e-3, {}}};
+  choice.selection = {Selection::Cycles{1, 30}, {{2.05, 2.35}}};
+  const WorkbenchRung quick = session.show(choice, FitDetail::quick).rung;
+  const WorkbenchRung full = session.show(choice, FitDetail::full).rung;
+  EXPECT_EQ(session.rungs().size(), 1u);
+  const Outcome out = lagging().workshop.shell(full.command + " --json - --protocol joint");
+  ASSERT_EQ(out.status, 0) << full.command << "\n" << out.err;
+  const Json fit = Json::parse(out.out)["fits"][0];
+  EXPECT_EQ(fit["error"]["rmse"].get<double>(), full.fit.error.rmse);
+  EXPECT_EQ(fit["error"]["held_out_rmse"].get<double>(), full.fit.error.held_out_rmse);
+  for (std::size_t k = 0; k < full.fit.parameters.size(); ++k) {
+    const FitParameter& p = full.fit.parameters[k];
+    EXPECT_EQ(fit["parameters"][k]["value"].get<double>(), p.value / p.parameter.si) << p.parameter.name;
+    EXPECT_NEAR(quick.fit.parameters[k].value, p.value, 0.3 * p.std_error) << p.parameter.name;
+  }
+}
+
+TEST(Session, comes_back_to_a_rung_with_the_same_numbers) {
+  WorkbenchSession session(lagging().options());
+  const WorkbenchRung first = session.show({}, FitDetail::quick).rung;
+  session.show(with({"viscous"}), FitDetail::quick);
+  const WorkbenchRung again = session.show({}, FitDetail::quick).rung;
+  EXPECT_EQ(again.number, first.number);
+  EXPECT_EQ(again.fit.values(), first.fit.values());
+  EXPECT_EQ(again.fit.error.held_out_rmse, first.fit.error.held_out_rmse);
+  EXPECT_EQ(session.rungs().size(), 2u);
+
+  // Not what was kept but what is found: another session that came another way.
+  WorkbenchSession other(lagging().options());
+  other.show(with({"viscous", "frictional-lag"}), FitDetail::quick);
+  EXPECT_EQ(other.show({}, FitDetail::quick).rung.fit.values(), first.fit.values());
+}
+
+TEST(Session, lives_on_after_what_it_cannot_do) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice bad;
+  const auto complaint = [&] {
+    try {
+      session.show(bad, FitDetail::quick);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  bad.formulas = {"hump = a*log(0*v - 1); a=0.02"};
+  EXPECT_NE(complaint(), "none");
+  bad.formulas = {"hump = b*exp(-v); a=0.02"};
+  EXPECT_THAT(complaint(), HasSubstr("'b'"));
+  bad = with({"temperature-dependence"});
+  EXPECT_THAT(complaint(), HasSubstr("temperature"));
+  bad = {};
+  bad.selection.cycles = {1000, 2000};
+  EXPECT_THAT(complaint(), HasSubstr("fewer than three cycles"));
+  EXPECT_TRUE(session.rungs().empty());
+  EXPECT_GT(session.show({}, FitDetail::quick).rung.fit.error.held_out_rmse, 0);
+}
+
+TEST(Session, saved_and_loaded_has_the_same_rungs) {
+  WorkbenchSession session(lagging().options());
+  session.show({}, FitDetail::quick);
+  WorkbenchChoice choice = with({"frictional-lag"});
+  choice.given = {{"mu_s", 0.5, {}}};
+  choice.selection.excluded = {{1, 1.5}};
+  session.show(choice, FitDetail::quick);
+  const std::string saved = session.save();
+
+  WorkbenchSession other(lagging().options());
+  other.load(saved, "saved.json");
+  const auto a = session.rungs(), b = other.rungs();
+  ASSERT_EQ(b.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(a[k].fit.values(), b[k].fit.values());
+    EXPECT_EQ(a[k].command, b[k].command);
+  }
+  EXPECT_TRUE(workbench::same(other.begin(), choice));
+  EXPECT_EQ(saved_workbench(saved, "saved.json").trace, lagging().path);
+  EXPECT_THROW(other.load("{}", "saved.json"), InputError);
+  std::string changed = saved;
+  const std::size_t at = changed.find("\"checksum\": \"") + 13;
+  changed[at] = changed[at] == '0' ? '1' : '0';
+  EXPECT_THROW(other.load(changed, "saved.json"), InputError);
+}
+
+WorkbenchDiagnosis waited_for(const WorkbenchSession& session) {
+  for (int k = 0; k < 1200; ++k) {
+    if (session.diagnosis().state != WorkbenchDiagnosis::State::running) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return session.diagnosis();
+}
+
+TEST(Session, diagnoses_as_the_command_does) {
+  WorkbenchSession session(lagging().options());
+  ASSERT_TRUE(session.begin_diagnosis({}));
+  EXPECT_FALSE(session.begin_diagnosis({}));
+  const WorkbenchDiagnosis found = waited_for(session);
+  ASSERT_EQ(found.state, WorkbenchDiagnosis::State::done) << found.sentence;
+  const Outcome out = lagging().workshop.shell(found.command + " --json -");
+  ASSERT_EQ(out.status, 0) << found.command << out.err;
+  const Json ladder = Json::parse(out.out)["diagnosis"]["ladder"];
+  ASSERT_EQ(ladder.size(), found.ladder.size());
+  EXPECT_EQ(ladder.back()["held_out_rmse"].get<double>(), found.ladder.back().held_out_rmse);
+  EXPECT_GT(session.show(found.found, FitDetail::quick).rung.fit.error.held_out_rmse, 0);
+}
+
+TEST(Session, gives_up_a_diagnosis_at_once) {
+  WorkbenchSession session(lagging().options());
+  ASSERT_TRUE(session.begin_diagnosis({}));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto begin = std::chrono::steady_clock::now();
+  session.cancel_diagnosis();
+  EXPECT_EQ(waited_for(session).state, WorkbenchDiagnosis::State::cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  ASSERT_TRUE(session.begin_diagnosis({}));  // and another can begin
+}
+
+}  // namespace
+}  // namespace tribofit

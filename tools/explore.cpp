@@ -1,0 +1,198 @@
+#include <pthread.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "console.hpp"
+#include "inputs.hpp"
+#include "options.hpp"
+#include "settings.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/workbench/server.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+constexpr int kDone = 0;
+
+constexpr const char* kFooter =
+    "Serves a page on this machine (127.0.0.1) until Ctrl-C: switch the law and effects, drag starts and bounds,\n"
+    "choose cycles, leave out stretches of time, type a formula; each change is fitted at once, and the ladder keeps\n"
+    "every model visited. The page shows the command that fits the model shown, and saves the session as a file.\n"
+    "Only who has the printed address gets in.\n\n"
+    "Examples:\n"
+    "  identify explore --radius 15mm trace.csv\n"
+    "  identify explore --radius 15mm --effect viscous --port 8080 trace.csv\n"
+    "  identify explore --session trace-session.json";
+
+struct ExploreSettings : Settings {
+  int port = 0;
+  std::string session;
+};
+
+void add_options(CLI::App& app, ExploreSettings& s) {
+  add_input_options(app, s);
+  add_model_options(app, s);
+  add_parameter_options(app, s);
+  add_selection_options(app, s);
+  app.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)")
+      ->group("Server");
+  app.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)")
+      ->check(CLI::Range(1, 65535))
+      ->group("Server");
+  app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
+      ->check(CLI::Range(0, 1024))
+      ->group("Server");
+}
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError("the session cannot be read", "give a file that the page saved", {path, 0, ""});
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What the command line says of the fit without the choice, which the page changes.
+std::vector<std::string> without_choice(const std::vector<std::string>& arguments) {
+  const std::vector<std::string> of_choice = {"--law",    "--effect",  "--formula", "--start",   "--bounds",
+                                              "--cycles", "--exclude", "--port",    "--session", "--threads"};
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (std::find(of_choice.begin(), of_choice.end(), arguments[k]) == of_choice.end()) {
+      out.push_back(arguments[k]);
+    } else {
+      ++k;  // with its value
+    }
+  }
+  return out;
+}
+
+/// Formulas as typed; those of files are read now, as no file is read later.
+std::vector<std::string> formulas_of(const Settings& s) {
+  std::vector<std::string> out;
+  for (const std::string& text : s.formulas) {
+    if (text.front() == '@') throw CLI::ValidationError("--formula: type it, or paste it into the page; @FILE is not read here");
+    out.push_back(text);
+  }
+  return out;
+}
+
+WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::string>& arguments) {
+  WorkbenchOptions options;
+  options.identify = options_from(s);
+  const Input input = only_input(s, options.identify.read, "explore");
+  options.input = input.trace;
+  options.notes = input.notes;
+  options.warnings = input.warnings;
+  options.arguments = arguments_for(input, without_choice(arguments));
+  options.instruments_declared = !s.instruments.empty();
+  options.begin.law = options.identify.laws.front();
+  options.begin.effects = s.effects;
+  options.begin.formulas = formulas_of(s);
+  options.begin.given = options.identify.fit.given;
+  options.begin.selection = options.identify.selection;
+  if (s.laws.empty()) options.identify.laws = {BaseLaw::exponential, BaseLaw::fractional};
+  return options;
+}
+
+/// The settings that a saved session was begun with; what is typed now stands behind them.
+void take_over(const std::string& text, ExploreSettings& s) {
+  const SavedWorkbench saved = saved_workbench(text, s.session);
+  CLI::App app("", "explore");
+  ExploreSettings earlier;
+  add_options(app, earlier);
+  std::vector<std::string> words = saved.arguments;
+  words.push_back(saved.trace);
+  std::reverse(words.begin(), words.end());
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string("holds options that cannot be read: ") + error.what(), "save the session again",
+                     {s.session, 0, ""});
+  }
+  const ExploreSettings now = s;
+  s = earlier;
+  if (!now.traces.empty()) s.traces = now.traces;
+  s.session = now.session;
+  s.port = now.port;
+  s.threads = now.threads;
+}
+
+/// Signals that end the server in an orderly way, held back from every thread but the one that waits for them.
+sigset_t hold_back_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  return set;
+}
+
+/// Serves until a signal comes.
+void serve(WorkbenchServer& server) {
+  const sigset_t signals = hold_back_signals();
+  std::mutex mutex;
+  std::condition_variable over;
+  bool ended = false;
+  std::thread answering([&] {
+    server.run();
+    const std::lock_guard lock(mutex);
+    ended = true;
+    over.notify_all();
+  });
+  for (int signal = 0; sigwait(&signals, &signal) != 0;) {
+  }
+  server.stop();
+  {
+    // A fit that is under way ends in a moment; one that does not is given up.
+    constexpr auto kPatience = std::chrono::milliseconds(1500);
+    std::unique_lock lock(mutex);
+    if (!over.wait_for(lock, kPatience, [&] { return ended; })) ::_exit(kDone);
+  }
+  answering.join();
+}
+
+int run(ExploreSettings& s, const std::vector<std::string>& given) {
+  std::vector<std::string> arguments = given;
+  std::string saved;
+  if (!s.session.empty()) {
+    saved = text_of_file(s.session);
+    take_over(saved, s);
+    arguments = saved_workbench(saved, s.session).arguments;
+  }
+  WorkbenchSession session(options_for(s, arguments));
+  if (!saved.empty()) session.load(saved, s.session);
+  WorkbenchServer server(session, s.port);
+  print("The workbench for " + session.trace().path + " is at\n\n  " + server.address() +
+        "\n\nOpen it in a browser on this machine. Ctrl-C ends it.\n");
+  serve(server);
+  return kDone;
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("explore", "A live page: switch effects on and watch the error fall");
+  verb->footer(kFooter);
+  const auto settings = std::make_shared<ExploreSettings>();
+  add_options(*verb, *settings);
+  verb->callback([settings, verb, &status] {
+    refuse_empty_values(*verb);
+    check_seed(*settings);
+    if (settings->traces.empty() && settings->session.empty()) {
+      throw CLI::ValidationError("no trace given; try `identify explore --radius 15mm trace.csv`");
+    }
+    status = run(*settings, own_options(*verb));
+  });
+}
