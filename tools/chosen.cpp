@@ -19,7 +19,9 @@ namespace {
 
 using Slot = FrictionModel::Slot;
 
-[[noreturn]] void refuse(const std::string& problem) { throw CLI::ValidationError(problem); }
+[[noreturn]] void refuse(const std::string& problem) {
+  throw CLI::ValidationError(problem);
+}
 
 std::string trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(' ');
@@ -36,7 +38,8 @@ struct Number {
 Number number_from(const std::string& text, const std::string& option) {
   Number out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
-  if (error != std::errc{} || !std::isfinite(out.value)) refuse(option + ": '" + text + "' does not begin with a number");
+  if (error != std::errc{} || !std::isfinite(out.value))
+    refuse(option + ": '" + text + "' does not begin with a number");
   out.unit = trimmed(std::string_view(end, static_cast<std::size_t>(text.data() + text.size() - end)));
   return out;
 }
@@ -72,8 +75,8 @@ const Slot& slot_named(const std::string& name, const std::vector<Slot>& slots, 
     names.push_back(slot.full_name());
     list += (list.empty() ? "" : ", ") + names.back();
   }
-  refuse(option + ": the laws fitted here have no parameter '" + name + "'; did you mean '" + nearest_name(name, names) +
-         "'? They have " + list);
+  refuse(option + ": the laws fitted here have no parameter '" + name + "'; did you mean '" +
+         nearest_name(name, names) + "'? They have " + list);
 }
 
 /// In SI. A bare number is in the unit in which the parameter is shown.
@@ -155,7 +158,8 @@ Selection selection_from(const Settings& s) {
   for (const std::string& text : s.excluded) {
     const auto [from, to] = range_from(text, "--exclude", "2.5s..3.1s");
     const auto seconds = [&](const Number& n) {
-      const auto unit = n.unit.empty() ? Unit{Quantity::time, 1, 0} : find_unit(n.unit, Quantity::time).value_or(Unit{});
+      const auto unit =
+          n.unit.empty() ? Unit{Quantity::time, 1, 0} : find_unit(n.unit, Quantity::time).value_or(Unit{});
       if (unit.quantity != Quantity::time) refuse("--exclude: '" + n.unit + "' is no unit of time");
       return n.value * unit.factor;
     };

@@ -1,10 +1,10 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -83,7 +83,8 @@ std::vector<std::string> without_choice(const std::vector<std::string>& argument
 std::vector<std::string> formulas_of(const Settings& s) {
   std::vector<std::string> out;
   for (const std::string& text : s.formulas) {
-    if (text.front() == '@') throw CLI::ValidationError("--formula: type it, or paste it into the page; @FILE is not read here");
+    if (text.front() == '@')
+      throw CLI::ValidationError("--formula: type it, or paste it into the page; @FILE is not read here");
     out.push_back(text);
   }
   return out;

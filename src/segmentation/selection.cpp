@@ -51,9 +51,10 @@ void leave_out(const Selection& selection, const Motion& motion, Segmentation& s
   std::erase_if(segmentation.left_out, [](const Span& span) { return span.begin >= span.end; });
   if (segmentation.kind != MotionKind::stick_slip) return;
   const auto& cycles = segmentation.cycles;
-  const auto left = std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.takes_part(c); });
-  segmentation.notes.push_back(fmt::format("{} of {} cycles take part in the fit, the others were left out by request",
-                                           left, cycles.size()));
+  const auto left =
+      std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.takes_part(c); });
+  segmentation.notes.push_back(
+      fmt::format("{} of {} cycles take part in the fit, the others were left out by request", left, cycles.size()));
 }
 
 }  // namespace tribofit

@@ -113,8 +113,11 @@ Json picture_json(const WorkbenchPicture& picture, const WorkbenchSession& sessi
 }
 
 Json diagnosis_json(const WorkbenchDiagnosis& diagnosis) {
-  Json json = {{"state", name_of(diagnosis.state)}, {"doing", diagnosis.doing},       {"part", diagnosis.part},
-               {"sentence", diagnosis.sentence},    {"command", diagnosis.command},
+  Json json = {{"state", name_of(diagnosis.state)},
+               {"doing", diagnosis.doing},
+               {"part", diagnosis.part},
+               {"sentence", diagnosis.sentence},
+               {"command", diagnosis.command},
                {"floor_rmse", number(diagnosis.floor_rmse)}};
   json["found"] = diagnosis.state == WorkbenchDiagnosis::State::done ? choice_json(diagnosis.found) : Json(nullptr);
   json["ladder"] = Json::array();

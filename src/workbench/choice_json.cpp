@@ -17,7 +17,9 @@ constexpr int kDeepest = 8;
 constexpr std::size_t kMostEffects = 16, kMostStretches = 200, kLongestFormula = 2000;
 const std::vector<std::string> kLaws = {"exponential", "fractional", "coulomb"};
 
-[[noreturn]] void refuse(const std::string& problem, const std::string& advice) { throw InputError(problem, advice); }
+[[noreturn]] void refuse(const std::string& problem, const std::string& advice) {
+  throw InputError(problem, advice);
+}
 
 double finite(const Json& json, const std::string& what) {
   if (!json.is_number() || !std::isfinite(json.get<double>())) refuse(what + " is not a number", "give a number");
@@ -25,7 +27,8 @@ double finite(const Json& json, const std::string& what) {
 }
 
 std::pair<double, double> range(const Json& json, const std::string& what) {
-  if (!json.is_array() || json.size() != 2) refuse(what + " is not a pair of numbers", "give the lower and the upper end");
+  if (!json.is_array() || json.size() != 2)
+    refuse(what + " is not a pair of numbers", "give the lower and the upper end");
   const std::pair<double, double> out = {finite(json[0], what), finite(json[1], what)};
   if (out.first > out.second) refuse(what + " runs from high to low", "give the lower end first");
   return out;
@@ -120,7 +123,9 @@ double in_units(double si, double unit) {
 }
 
 /// Shortest text that reads back as the same number.
-std::string exact(double value) { return fmt::format("{}", value); }
+std::string exact(double value) {
+  return fmt::format("{}", value);
+}
 
 }  // namespace
 
@@ -146,7 +151,9 @@ std::vector<Effect> effects_of(const WorkbenchChoice& choice) {
   return effects;
 }
 
-FrictionModel model_of(const WorkbenchChoice& choice) { return FrictionModel(choice.law, effects_of(choice)); }
+FrictionModel model_of(const WorkbenchChoice& choice) {
+  return FrictionModel(choice.law, effects_of(choice));
+}
 
 Json choice_json(const WorkbenchChoice& choice) {
   Json json = {{"law", to_string(choice.law)}, {"effects", choice.effects}, {"formulas", choice.formulas}};
@@ -190,17 +197,19 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
     const double unit = unit_of(model, known.name).value_or(1);
     if (known.start) add("--start", known.name + "=" + exact(in_units(*known.start, unit)));
     if (known.bounds) {
-      add("--bounds",
-          known.name + "=" + exact(in_units(known.bounds->lower, unit)) + ".." +
+      add("--bounds", known.name + "=" + exact(in_units(known.bounds->lower, unit)) + ".." +
                           exact(in_units(known.bounds->upper, unit)));
     }
   }
   const Selection& selection = choice.selection;
   if (selection.cycles) add("--cycles", fmt::format("{}..{}", selection.cycles->first, selection.cycles->last));
-  for (const auto& stretch : selection.excluded) add("--exclude", exact(stretch.from) + "s.." + exact(stretch.to) + "s");
+  for (const auto& stretch : selection.excluded)
+    add("--exclude", exact(stretch.from) + "s.." + exact(stretch.to) + "s");
   return out;
 }
 
-bool same(const WorkbenchChoice& a, const WorkbenchChoice& b) { return choice_json(a) == choice_json(b); }
+bool same(const WorkbenchChoice& a, const WorkbenchChoice& b) {
+  return choice_json(a) == choice_json(b);
+}
 
 }  // namespace tribofit::workbench

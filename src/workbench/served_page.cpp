@@ -32,7 +32,8 @@ ServedPage served_page(const std::string& trace) {
   constexpr std::string_view kNothing = "default-src 'none'";
   const std::size_t at = page.html.find(kNothing);
   if (at != std::string::npos) page.html.insert(at + kNothing.size(), "; connect-src 'self'");
-  page.policy = between(page.html, "http-equiv=\"Content-Security-Policy\" content=\"", "\"") + "; frame-ancestors 'none'";
+  page.policy =
+      between(page.html, "http-equiv=\"Content-Security-Policy\" content=\"", "\"") + "; frame-ancestors 'none'";
   return page;
 }
 

@@ -26,8 +26,16 @@ namespace {
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kJson = "application/json";
 constexpr std::size_t kLargestBody = 256 * 1024, kThreads = 16, kMostPages = 256, kLongestName = 64;
-enum Status { kDone = 200, kForbidden = 403, kUnknown = 404, kWrongMethod = 405, kTooLarge = 413, kWrongType = 415,
-              kUnfit = 422, kBroken = 500 };
+enum Status {
+  kDone = 200,
+  kForbidden = 403,
+  kUnknown = 404,
+  kWrongMethod = 405,
+  kTooLarge = 413,
+  kWrongType = 415,
+  kUnfit = 422,
+  kBroken = 500
+};
 
 void answer(httplib::Response& response, const Json& json, int status = kDone) {
   response.status = status;
@@ -133,8 +141,7 @@ void WorkbenchServer::State::show(const Json& asked, httplib::Response& response
   take_turn(name, turn);
   const auto detail = asked.value("full", false) ? FitDetail::full : FitDetail::quick;
   const WorkbenchChoice choice = choice_from(asked.at("choice"));
-  const WorkbenchPicture picture =
-      session.show(choice, detail, [&] { return !stopping && is_newest(name, turn); });
+  const WorkbenchPicture picture = session.show(choice, detail, [&] { return !stopping && is_newest(name, turn); });
   Json json = picture_json(picture, session);
   json["turn"] = turn;
   answer(response, json);
@@ -144,9 +151,8 @@ void WorkbenchServer::State::add_handlers() {
   http.Get("/", [this](const httplib::Request&, httplib::Response& response) {
     response.set_content(page.html, "text/html; charset=utf-8");
   });
-  http.Get("/api/begin", [this](const httplib::Request&, httplib::Response& response) {
-    answer(response, begin_json(session));
-  });
+  http.Get("/api/begin",
+           [this](const httplib::Request&, httplib::Response& response) { answer(response, begin_json(session)); });
   http.Get("/api/session", [this](const httplib::Request&, httplib::Response& response) {
     response.set_content(session.save(), kJson);
   });
@@ -210,17 +216,25 @@ WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(s
   }
 }
 
-WorkbenchServer::~WorkbenchServer() { stop(); }
+WorkbenchServer::~WorkbenchServer() {
+  stop();
+}
 
-int WorkbenchServer::port() const { return state_->port; }
+int WorkbenchServer::port() const {
+  return state_->port;
+}
 
 std::string WorkbenchServer::address() const {
   return fmt::format("http://{}:{}/?token={}", kLoopback, state_->port, state_->token);
 }
 
-const std::string& WorkbenchServer::token() const { return state_->token; }
+const std::string& WorkbenchServer::token() const {
+  return state_->token;
+}
 
-void WorkbenchServer::run() { state_->http.listen_after_bind(); }
+void WorkbenchServer::run() {
+  state_->http.listen_after_bind();
+}
 
 void WorkbenchServer::stop() {
   state_->stopping = true;

@@ -53,6 +53,7 @@ std::string corrections_of(const std::vector<Effect>& effects) {
 
 /// What is drawn beside a rung: the law alone, fitted to the same part of the record.
 const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<WorkbenchRung>& rungs) {
+  if (rung.fit.model.effects().empty()) return nullptr;
   for (const WorkbenchRung& other : rungs) {
     const bool bare = other.choice.law == rung.choice.law && other.choice.effects.empty() &&
                       other.choice.formulas.empty() && other.number != rung.number;
@@ -167,11 +168,17 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
   model_of(s.options.begin);
 }
 
-WorkbenchSession::~WorkbenchSession() { cancel_diagnosis(); }
+WorkbenchSession::~WorkbenchSession() {
+  cancel_diagnosis();
+}
 
-const WorkbenchChoice& WorkbenchSession::begin() const { return state_->options.begin; }
+const WorkbenchChoice& WorkbenchSession::begin() const {
+  return state_->options.begin;
+}
 
-const Identification& WorkbenchSession::trace() const { return state_->prepared_by_corrections.at("").trace; }
+const Identification& WorkbenchSession::trace() const {
+  return state_->prepared_by_corrections.at("").trace;
+}
 
 WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail detail,
                                         const std::function<bool()>& wanted) {
@@ -246,9 +253,13 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   return s.diagnosis.begin(s.options.input, identify, part, command_line(terminal, "", s.options.input.path));
 }
 
-void WorkbenchSession::cancel_diagnosis() { state_->diagnosis.cancel(); }
+void WorkbenchSession::cancel_diagnosis() {
+  state_->diagnosis.cancel();
+}
 
-WorkbenchDiagnosis WorkbenchSession::diagnosis() const { return state_->diagnosis.status(); }
+WorkbenchDiagnosis WorkbenchSession::diagnosis() const {
+  return state_->diagnosis.status();
+}
 
 std::string WorkbenchSession::save() const {
   const State& s = *state_;
@@ -279,7 +290,8 @@ Json session_json(std::string_view text, const std::string& file) {
   const bool whole = json.is_object() && json.value("kind", Json()) == "tribofit workbench" &&
                      json.value("trace", Json()).is_string() && json.value("arguments", Json()).is_array() &&
                      json.value("rungs", Json()).is_array() && json.value("checksum", Json()).is_string();
-  if (!whole) throw InputError("is no saved session of the workbench", "give a file that its page saved", {file, 0, ""});
+  if (!whole)
+    throw InputError("is no saved session of the workbench", "give a file that its page saved", {file, 0, ""});
   return json;
 }
 

@@ -25,10 +25,9 @@ TEST(Choice, is_read_in_the_units_people_see) {
       R"({"law":"exponential","effects":["frictional-lag"],"start":{"alpha":0.05,"frictional-lag.tau":2,"beta":9},
           "bounds":{"mu_s":[0.4,0.6]},"cycles":[3,40],"excluded":[[2.5,3.1]]})",
       "the request"));
-  EXPECT_THAT(arguments_of(choice),
-              ElementsAre("--law", "exponential", "--effect", "frictional-lag", "--start", "alpha=0.05", "--start",
-                          "frictional-lag.tau=2", "--bounds", "mu_s=0.4..0.6", "--cycles", "3..40", "--exclude",
-                          "2.5s..3.1s"));
+  EXPECT_THAT(arguments_of(choice), ElementsAre("--law", "exponential", "--effect", "frictional-lag", "--start",
+                                                "alpha=0.05", "--start", "frictional-lag.tau=2", "--bounds",
+                                                "mu_s=0.4..0.6", "--cycles", "3..40", "--exclude", "2.5s..3.1s"));
   EXPECT_DOUBLE_EQ(*choice.given[0].start, 50);    // s/m
   EXPECT_DOUBLE_EQ(*choice.given[1].start, 2e-3);  // s
   EXPECT_TRUE(same(choice, choice_from(choice_json(choice))));

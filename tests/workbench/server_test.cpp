@@ -90,7 +90,8 @@ class Server : public testing::Test {
 };
 
 TEST_F(Server, shows_a_model_and_its_error) {
-  const auto bare = show(R"({"law":"exponential"})"), lag = show(R"({"law":"exponential","effects":["frictional-lag"]})", 2);
+  const auto bare = show(R"({"law":"exponential"})"),
+             lag = show(R"({"law":"exponential","effects":["frictional-lag"]})", 2);
   ASSERT_TRUE(bare && lag);
   ASSERT_EQ(bare->status, 200) << bare->body;
   ASSERT_EQ(lag->status, 200) << lag->body;

@@ -41,13 +41,13 @@ struct WorkbenchPicture {
 struct WorkbenchDiagnosis {
   enum class State { none, running, done, cancelled, failed };
   State state = State::none;
-  std::string doing;     ///< while it runs
-  double part = 0;       ///< done, 0 to 1
-  std::string sentence;  ///< the verdict, or why it failed
-  std::string command;   ///< that makes the same diagnosis
+  std::string doing;      ///< while it runs
+  double part = 0;        ///< done, 0 to 1
+  std::string sentence;   ///< the verdict, or why it failed
+  std::string command;    ///< that makes the same diagnosis
   WorkbenchChoice found;  ///< the last rung of its ladder
   struct Step {
-    std::string added;  ///< key; empty for the base law
+    std::string added;                                           ///< key; empty for the base law
     double held_out_rmse = 0, held_out_std_error = 0, rmse = 0;  ///< [1 or N]
   };
   std::vector<Step> ladder;
@@ -59,7 +59,7 @@ struct WorkbenchOptions {
   TraceInput input;
   IdentifyOptions identify;  ///< of `effects` none: they are in `begin`
   WorkbenchChoice begin;
-  std::vector<std::string> arguments;  ///< options of the command line that are no part of a choice
+  std::vector<std::string> arguments;        ///< options of the command line that are no part of a choice
   std::vector<std::string> notes, warnings;  ///< of the input, beside those of the trace
   bool instruments_declared = false;
 };

@@ -1,1 +1,3 @@
-showReport(document.getElementById("page"), JSON.parse(document.getElementById("data").textContent));
+const shownReport = JSON.parse(document.getElementById("data").textContent);
+if (shownReport.kind === "workbench") startWorkbench(document.getElementById("page"));
+else showReport(document.getElementById("page"), shownReport);
