@@ -108,10 +108,6 @@ bool WorkbenchServer::State::admits(const httplib::Request& request, httplib::Re
     refuse(response, kWrongType, "the body is not plain JSON", "use the page");
     return false;
   }
-  if (request.get_header_value<std::uint64_t>("Content-Length") > kLargestBody) {
-    refuse(response, kTooLarge, "the body is too large", "choose fewer effects and stretches");
-    return false;
-  }
   return true;
 }
 

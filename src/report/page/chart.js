@@ -222,7 +222,9 @@ let isDrawing = false;
 
 /** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
 function chartFigure(chart) {
-  const item = chartItems.get(chart.id) || makeChart(chart);
+  const item = chartItems.get(chart.id) || makeChart(chart), described = JSON.stringify(chart);
+  if (item.described === described) return item.figure; // as it is
+  item.described = described;
   item.chart = chart;
   item.traces = tracesOf(chart);
   item.layout = layoutOf(chart);
