@@ -191,7 +191,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
 /// Fits every model of the plan to one trace.
 void fit_all(const IdentifyOptions& options, Identification& out, FitDetail detail = FitDetail::full) {
   // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
-  constexpr std::size_t kBare = 80, kQuick = 250, kFull = 1000;
+  constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
   const std::vector<Effect> effects = of_friction(options.effects);
   const std::size_t values_per_slip = effects.empty() ? kBare : detail == FitDetail::quick ? kQuick : kFull;
   const Observations observations =
