@@ -37,7 +37,7 @@ TEST(Session, finds_the_hidden_lag) {
 TEST(Session, gives_the_numbers_of_the_command_it_shows) {
   WorkbenchSession session(lagging().options());
   WorkbenchChoice choice = with({"frictional-lag"});
-  choice.formulas = {"hump = a*exp(-v/w); a=0.002, w=6mm/s"};
+  choice.formulas = {"rise = a*v; a=0.0001"};
   choice.given = {{"alpha", 61.7, GivenParameter::Bounds{1.0 / 3, 1e4}}, {"frictional-lag.tau", 1.7e-3, {}}};
   choice.selection = {Selection::Cycles{1, 30}, {{2.05, 2.35}}};
   const WorkbenchRung quick = session.show(choice, FitDetail::quick).rung;
@@ -51,7 +51,7 @@ TEST(Session, gives_the_numbers_of_the_command_it_shows) {
   for (std::size_t k = 0; k < full.fit.parameters.size(); ++k) {
     const FitParameter& p = full.fit.parameters[k];
     EXPECT_EQ(fit["parameters"][k]["value"].get<double>(), p.value / p.parameter.si) << p.parameter.name;
-    EXPECT_NEAR(quick.fit.parameters[k].value, p.value, 0.3 * p.std_error) << p.parameter.name;
+    EXPECT_NEAR(quick.fit.parameters[k].value, p.value, 0.5 * p.std_error) << p.parameter.name;
   }
 }
 
