@@ -50,6 +50,14 @@ SolverOptions quick_search() {
   return quick;
 }
 
+/// Good enough for a look: what has not been found by then is far away.
+SolverOptions short_search() {
+  SolverOptions look = quick_search();
+  look.max_iterations = 12;
+  look.relative_cost = 1e-6;
+  return look;
+}
+
 /// One fit in the making: what all its steps share.
 struct Job {
   const FrictionModel& model;
@@ -91,7 +99,8 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
     }
   }
   const std::vector<std::size_t> part = sample_of_slips(job.observations, 4000);
-  const SolverOptions quick = quick_search();
+  const bool look = job.options.starts == 0;
+  const SolverOptions quick = look ? short_search() : quick_search();
   std::vector<SolverResult> tries;
   for (const auto& s : starts) tries.push_back(job.solve(part, s, quick));
   std::size_t best = 0;
@@ -116,6 +125,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
     }
     if (pass < kPasses - 1) p = job.solve(all, p, quick, held).p;
   }
+  if (look) return job.solve(all, p, quick, held);
   SolverOptions careful;
   careful.relative_cost = 1e-13;  // along a flat valley nothing is gained by going on
   return job.solve(all, p, careful, held);
@@ -291,7 +301,8 @@ void tell_moved_starts(const Job& job, Fit& fit) {
     for (const GivenParameter& known : job.options.given) {
       if (!known.start || known.name != slot.full_name()) continue;
       if (*known.start >= job.bounds.lower[k] && *known.start <= job.bounds.upper[k]) continue;
-      fit.messages.push_back(known.name + " cannot start where it was told to: that is beyond its bounds, on the nearer " +
+      fit.messages.push_back(known.name +
+                             " cannot start where it was told to: that is beyond its bounds, on the nearer " +
                              "of which the search began");
     }
   }

@@ -64,7 +64,7 @@ Json problem_json(const std::string& problem, const std::string& why, const std:
 
 Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters) {
   const Fit& fit = rung.fit;
-  Json json = {{"number", rung.number},
+  Json json = {{"number", rung.number == WorkbenchRung::passed_by ? Json(nullptr) : Json(rung.number)},
                {"name", fit.model.name()},
                {"choice", choice_json(rung.choice)},
                {"held_out_rmse", number(fit.error.held_out_rmse)},

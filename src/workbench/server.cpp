@@ -137,7 +137,8 @@ void WorkbenchServer::State::show(const Json& asked, httplib::Response& response
   take_turn(name, turn);
   const auto detail = asked.value("full", false) ? FitDetail::full : FitDetail::quick;
   const WorkbenchChoice choice = choice_from(asked.at("choice"));
-  const WorkbenchPicture picture = session.show(choice, detail, [&] { return !stopping && is_newest(name, turn); });
+  const WorkbenchPicture picture = session.show(
+      choice, detail, [&] { return !stopping && is_newest(name, turn); }, !asked.value("passing", false));
   Json json = picture_json(picture, session);
   json["turn"] = turn;
   answer(response, json);

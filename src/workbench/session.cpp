@@ -66,9 +66,14 @@ const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<Workben
 
 struct WorkbenchSession::State {
   WorkbenchOptions options;
-  std::map<std::string, Prepared> prepared_by_corrections;
+  /// Traces prepared for fits of one kind, which are made one at a time. A full fit may take a while; quick ones go on
+  /// beside it.
+  struct Lane {
+    std::mutex fitting;
+    std::map<std::string, Prepared> prepared_by_corrections;
+  };
+  Lane quick, full;
   std::vector<WorkbenchRung> rungs;
-  mutable std::mutex fitting;  ///< guards the prepared traces
   mutable std::mutex visited;  ///< guards the rungs
   DiagnosisRun diagnosis;
 
@@ -79,12 +84,13 @@ struct WorkbenchSession::State {
     out.published_protocol = false;
     out.selection = choice.selection;
     out.fit.given = choice.given;
-    if (detail == FitDetail::quick) out.fit.starts = 1;
+    if (detail == FitDetail::quick) out.fit.starts = 0;
     return out;
   }
 
   /// The trace with the corrections that the effects ask for and the part that is selected, as before any fit.
-  Identification& fresh(const IdentifyOptions& identify) {
+  Identification& fresh(const IdentifyOptions& identify, Lane& lane) {
+    auto& prepared_by_corrections = lane.prepared_by_corrections;
     const std::string key = corrections_of(identify.effects);
     auto found = prepared_by_corrections.find(key);
     if (found == prepared_by_corrections.end()) {
@@ -111,19 +117,25 @@ struct WorkbenchSession::State {
     return std::nullopt;
   }
 
-  /// Puts a rung into its place among those visited.
-  void note(WorkbenchRung& rung, bool known) {
+  /// Puts a rung into its place among those visited, another page may have been there meanwhile.
+  void note(WorkbenchRung& rung) {
     const std::lock_guard lock(visited);
-    if (!known) {
-      if (rungs.size() >= kMostRungs) {
-        throw InputError(fmt::format("{} models have been visited, more are not kept", kMostRungs),
-                         "save the session and begin anew");
+    for (WorkbenchRung& other : rungs) {
+      if (!same(other.choice, rung.choice)) continue;
+      rung.number = other.number;
+      if (other.detail == FitDetail::full) {
+        rung = other;
+      } else {
+        other = rung;
       }
-      rung.number = rungs.size();
-      rungs.push_back(rung);
-    } else {
-      rungs[rung.number] = rung;
+      return;
     }
+    if (rungs.size() >= kMostRungs) {
+      throw InputError(fmt::format("{} models have been visited, more are not kept", kMostRungs),
+                       "save the session and begin anew");
+    }
+    rung.number = rungs.size();
+    rungs.push_back(rung);
   }
 
   WorkbenchRung fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify, FitDetail detail,
@@ -160,7 +172,7 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
   s.options.identify.selection = {};
   s.options.identify.fit.given.clear();
   s.options.input.trace = read_input(s.options.input, s.options.identify);
-  const Identification& trace = s.fresh(s.options.identify);
+  const Identification& trace = s.fresh(s.options.identify, s.quick);
   if (!trace.analysed) {
     throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
                      "`identify` without 'explore' says more", {trace.path, 0, ""});
@@ -177,26 +189,26 @@ const WorkbenchChoice& WorkbenchSession::begin() const {
 }
 
 const Identification& WorkbenchSession::trace() const {
-  return state_->prepared_by_corrections.at("").trace;
+  return state_->quick.prepared_by_corrections.at("").trace;
 }
 
 WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail detail,
-                                        const std::function<bool()>& wanted) {
+                                        const std::function<bool()>& wanted, bool keep) {
   State& s = *state_;
-  const std::lock_guard lock(s.fitting);
+  State::Lane& lane = detail == FitDetail::full ? s.full : s.quick;
+  const std::lock_guard lock(lane.fitting);
   if (wanted && !wanted()) throw Superseded();
   const IdentifyOptions identify = s.identify_options(choice, detail);
   const std::optional<WorkbenchRung> known = s.visited_rung(choice);
-  Identification& trace = s.fresh(identify);
+  Identification& trace = s.fresh(identify, lane);
   WorkbenchPicture picture;
   if (known && (known->detail == FitDetail::full || detail == FitDetail::quick)) {
     picture.rung = *known;
     trace.fits = {known->fit};
   } else {
     picture.rung = s.fitted(choice, identify, detail, trace);
-    if (known) picture.rung.number = known->number;
     picture.rung.command = command_of(choice);
-    s.note(picture.rung, known.has_value());
+    if (keep) s.note(picture.rung);
   }
   trace.best = 0;
   {

@@ -86,10 +86,16 @@ async function watchTheErrorFall(address, width) {
 
   // A start dragged with the keyboard, bounds, cycles and a stretch that is left out.
   await change(page, async () => {
-    await page.focus("#slide-mu_s");
+    await page.click(".parameter[data-name=mu_s] summary");
+    await page.focus("#slide-start-mu_s");
     await page.keyboard.press("ArrowRight");
   });
   assert.match(await page.textContent("#bench-command"), /--start mu_s=/);
+  await change(page, () => page.fill("#upper-mu_s", "0.45").then(() => page.keyboard.press("Enter")));
+  assert.match(await page.textContent("#bench-command"), /--bounds mu_s=/);
+  assert.match(await page.textContent(".parameter[data-name=mu_s] output"), /at its bound/);
+  await change(page, () => page.click(".parameter[data-name=mu_s] button"));
+  assert.doesNotMatch(await page.textContent("#bench-command"), /--bounds|--start/);
   await change(page, () => page.fill("#cycles-to", "20").then(() => page.keyboard.press("Enter")));
   assert.match(await page.textContent("#bench-command"), /--cycles 0\.\.20/);
   await page.fill("#exclude-from", "1");

@@ -71,6 +71,15 @@ TEST(Session, comes_back_to_a_rung_with_the_same_numbers) {
   EXPECT_EQ(other.show({}, FitDetail::quick).rung.fit.values(), first.fit.values());
 }
 
+TEST(Session, keeps_no_rung_of_what_is_passed_by) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice choice;
+  choice.given = {{"mu_s", 0.45, {}}};
+  EXPECT_EQ(session.show(choice, FitDetail::quick, {}, false).rung.number, WorkbenchRung::passed_by);
+  EXPECT_TRUE(session.rungs().empty());
+  EXPECT_EQ(session.show(choice, FitDetail::full).rung.number, 0u);
+}
+
 TEST(Session, lives_on_after_what_it_cannot_do) {
   WorkbenchSession session(lagging().options());
   WorkbenchChoice bad;

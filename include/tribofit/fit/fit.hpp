@@ -37,7 +37,7 @@ struct FitOptions {
   Protocol protocol = Protocol::joint;
   Loss loss = Loss::squares;
   double loss_scale = 3;  ///< where the robust losses bend, in units of the floor
-  int starts = 5;         ///< starting points; the first comes from the data, the others are seeded
+  int starts = 5;         ///< starting points; the first comes from the data, the others are seeded; 0: a short look
   std::uint64_t seed = 1;
   int folds = 5;              ///< contiguous blocks of cycles held out in turn
   bool profile = false;       ///< profile likelihood intervals beside the others

@@ -23,7 +23,8 @@ struct WorkbenchChoice {
 
 /// A model that was visited.
 struct WorkbenchRung {
-  std::size_t number = 0;  ///< from 0, in the order of first visits
+  static constexpr std::size_t passed_by = static_cast<std::size_t>(-1);
+  std::size_t number = passed_by;  ///< from 0, in the order of first visits; passed_by: not kept
   WorkbenchChoice choice;
   FitDetail detail = FitDetail::quick;  ///< how finely it has been fitted so far
   Fit fit;
@@ -65,10 +66,11 @@ struct WorkbenchOptions {
 };
 
 /// One trace under study: read, moved and segmented once, then fitted again for every choice. Knows nothing of pages
-/// and servers. Every function may be called from any thread; fits are made one at a time.
+/// and servers. Every function may be called from any thread; quick fits are made one at a
+/// time, and so are full ones.
 ///
 /// A fit is that of identify() for the same choice: from the data and not from what was shown before, so that coming
-/// back to a rung gives the same numbers. FitDetail::quick begins from fewer starts and fits effects to means of a few
+/// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0) at means of a few
 /// samples; FitDetail::full is what the command line does, to the last bit.
 class WorkbenchSession {
  public:
@@ -85,7 +87,9 @@ class WorkbenchSession {
   /// Fits a choice and adds it to the rungs; one that was visited is not fitted again unless more detail is asked for.
   /// Throws InputError that says why it cannot be fitted; the session goes on.
   /// wanted: asked when its turn has come; where it says no, nothing is done and Superseded thrown. Empty: yes.
-  WorkbenchPicture show(const WorkbenchChoice& choice, FitDetail detail, const std::function<bool()>& wanted = {});
+  /// keep: false for what is passed by on the way, as a slider is dragged: it becomes no rung.
+  WorkbenchPicture show(const WorkbenchChoice& choice, FitDetail detail, const std::function<bool()>& wanted = {},
+                        bool keep = true);
   struct Superseded {};
 
   /// Every rung visited, without pictures.

@@ -5,6 +5,7 @@ const bench = {
   token: new URLSearchParams(location.search).get("token") || "",
   page: Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join(""),
   turn: 0, asking: null, settling: 0, polling: 0, choice: null, rung: null, world: null, changedAt: 0,
+  plausible: new Map(), unfolded: new Set(),
 };
 
 /** Asks the server; a refusal is thrown as what it says. */
@@ -80,7 +81,7 @@ function partOf(choice) {
 // ---- asking ----
 
 /** Shows the picture of the choice; quick at first, then as the command line fits it. */
-async function show(full = false) {
+async function show(full = false, passing = false) {
   clearTimeout(bench.settling);
   if (bench.asking) bench.asking.abort();
   const asking = new AbortController(), turn = ++bench.turn;
@@ -88,7 +89,7 @@ async function show(full = false) {
   if (!full) bench.changedAt = performance.now();
   document.documentElement.dataset.bench = "asking";
   try {
-    const answer = await ask("/api/show", { page: bench.page, turn, full, choice: bench.choice }, asking.signal);
+    const answer = await ask("/api/show", { page: bench.page, turn, full, passing, choice: bench.choice }, asking.signal);
     if (answer.superseded || turn !== bench.turn) return;
     bench.rung = answer.rung;
     complain(null);
@@ -110,10 +111,10 @@ async function show(full = false) {
 
 let changing = 0;
 /** After a change of the choice; a drag changes it many times a second. */
-function changed() {
+function changed(passing = false) {
   clearTimeout(changing);
   clearTimeout(bench.settling);
-  changing = setTimeout(() => show(), 25);
+  changing = setTimeout(() => show(false, passing), 25);
 }
 
 function goTo(choice) {
@@ -153,7 +154,7 @@ function effectChoices() {
   for (const effect of bench.world.effects) groups.set(effect.group, [...(groups.get(effect.group) || []), effect]);
   const what = { friction: "What the contact does", rig: "What the machine does", measurement: "What the instruments do" };
   return make("fieldset", {}, make("legend", {}, "Effects"), ...[...groups].map(([group, effects], k) =>
-    make("details", k === 0 ? { open: "" } : {}, make("summary", {}, what[group] || group), ...effects.map(effectChoice))));
+    make("details", k === 0 && innerWidth > 800 ? { open: "" } : {}, make("summary", {}, what[group] || group), ...effects.map(effectChoice))));
 }
 
 function formulaChoice() {
@@ -216,56 +217,69 @@ function selectionChoice() {
   return box;
 }
 
-/** Start and bounds of a parameter; the slider runs over the bounds, over decades where they are far apart. */
-function parameterControl(p) {
-  const name = p.full_name, unit = p.unit === "1" ? "" : ` [${p.unit}]`;
-  const [low, high] = p.bounds, decades = low > 0 && high > 100 * low;
+/** Places from 0 to 1 on a slider over the plausible range of a parameter, by decades where its ends are far apart. */
+function scaleOf(p) {
+  if (!bench.choice.bounds[p.full_name] || !bench.plausible.has(p.full_name)) bench.plausible.set(p.full_name, p.bounds);
+  const [low, high] = bench.plausible.get(p.full_name), decades = low > 0 && high > 100 * low;
   const place = (value) => (decades ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
-  const valueAt = (part) => (decades ? low * Math.pow(high / low, part) : low + part * (high - low));
-  const rounded = (value) => Number(value.toPrecision(4));
-  const given = bench.choice.start[name];
-  const slider = make("input", { type: "range", min: "0", max: "1", step: "0.001", id: `slide-${name}`,
-    "aria-label": `Start of ${name}${unit}`, value: String(place(given ?? p.start) || 0) });
-  slider.disabled = !(low < high);
-  const start = make("input", { type: "number", step: "any", id: `start-${name}`, value: given ?? "",
-    placeholder: number(p.start).replace("−", "-"), "aria-label": `Start of ${name}${unit}` });
-  const setStart = (value) => {
-    if (value === null) delete bench.choice.start[name];
-    else bench.choice.start[name] = value;
+  const valueAt = (part) => {
+    if (part <= 0) return low;
+    if (part >= 1) return high;
+    return Number((decades ? low * Math.pow(high / low, part) : low + part * (high - low)).toPrecision(4));
+  };
+  return { place, valueAt, fixed: !(low < high) };
+}
+
+/** A slider and a number for one of start, lower and upper bound. get() may be null: shown is `otherwise`. */
+function valueControl(p, scale, { label, id, get, otherwise, set }) {
+  const what = `${label} of ${p.full_name}${p.unit === "1" ? "" : ` [${p.unit}]`}`;
+  const exact = (value) => String(Number(value.toPrecision(12)));
+  const slider = make("input", { type: "range", min: "0", max: "1", step: "0.001", id: `slide-${id}`, "aria-label": what,
+    value: String(scale.place(get() ?? otherwise) || 0) });
+  slider.disabled = scale.fixed;
+  const text = make("input", { type: "number", step: "any", id: `${id}`, "aria-label": what,
+    value: get() === null ? "" : exact(get()), placeholder: Number(otherwise.toPrecision(4)) });
+  slider.oninput = () => {
+    const value = scale.valueAt(Number(slider.value));
+    slider.setAttribute("aria-valuetext", `${value} ${p.unit}`);
+    text.value = exact(set(value));
+    changed(true);
+  };
+  text.onchange = () => {
+    set(text.value === "" ? null : Number(text.value));
     changed();
   };
-  slider.oninput = () => {
-    const value = Math.min(high, Math.max(low, rounded(valueAt(Number(slider.value)))));
-    slider.setAttribute("aria-valuetext", `${value}${unit}`);
-    start.value = String(value);
-    setStart(value);
-  };
-  start.onchange = () => setStart(start.value === "" ? null : Number(start.value));
-  const bound = (which, label) => {
-    const input = make("input", { type: "number", step: "any", id: `${label}-${name}`, value: String(Number(p.bounds[which].toPrecision(12))),
-      "aria-label": `${label} bound of ${name}${unit}` });
-    input.onchange = () => {
-      const ends = [...(bench.choice.bounds[name] || p.bounds)];
-      if (input.value === "") delete bench.choice.bounds[name];
-      else {
-        ends[which] = Number(input.value);
-        bench.choice.bounds[name] = ends;
-      }
-      changed();
-    };
-    return input;
-  };
+  return make("div", { className: "value" }, make("span", {}, label), slider, text);
+}
+
+/** Start and bounds of a parameter. */
+function parameterControl(p) {
+  const name = p.full_name, scale = scaleOf(p), { start, bounds } = bench.choice;
+  const bound = (which, label, id) => valueControl(p, scale, { label, id: `${id}-${name}`, otherwise: p.bounds[which],
+    get: () => (bounds[name] ? bounds[name][which] : null),
+    set: (value) => {
+      const ends = [...(bounds[name] || p.bounds)];
+      ends[which] = value === null ? bench.plausible.get(name)[which] : value;
+      if (which === 0) ends[0] = Math.min(ends[0], ends[1]);
+      else ends[1] = Math.max(ends[0], ends[1]);
+      bounds[name] = ends;
+      return ends[which];
+    } });
   const reset = make("button", { type: "button", "aria-label": `Start and bounds of ${name} from the data`, onclick: () => {
-    delete bench.choice.start[name];
-    delete bench.choice.bounds[name];
+    delete start[name];
+    delete bounds[name];
     changed();
   } }, "From the data");
-  const touched = given !== undefined || bench.choice.bounds[name] !== undefined;
-  reset.disabled = !touched;
-  return make("div", { className: "parameter", "data-name": name },
-    make("div", {}, make("strong", {}, name), " = ", make("output", { "data-value": name }, parameterText(p))),
-    slider, make("div", { className: "row" }, field("start", start), field("from", bound(0, "lower")),
-      field("to", bound(1, "upper")), reset));
+  return make("details", { className: "parameter", "data-name": name, ...(bench.unfolded.has(name) ? { open: "" } : {}),
+    ontoggle: (event) => (event.target.open ? bench.unfolded.add(name) : bench.unfolded.delete(name)) },
+  make("summary", {}, make("strong", {}, name), " = ", make("output", { "data-value": name }, parameterText(p))),
+  valueControl(p, scale, { label: "start", id: `start-${name}`, otherwise: p.start, get: () => start[name] ?? null,
+    set: (value) => {
+      if (value === null) delete start[name];
+      else start[name] = value;
+      return value;
+    } }),
+  bound(0, "from", "lower"), bound(1, "to", "upper"), reset);
 }
 
 function parameterText(p) {
@@ -280,6 +294,8 @@ const sameNames = (rung) => rung.parameters.map((p) => p.full_name).join() ===
 /** New numbers beside controls that may be in use. */
 function updateParameters(rung) {
   for (const p of rung.parameters) {
+    const touched = bench.choice.start[p.full_name] !== undefined || bench.choice.bounds[p.full_name] !== undefined;
+    document.querySelector(`.parameter[data-name="${CSS.escape(p.full_name)}"] button`).disabled = !touched;
     document.querySelector(`output[data-value="${CSS.escape(p.full_name)}"]`).textContent = parameterText(p);
   }
   document.getElementById("bench-messages").replaceChildren(...rung.messages.map((text) => make("li", {}, prose(text))));
