@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"JsonOfTwo", "--json r.json a.csv b.csv", "one trace"},
                       Wrong{"CsvOfTwo", "--csv out a.csv b.csv", "one trace"},
                       Wrong{"ReportOfTwo", "--report r.html a.csv b.csv", report_says("one trace")},
-                      Wrong{"ReportOfABatch", "--report r.html --out results a.csv b.csv", "one trace"},
+                      Wrong{"ReportOfAShard", "--shard 1/2 --report r.html --out results a.csv b.csv", "identify merge"},
                       Wrong{"ReportOntoTheTrace", "--report a.csv a.csv", report_says("overwrite")},
                       Wrong{"ReportOntoTheJson", "--report x --json x a.csv", report_says("one file")},
                       Wrong{"DiagnoseReportOverwrites", "diagnose --report a.csv a.csv", report_says("overwrite")},
