@@ -122,6 +122,7 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
     if (ladder.steps.front().trial.model.offset_of(finding.key) < ladder.steps.front().trial.p.size()) {
       finding.status = EffectStatus::missing;
       finding.held_out_rmse = base;
+      finding.held_out_std_error = held_out_std_error(fits.front());
       finding.parameters = parameters_of(fits.back(), finding.key);
       finding.reason = "it is part of the model from the start";
       out.push_back(std::move(finding));
@@ -142,7 +143,7 @@ std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder,
       const double squared = std::max(0.0, before * before - in_slip / bench.fine.samples);
       finding.held_out_rmse = std::sqrt(squared);
       finding.held_out_std_error =
-          std_error_of_rmse(last.judged->trial.held_out, bench.fine.samples, finding.held_out_rmse);
+          std_error_of_rmse(last.judged->trial.plain_cycles, bench.fine.samples, finding.held_out_rmse);
       finding.p_value = last.judged->p_value;
       finding.parameters = parameters_of(last.judged->trial, finding.key);
       finding.error_reduction = std::clamp((before * before - squared) / above, -1.0, 1.0);

@@ -89,7 +89,8 @@ void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, double
   const Eigen::VectorXd step = gauss_newton_step(plain);
   for (Eigen::MatrixXd& rows : plain.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
   trial.plain_minimum = sum(squares_after(plain, stay)) - off;
-  trial.plain_held_out = sum(held_out_squares(plain, blocks)) - off;
+  trial.plain_cycles = held_out_squares(plain, blocks);
+  trial.plain_held_out = sum(trial.plain_cycles) - off;
 }
 
 SolverOptions quick_search(int iterations) {

@@ -32,6 +32,7 @@ struct Trial {
   double held_out_squares = 0;   ///< sum of held_out
   Linearised plain;              ///< not whitened, stepped to its own minimum
   double plain_minimum = 0, plain_held_out = 0;  ///< squares there, and on held-out cycles
+  std::vector<double> plain_cycles;  ///< squares on held-out cycles, of each cycle, without those of the stick
   /// Of all sticks; zero where the model is rigid there, and where it explains so little of what v_r shows in stick
   /// that something else moves the block: it is then judged by the slips alone.
   ModelResiduals::StickSquares stick;
@@ -55,7 +56,7 @@ struct Bench {
   double noise = 0;    ///< sensor noise of a sample [1 or N]
   double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
 
-  int threads = 1;  ///< over candidates
+  int threads = 1;                       ///< over candidates
   std::function<bool()> cancelled = {};  ///< asked before each trial, which then throws DiagnosisCancelled
 
   Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,

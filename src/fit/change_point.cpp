@@ -68,16 +68,18 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model) {
 }
 
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-                   std::vector<double> p) {
-  const double now = p[point.time];
+                   const Bounds& bounds, std::vector<double> p) {
+  const double now = p[point.time], lower = bounds.lower[point.time], upper = bounds.upper[point.time];
+  if (!(lower < upper)) return now;
   const Scan scan = scan_of(point, residuals, observations, p);
   if (scan.begin.size() < 2) return now;
   // Not before the first slip nor after the last: that is no change.
   const auto least = std::min_element(scan.squares.begin() + 1, scan.squares.end() - 1);
   const auto k = static_cast<std::size_t>(least - scan.squares.begin());  // before slip k
   const auto left = [&](double time) { return sum_at(residuals, p, point.time, time); };
-  double best = 0.5 * (scan.end[k - 1] + scan.begin[k]), best_squares = left(best);
+  double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper), best_squares = left(best);
   const auto try_time = [&](double time) {
+    if (time < lower || time > upper) return;
     const double squares = left(time);
     if (!(squares < best_squares)) return;
     best = time;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
@@ -60,15 +61,22 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   curve.velocity.assign(velocity.begin(), velocity.end());
   const std::vector<double> p = fit.values();
   const std::size_t n = p.size();
-  // Two samples of a slip at constant speed that begins in steady state.
+  // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
+  // over a turn.
+  const int turns = fit.model.needs().angle ? 24 : 1;
   const auto steady = [&](const std::vector<double>& q, double v) {
     const double time[] = {0, 1}, speed[] = {v, v};
-    double mu[2];
-    Slip slip;
-    slip.time = time;
-    slip.velocity = speed;
-    evaluate<double>(fit.model, q.data(), slip, slip.velocity, mu);
-    return mu[1];
+    double mu[2], sum = 0;
+    for (int k = 0; k < turns; ++k) {
+      const double theta = 2 * std::numbers::pi * k / turns, angle[] = {theta, theta};
+      Slip slip;
+      slip.time = time;
+      slip.velocity = speed;
+      slip.angle = angle;
+      evaluate<double>(fit.model, q.data(), slip, slip.velocity, mu);
+      sum += mu[1];
+    }
+    return sum / turns;
   };
   const double t = t_quantile_95(fit.degrees_of_freedom);
   for (const double v : velocity) {

@@ -120,7 +120,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
   for (int pass = 0; pass < kPasses; ++pass) {
     job.whitening = plain.whitening_at(p.data());
     if (change) {  // slips at levels of their own would hide a change that is misplaced
-      p[change->time] = best_change(*change, job.residuals(all, false), job.observations, p);
+      p[change->time] = best_change(*change, job.residuals(all, false), job.observations, job.bounds, p);
       held.lower[change->time] = held.upper[change->time] = p[change->time];
     }
     if (pass < kPasses - 1) p = job.solve(all, p, quick, held).p;
@@ -132,7 +132,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
-SolverResult published_estimate(Job& job, const CycleExtremes& extremes, std::vector<double>& start) {
+SolverResult published_estimate(Job& job, const CycleExtremes& extremes, Fit& fit, std::vector<double>& start) {
   start = start_from_data(job.model, job.observations, job.bounds);
   apply_given(job.model, job.options.given, job.bounds, start);
   const std::array<double, 2> levels = extremes.means();
@@ -142,6 +142,11 @@ SolverResult published_estimate(Job& job, const CycleExtremes& extremes, std::ve
   for (std::size_t k = 0; k < 2; ++k) {
     if (!std::isfinite(levels[k])) return failed;
     start[k] = job.bounds.lower[k] = job.bounds.upper[k] = levels[k];
+  }
+  for (const GivenParameter& given : job.options.given) {
+    if (given.name != "mu_s" && given.name != "mu_k") continue;
+    fit.messages.push_back("the published protocol takes " + given.name +
+                           " from the extremes of each cycle, not as given");
   }
   return job.solve(all_slips(job.observations), start, SolverOptions());
 }
@@ -364,7 +369,8 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   CycleExtremes extremes;
   const bool published = options.protocol == Protocol::published && records.size() == 1;
   if (published) extremes = extremes_of(observations, *records[0].segmentation);
-  const SolverResult solution = published ? published_estimate(job, extremes, start) : joint_estimate(job, fit, start);
+  const SolverResult solution =
+      published ? published_estimate(job, extremes, fit, start) : joint_estimate(job, fit, start);
   fit.converged = solution.converged;
   if (!solution.converged) fit.messages.push_back(solution.message);
   if (published && !(std::isfinite(extremes.means()[0]) && std::isfinite(extremes.means()[1]))) return fit;

@@ -94,7 +94,9 @@ std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& 
 /// Stretches of the slips, as long as friction can be a parabola over them.
 std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Residual> parts;
+  const bool sticks = segmentation.kind == MotionKind::stick_slip;
   for (const Cycle& cycle : segmentation.cycles) {
+    if (sticks && !segmentation.takes_part(cycle)) continue;
     const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, kStretch);
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
       if (segmentation.takes_part(Span{i, i + stretch})) {

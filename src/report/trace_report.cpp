@@ -1,3 +1,4 @@
+#include "numbers.hpp"
 #include "parameter_cells.hpp"
 #include "report_parts.hpp"
 #include "tribofit/pipeline.hpp"
@@ -32,6 +33,20 @@ std::vector<DrawnModel> curves_of(const Identification& result) {
   return models;
 }
 
+/// The best law and its parameters: what a reader looks for first.
+std::vector<std::pair<std::string, std::string>> result_facts(const Identification& result) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  if (result.fits.empty() || !has_parameters(result.fits[result.best])) return facts;
+  const Fit& best = result.fits[result.best];
+  facts.emplace_back("best law", curve_name(best));
+  for (const FitParameter& p : best.parameters) {
+    const std::string unit = shown_unit(p, result.motion);
+    facts.emplace_back(p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name,
+                       with_error(shown(p, p.value), shown(p, p.std_error)) + (unit == "1" ? "" : " " + unit));
+  }
+  return facts;
+}
+
 void add_protocols(const Identification& result, ReportSection& section) {
   ReportTable table{"Published protocol beside the joint fit",
                     {"law", "parameter", "published", "joint", "difference", "unit", "remarks"},
@@ -58,7 +73,8 @@ Report report_of(const Identification& result, const ReportOptions& options) {
   report.subtitle = made_by("Friction law") + "; ± is one standard error, everywhere in this report.";
   report.lead = verdict(result);
   report.warnings = result.warnings;
-  report.facts = facts_of(result);
+  report.facts = result_facts(result);
+  for (auto& fact : facts_of(result)) report.facts.push_back(std::move(fact));
   const std::vector<DrawnModel> models = models_of(result), curves = curves_of(result);
   TraceSections sections;
   sections.add_trace(DrawnTrace(result, models, curves, "t1"));

@@ -53,6 +53,10 @@ void leave_out(const Selection& selection, const Motion& motion, Segmentation& s
   const auto& cycles = segmentation.cycles;
   const auto left =
       std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.takes_part(c); });
+  if (static_cast<std::size_t>(left) == cycles.size()) {
+    segmentation.notes.push_back("all cycles take part: what was to be left out holds none of them");
+    return;
+  }
   segmentation.notes.push_back(
       fmt::format("{} of {} cycles take part in the fit, the others were left out by request", left, cycles.size()));
 }

@@ -62,12 +62,12 @@ struct ChartBars {
 };
 
 /// A stretch of the abscissa that is shaded over all panels.
-enum class Shade { stick, slip, beyond };
+enum class Shade { stick, slip, beyond, left_out };
 struct Stretch {
   double from = 0, to = 0;
   Shade shade = Shade::stick;
 };
-/// What a shade means, for the legend: "stick", "slip", "beyond the data".
+/// What a shade means, for the legend: "stick", "slip", "beyond the data", "left out".
 std::string meaning_of(Shade shade);
 
 /// A straight line across a panel (upright: over all of them) with a word beside it.

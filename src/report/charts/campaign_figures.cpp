@@ -290,7 +290,7 @@ ReportSection law_figures(const DrawnCampaign& of) {
     Chart friction = friction_chart(*figures, of.friction_unit()), error = error_chart(*figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
     friction.title = "Friction over velocity, " + of.name_of(of.shown[k]);
-    friction.note = "Means in bins of v_r of " + run + ", and what the laws say there.";
+    friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
     error.title = "Relative error (Eq 5), " + of.name_of(of.shown[k]);
     error.note = "Of the mean friction of each bin.";

@@ -59,7 +59,7 @@ Chart where_chart(const Diagnosis& d) {
   Chart chart;
   chart.id = "where";
   chart.title = "Where the error above the floor goes";
-  chart.note = where_sentence(d.where);
+  chart.note = where_sentence(d.where) + " Shares overlap where variables go together.";
   chart.x = {"share", "%", 0, 105};
   ChartAxis& names = chart.panels[0].axis;
   ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
@@ -124,8 +124,8 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     }
     chart.lines.push_back(std::move(line));
   }
-  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, ""});
-  if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, ""});
+  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "floor"});
+  if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
   chart.height = 420;
   return chart;
 }

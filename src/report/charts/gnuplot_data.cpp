@@ -118,11 +118,10 @@ void PlotList::add_symbols(const ChartLine& line) {
     points.push_back(point);
     at.push_back(k);
   }
-  const std::size_t every = line.stroke.joined ? 1 + (points.size() - 1) / kMostSymbols : 1;
   const std::vector<std::size_t> kept = thinned_points(points, kSymbolCell);
+  const std::size_t every = line.stroke.joined ? 1 + kept.size() / kMostSymbols : 1;
   begin();
-  for (std::size_t k = 0; k < kept.size(); k += points.empty() ? 1 : every)
-    row({line.x[at[kept[k]]], line.y[at[kept[k]]]});
+  for (std::size_t k = 0; k < kept.size(); k += every) row({line.x[at[kept[k]]], line.y[at[kept[k]]]});
   element("using 1:2 with points " + symbol_style(format_, line.stroke));
 }
 

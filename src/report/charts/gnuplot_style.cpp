@@ -104,6 +104,8 @@ std::string fill(Shade shade) {
       return "#fbefd6";
     case Shade::beyond:
       return "#e0e0e0";
+    case Shade::left_out:
+      return "#e8d6e4";
   }
   return "#ffffff";
 }

@@ -10,6 +10,7 @@
 #include "report/drawing.hpp"
 #include "report/measures.hpp"
 #include "report/numbers.hpp"
+#include "tribofit/campaign/figures.hpp"
 
 namespace tribofit {
 namespace {
@@ -18,8 +19,6 @@ constexpr std::size_t kSpeedBins = 48, kErrorBins = 80, kTimeBins = 400, kCurveP
 /// Rows and columns of the map of residuals.
 constexpr std::size_t kMapRows = 120, kMapColumns = 50;
 constexpr std::size_t kFewestPieces = 20;
-/// Published bound of the relative error ([D] 3.3).
-constexpr double kPublishedError = 0.08;
 
 /// A part of a slip in which the speed only rises or only falls; both where the block never sticks.
 enum class Branch { accelerating, decelerating, both };
@@ -46,10 +45,12 @@ std::vector<Piece> pieces_of(const Identification& trace) {
   for (const Cycle& c : s.cycles) {
     const std::size_t end = std::min(c.slip.end, v.size());
     if (c.slip.begin >= end) continue;
+    if (s.kind == MotionKind::stick_slip && !s.takes_part(c)) continue;
     if (s.kind == MotionKind::always_slipping) {
       const std::size_t n = end - c.slip.begin, count = std::min(n, kFewestPieces);
       for (std::size_t k = 0; k < count; ++k) {
-        pieces.push_back({Branch::both, c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count, c.direction});
+        const Span part{c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count};
+        if (s.takes_part(part)) pieces.push_back({Branch::both, part.begin, part.end, c.direction});
       }
       continue;
     }
@@ -130,7 +131,8 @@ void add_residuals(const DrawnTrace& d, const std::vector<Piece>& pieces, double
 void add_break_aways(const DrawnTrace& d, Chart& chart) {
   std::vector<double> levels;
   for (const Cycle& c : d.trace.segmentation.cycles) {
-    if (std::isfinite(c.break_away_friction)) levels.push_back(c.break_away_friction);
+    if (std::isfinite(c.break_away_friction) && d.trace.segmentation.takes_part(c))
+      levels.push_back(c.break_away_friction);
   }
   if (levels.empty()) return;
   ChartLine line{"break-away of each cycle", {}, {}, dots(Colour::grey, Symbol::diamond)};
@@ -179,7 +181,9 @@ Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fa
   chart.title = "Friction over relative velocity";
   chart.note =
       "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what each law "
-      "leaves, in units of the floor of noise and scatter.";
+      "leaves, in units of the floor of noise and scatter. Laws are those of steady sliding at the start of the "
+      "record, "
+      "over a turn of the disc.";
   chart.height = 560;
   chart.x = {"relative velocity |v_{r}|", "mm/s"};
   chart.panels = {panel(friction_axis(d.trace.motion), 1.35)};
@@ -209,17 +213,16 @@ class ErrorChart {
     chart_.x = std::move(x);
     chart_.panels[0].axis = {"relative error", "1"};
     chart_.panels[0].axis.from_zero = true;
-    chart_.marks.push_back({kPublishedError, false, Dash::dashed, "0.08"});
+    chart_.marks.push_back({published_error_limit, false, Dash::dashed, "0.08 of [D]"});
     chart_.half = true;
   }
   void add(const std::string& name, std::size_t k, const DrawnExtremes& errors) {
-    constexpr std::array<Colour, 3> kColours = {Colour::blue, Colour::red, Colour::green};
     constexpr std::array<Symbol, 3> kSymbols = {Symbol::triangle_up, Symbol::square, Symbol::cross};
-    const Colour colour = kColours[k % kColours.size()];
+    const Colour colour = model_stroke(k).colour;
     const bool shown = k < 2;
     chart_.lines.push_back({name + ", mean", errors.at, errors.mean, {colour, model_stroke(k).dash}});
     chart_.lines.back().shown = shown;
-    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kSymbols[k % 3], 4)});
+    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kSymbols[k % 3], 5)});
     chart_.lines.back().shown = shown;
   }
   Chart chart() const { return chart_; }
@@ -240,7 +243,7 @@ HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
   auto count = map.z;
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     const Cycle& cycle = cycles[c];
-    if (!cycle.slip_complete) continue;
+    if (!cycle.slip_complete || !d.trace.segmentation.takes_part(cycle)) continue;
     const std::size_t row = c * rows / cycles.size();
     for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, prediction.size()); ++i) {
       const double phase = static_cast<double>(i - cycle.slip.begin) / static_cast<double>(cycle.slip.size());
@@ -252,7 +255,7 @@ HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
   }
   std::vector<double> sizes;
   for (std::size_t row = 0; row < rows; ++row) {
-    map.y.push_back(static_cast<double>((row * cycles.size() + rows - 1) / rows + 1));
+    map.y.push_back(static_cast<double>((row * cycles.size() + rows - 1) / rows));
     for (std::size_t k = 0; k < kMapColumns; ++k) {
       map.z[row][k] /= count[row][k];
       if (std::isfinite(map.z[row][k])) sizes.push_back(std::abs(map.z[row][k]));

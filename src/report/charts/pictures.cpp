@@ -124,13 +124,13 @@ bool can_write_pictures() {
 PictureFiles::PictureFiles(const Report& report, const std::string& folder, PictureFormat format) {
   const std::vector<Picture> pictures = pictures_of(report);
   if (pictures.empty()) throw InputError("there is no chart to draw a picture of", "leave --figures out");
-  files_ = std::make_unique<Files>(folder);
   const auto write_script = [&](const std::vector<std::string>& outputs) {
     std::string script;
     for (std::size_t k = 0; k < pictures.size(); ++k) script += gnuplot_script(*pictures[k].chart, format, outputs[k]);
     return script;
   };
   std::vector<std::string> written = run_gnuplot(pictures.size(), write_script);
+  files_ = std::make_unique<Files>(folder);  // no folder while gnuplot may still fail or be stopped
   std::string captions;
   for (std::size_t k = 0; k < pictures.size(); ++k) {
     files_->folder.add(pictures[k].name + "." + name_of(format))

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 6> kColours = {"black", "blue", "red", "g
 constexpr std::array<std::string_view, 5> kDashes = {"solid", "dash", "dot", "dashdot", "longdash"};
 constexpr std::array<std::string_view, 7> kSymbols = {"none",        "circle",        "square", "diamond",
                                                       "triangle-up", "triangle-down", "x"};
-constexpr std::array<std::string_view, 3> kShades = {"stick", "slip", "beyond"};
+constexpr std::array<std::string_view, 4> kShades = {"stick", "slip", "beyond", "left-out"};
 constexpr std::array<std::string_view, 6> kTexts = {"plain", "soft", "warning", "command", "heading", "item"};
 
 Json axis_json(const ChartAxis& axis) {
@@ -131,7 +131,8 @@ struct ItemJson {
 }  // namespace
 
 std::string meaning_of(Shade shade) {
-  return shade == Shade::beyond ? "beyond the data" : std::string(name_of(shade, kShades));
+  constexpr std::array<std::string_view, 4> kMeanings = {"stick", "slip", "beyond the data", "left out"};
+  return std::string(name_of(shade, kMeanings));
 }
 
 Json chart_json(const Chart& chart) {

@@ -33,10 +33,12 @@ Chart curve_chart(const Response& study) {
   }
   if (!lines.x.empty()) chart.lines.push_back(std::move(lines));
   if (study.damped_natural_frequency > 0) {
-    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed, "damped natural frequency", 0});
+    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed,
+                           "damped natural " + significant(study.damped_natural_frequency, 3) + " Hz", 0});
   }
   if (!study.harmonics.empty()) {
-    chart.marks.push_back({study.settled.frequency, true, Dash::dotted, "response frequency", 0});
+    chart.marks.push_back({study.settled.frequency, true, Dash::dotted,
+                           "response " + significant(study.settled.frequency, 3) + " Hz", 0});
   }
   chart.height = 400;
   return chart;
@@ -64,7 +66,8 @@ Chart spectrum_chart(const Response& study, const std::string& id, const std::st
   }
   chart.lines = {std::move(stems), std::move(ends)};
   if (study.damped_natural_frequency > 0) {
-    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed, "damped natural frequency", 0});
+    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed,
+                           "damped natural " + significant(study.damped_natural_frequency, 3) + " Hz", 0});
   }
   chart.half = true;
   return chart;

@@ -91,12 +91,13 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
 
 /// The first of three cycles in a row that are all there, as near to the middle of the record as they come; else the
 /// middle ones.
-std::size_t first_shown(const std::vector<Cycle>& cycles) {
+std::size_t first_shown(const Segmentation& segmentation) {
+  const std::vector<Cycle>& cycles = segmentation.cycles;
   const std::size_t last = cycles.size() - kShownCycles;
   const auto complete = [&](std::size_t k) {
-    return std::all_of(cycles.begin() + static_cast<std::ptrdiff_t>(k),
-                       cycles.begin() + static_cast<std::ptrdiff_t>(k + kShownCycles),
-                       [](const Cycle& c) { return c.stick_complete && c.slip_complete; });
+    return std::all_of(
+        cycles.begin() + static_cast<std::ptrdiff_t>(k), cycles.begin() + static_cast<std::ptrdiff_t>(k + kShownCycles),
+        [&](const Cycle& c) { return c.stick_complete && c.slip_complete && segmentation.takes_part(c); });
   };
   const std::size_t middle = last / 2;
   for (std::size_t off = 0; off <= last; ++off) {
@@ -114,6 +115,15 @@ void shade_phases(const Motion& motion, const Cycle& c, Chart& chart) {
                          ? c.restick_time
                          : motion.time[std::min(c.slip.end, motion.size() - 1)];
   if (c.slip.size() > 0) chart.stretches.push_back({c.break_away_time, end, Shade::slip});
+}
+
+/// What takes no part in fits.
+void shade_left_out(const DrawnTrace& d, Chart& chart) {
+  const std::vector<double>& time = d.trace.motion.time;
+  for (const Span& span : d.trace.segmentation.left_out) {
+    if (span.begin >= time.size()) continue;
+    chart.stretches.push_back({time[span.begin], time[std::min(span.end, time.size() - 1)], Shade::left_out});
+  }
 }
 
 /// Every sample within 5 ms of an event, with the event at zero.
@@ -202,7 +212,11 @@ class CycleChart {
     chart_.lines.push_back(std::move(line));
     return *this;
   }
-  Chart chart() const { return chart_; }
+  Chart chart() const {
+    Chart chart = chart_;
+    shade_left_out(d_, chart);
+    return chart;
+  }
 
  private:
   const DrawnTrace& d_;
@@ -231,7 +245,7 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   const Motion& motion = d.trace.motion;
   if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < kShownCycles) return {};
-  const std::size_t first = first_shown(cycles);
+  const std::size_t first = first_shown(d.trace.segmentation);
   const Cycle& head = cycles[first];
   const Cycle& tail = cycles[first + kShownCycles - 1];
   const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;
@@ -241,7 +255,7 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   Chart chart = window_chart(d, {begin, end, d.bins(kCycleBins)}, true);
   chart.id = d.id + "-cycles";
   chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
-  chart.note = "Cycles " + std::to_string(first + 1) + " to " + std::to_string(first + kShownCycles) +
+  chart.note = "Cycles " + std::to_string(first) + " to " + std::to_string(first + kShownCycles - 1) +
                ". In stick the spring sets friction, so the law speaks in slip only.";
   chart.height = 470;
   for (std::size_t k = first; k < first + kShownCycles; ++k) shade_phases(motion, cycles[k], chart);
@@ -259,6 +273,7 @@ Chart record_chart(const DrawnTrace& d) {
   chart.title = "The whole record";
   chart.note = "Every stretch is drawn from its least to its largest sample, so that no peak is lost.";
   chart.height = 400;
+  shade_left_out(d, chart);
   return chart;
 }
 

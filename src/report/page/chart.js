@@ -4,7 +4,8 @@
 const ink = { black: "#000000", blue: "#0072b2", red: "#d55e00", green: "#009e73", purple: "#a0508a", grey: "#6b6b6b" };
 const pale = { blue: "rgba(0,114,178,0.22)", red: "rgba(213,94,0,0.22)", black: "rgba(0,0,0,0.14)",
   green: "rgba(0,158,115,0.2)", purple: "rgba(160,80,138,0.2)", grey: "rgba(107,107,107,0.2)" };
-const shades = { stick: "rgba(0,0,0,0.07)", slip: "rgba(230,159,0,0.16)", beyond: "rgba(0,0,0,0.09)" };
+const shades = { stick: "rgba(0,0,0,0.07)", slip: "rgba(230,159,0,0.16)", beyond: "rgba(0,0,0,0.09)",
+  "left-out": "rgba(160,80,138,0.2)" };
 
 /** Text that a chart takes as text: no tags, no entities. */
 function plain(text) {
@@ -223,7 +224,7 @@ let isDrawing = false;
 /** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
 function chartFigure(chart) {
   const item = chartItems.get(chart.id) || makeChart(chart), described = JSON.stringify(chart);
-  if (item.described === described) return item.figure; // as it is
+  if (item.described === described && (item.shown === described || waiting.includes(item))) return item.figure;
   item.described = described;
   item.chart = chart;
   item.traces = tracesOf(chart);
@@ -250,7 +251,7 @@ function makeChart(chart) {
   const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
     "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  const item = { plot, switched: new Map(), drawn: false, title: make("h3"), note: make("p"),
+  const item = { plot, switched: new Map(), drawn: false, shown: "", title: make("h3"), note: make("p"),
     legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
   item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools,
     numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart)));
@@ -265,6 +266,7 @@ function draw(item) {
   Plotly.react(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
     doubleClick: "reset", scrollZoom: false });
   item.drawn = true;
+  item.shown = item.described;
 }
 
 function isInView(item) {
@@ -371,13 +373,15 @@ function addTools(item, title) {
 
 // On paper charts are as wide as the page, and folded tables are open.
 let unfolded = [];
+const drawnPlots = () => [...chartItems.values()].filter((item) => item.drawn && item.plot.isConnected)
+  .map((item) => item.plot);
 addEventListener("beforeprint", () => {
   unfolded = [...document.querySelectorAll("details:not(.numbers):not([open])")];
   for (const details of unfolded) details.open = true;
-  while (waiting.length > 0) draw(waiting[0]);
-  for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: 640, autosize: false });
+  for (const item of [...waiting]) if (item.plot.isConnected) draw(item);
+  for (const plot of drawnPlots()) Plotly.relayout(plot, { width: 640, autosize: false });
 });
 addEventListener("afterprint", () => {
   for (const details of unfolded) details.open = false;
-  for (const { plot } of chartItems.values()) Plotly.relayout(plot, { width: null, autosize: true });
+  for (const plot of drawnPlots()) Plotly.relayout(plot, { width: null, autosize: true });
 });
