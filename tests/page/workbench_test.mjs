@@ -14,9 +14,13 @@ const run = (...words) => execFileSync(identify, words, { cwd: folder, encoding:
 run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "10s", "--rate", "10kHz", "--effect",
   "frictional-lag:tau=4ms", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "lag.csv");
 
+const servers = [];
+process.on("exit", () => servers.forEach((server) => server.kill("SIGKILL"))); // where a check failed
+
 /** Starts the server; resolves with its address once it is printed. */
 async function explore(...words) {
   const server = spawn(identify, ["explore", ...words], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  servers.push(server);
   let said = "";
   const address = await new Promise((resolve, reject) => {
     server.stdout.on("data", (data) => {
@@ -75,8 +79,8 @@ async function watchTheErrorFall(address, width) {
 
   // The command shown gives the same number.
   const command = await page.textContent("#bench-command");
-  const json = execFileSync("sh", ["-c", `${command.replace(/^identify/, `'${identify}'`)} --json -`], { cwd: folder, encoding: "utf8" });
-  const fit = JSON.parse(json).fits[0];
+  execFileSync("sh", ["-c", `${command.replace(/^identify/, `'${identify}'`)} --quiet --json same.json`], { cwd: folder });
+  const fit = JSON.parse(readFileSync(join(folder, "same.json"), "utf8")).fits[0];
   assert.equal(Number(fit.error.held_out_rmse.toPrecision(4)), after);
 
   // Back by a click, with the same number.
