@@ -12,6 +12,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/workbench/session.hpp"
 
 using namespace tribofit;
 
@@ -137,10 +138,7 @@ std::vector<GivenParameter> given_from(const Settings& s, const std::vector<Base
     if (bounds.lower > bounds.upper) refuse("--bounds: '" + text + "' of " + name + " runs from high to low");
     entry_of(name, given).bounds = bounds;
   }
-  for (const GivenParameter& one : given) {
-    if (!one.start || !one.bounds || (*one.start >= one.bounds->lower && *one.start <= one.bounds->upper)) continue;
-    refuse("--start: " + one.name + " starts beyond the --bounds given for it");
-  }
+  if (const std::string why = contradiction_in(given); !why.empty()) refuse("--start and --bounds: " + why);
   return given;
 }
 

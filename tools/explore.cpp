@@ -9,6 +9,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -108,7 +109,19 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
   return options;
 }
 
-/// The settings that a saved session was begun with; what is typed now stands behind them.
+/// A saved session has its own options: others beside it would not be heard.
+void refuse_beside_session(const std::vector<std::string>& arguments) {
+  std::string others;
+  for (const std::string& word : arguments) {
+    if (word.rfind("--", 0) != 0 || word == "--session" || word == "--port" || word == "--threads") continue;
+    if (others.find(word) == std::string::npos) others += (others.empty() ? "" : ", ") + word;
+  }
+  if (others.empty()) return;
+  throw CLI::ValidationError("--session: the saved session has its own options; leave out " + others +
+                             " (only --port and --threads go with it)");
+}
+
+/// The settings that a saved session was begun with, but for what the server itself is told now.
 void take_over(const std::string& text, ExploreSettings& s) {
   const SavedWorkbench saved = saved_workbench(text, s.session);
   CLI::App app("", "explore");
@@ -140,7 +153,7 @@ sigset_t hold_back_signals() {
   return set;
 }
 
-/// Serves until a signal comes.
+/// Serves until a signal comes. Throws where the server ends by itself.
 void serve(WorkbenchServer& server) {
   const sigset_t signals = hold_back_signals();
   std::mutex mutex;
@@ -148,11 +161,22 @@ void serve(WorkbenchServer& server) {
   bool ended = false;
   std::thread answering([&] {
     server.run();
-    const std::lock_guard lock(mutex);
-    ended = true;
-    over.notify_all();
+    {
+      const std::lock_guard lock(mutex);
+      ended = true;
+      over.notify_all();
+    }
+    ::kill(::getpid(), SIGTERM);  // wakes who waits for a signal, where the server has ended by itself
   });
   for (int signal = 0; sigwait(&signals, &signal) != 0;) {
+  }
+  {
+    std::unique_lock lock(mutex);
+    if (ended) {
+      lock.unlock();
+      answering.join();
+      throw std::runtime_error("the server of the workbench has ended by itself: its port is no longer listened on");
+    }
   }
   server.stop();
   {
@@ -191,6 +215,7 @@ void add_explore(CLI::App& app, int& status) {
   verb->callback([settings, verb, &status] {
     refuse_empty_values(*verb);
     check_seed(*settings);
+    if (!settings->session.empty()) refuse_beside_session(own_options(*verb));
     if (settings->traces.empty() && settings->session.empty()) {
       throw CLI::ValidationError("no trace given; try `identify explore --radius 15mm trace.csv`");
     }

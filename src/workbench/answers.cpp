@@ -1,10 +1,12 @@
 #include "answers.hpp"
 
 #include <utility>
+#include <variant>
 
 #include "choice_json.hpp"
 #include "report/charts/report_json.hpp"
 #include "report/numbers.hpp"
+#include "tribofit/friction/effects/all.hpp"
 
 namespace tribofit::workbench {
 
@@ -29,8 +31,9 @@ Json effect_json(const EffectInfo& info, const std::string& name, const Motion& 
 Json catalogue_json(const Motion& motion) {
   Json list = Json::array();
   for (const Effect& effect : effect_catalogue()) {
+    // Undone wherever they are found, asked for or not; the other effects of the motion are switched.
+    if (std::holds_alternative<SpeedRipple>(effect) || std::holds_alternative<VelocityHighPass>(effect)) continue;
     const EffectInfo info = describe(effect);
-    if (info.key == "speed-ripple" || info.key == "velocity-high-pass") continue;  // undone where they are found
     list.push_back(effect_json(info, info.key, motion));
     for (const EffectForm& form : info.forms) {
       const std::string name = info.key + ":" + form.name;

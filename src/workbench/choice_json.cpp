@@ -89,6 +89,7 @@ std::vector<GivenParameter> given_from(const Json& json, const FrictionModel& mo
     const auto [low, high] = range(value, "the range of " + name);
     entry.bounds = GivenParameter::Bounds{low * unit, high * unit};
   });
+  if (const std::string why = contradiction_in(given); !why.empty()) refuse(why, "take one of them back");
   return given;
 }
 
@@ -108,9 +109,18 @@ Selection selection_from(const Json& json) {
   }
   for (const Json& item : json["excluded"]) {
     const auto [from, to] = range(item, "a stretch that is left out");
-    if (from < to) selection.excluded.push_back({from, to});
+    if (!(from < to)) refuse("a stretch that is left out has no length", "give an earlier and a later time");
+    selection.excluded.push_back({from, to});
   }
   return selection;
+}
+
+/// The same where another law with these effects may have it.
+double unit_in_any_law(const WorkbenchChoice& choice, const std::string& name) {
+  for (const BaseLaw law : {choice.law, BaseLaw::exponential, BaseLaw::fractional, BaseLaw::coulomb}) {
+    if (const auto unit = unit_of(FrictionModel(law, effects_of(choice)), name)) return *unit;
+  }
+  return 1;
 }
 
 /// The number of units that makes up exactly this SI value, where there is one.
@@ -120,6 +130,18 @@ double in_units(double si, double unit) {
     if (near * unit == si) return near;
   }
   return nearest;
+}
+
+/// A choice as it is whatever the order of the clicks that led to it.
+Json in_order(const WorkbenchChoice& choice) {
+  WorkbenchChoice sorted = choice;
+  std::sort(sorted.effects.begin(), sorted.effects.end());
+  std::sort(sorted.formulas.begin(), sorted.formulas.end());
+  const auto by_name = [](const GivenParameter& a, const GivenParameter& b) { return a.name < b.name; };
+  std::sort(sorted.given.begin(), sorted.given.end(), by_name);
+  const auto by_time = [](const auto& a, const auto& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); };
+  std::sort(sorted.selection.excluded.begin(), sorted.selection.excluded.end(), by_time);
+  return choice_json(sorted);
 }
 
 /// Shortest text that reads back as the same number.
@@ -158,9 +180,8 @@ FrictionModel model_of(const WorkbenchChoice& choice) {
 Json choice_json(const WorkbenchChoice& choice) {
   Json json = {{"law", to_string(choice.law)}, {"effects", choice.effects}, {"formulas", choice.formulas}};
   json["start"] = json["bounds"] = Json::object();
-  const FrictionModel model = model_of(choice);
   for (const GivenParameter& known : choice.given) {
-    const double unit = unit_of(model, known.name).value_or(1);
+    const double unit = unit_in_any_law(choice, known.name);
     if (known.start) json["start"][known.name] = in_units(*known.start, unit);
     if (known.bounds) {
       json["bounds"][known.name] = {in_units(known.bounds->lower, unit), in_units(known.bounds->upper, unit)};
@@ -194,11 +215,12 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
   for (const std::string& formula : choice.formulas) add("--formula", formula);
   const FrictionModel model = model_of(choice);
   for (const GivenParameter& known : choice.given) {
-    const double unit = unit_of(model, known.name).value_or(1);
-    if (known.start) add("--start", known.name + "=" + exact(in_units(*known.start, unit)));
+    const std::optional<double> unit = unit_of(model, known.name);
+    if (!unit) continue;  // of another law: the command would be refused
+    if (known.start) add("--start", known.name + "=" + exact(in_units(*known.start, *unit)));
     if (known.bounds) {
-      add("--bounds", known.name + "=" + exact(in_units(known.bounds->lower, unit)) + ".." +
-                          exact(in_units(known.bounds->upper, unit)));
+      add("--bounds", known.name + "=" + exact(in_units(known.bounds->lower, *unit)) + ".." +
+                          exact(in_units(known.bounds->upper, *unit)));
     }
   }
   const Selection& selection = choice.selection;
@@ -209,7 +231,27 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
 }
 
 bool same(const WorkbenchChoice& a, const WorkbenchChoice& b) {
-  return choice_json(a) == choice_json(b);
+  return in_order(a) == in_order(b);
 }
 
 }  // namespace tribofit::workbench
+
+namespace tribofit {
+
+std::string contradiction_in(const std::vector<GivenParameter>& given) {
+  for (const GivenParameter& one : given) {
+    const auto beyond_numbers = [](double value) { return !std::isfinite(value); };
+    if ((one.start && beyond_numbers(*one.start)) ||
+        (one.bounds && (beyond_numbers(one.bounds->lower) || beyond_numbers(one.bounds->upper)))) {
+      return one.name + " is given a value beyond all numbers";
+    }
+    if (!one.bounds) continue;
+    if (one.bounds->lower > one.bounds->upper) return "the bounds given for " + one.name + " run from high to low";
+    if (one.start && (*one.start < one.bounds->lower || *one.start > one.bounds->upper)) {
+      return one.name + " starts beyond the bounds given for it";
+    }
+  }
+  return {};
+}
+
+}  // namespace tribofit

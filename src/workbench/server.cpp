@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "answers.hpp"
@@ -62,7 +64,7 @@ struct WorkbenchServer::State {
   std::string token = fresh_token();
   int port = 0;
   ServedPage page;
-  std::atomic<bool> stopping{false};
+  std::atomic<bool> running{false}, stopping{false};
   std::mutex mutex;
   std::map<std::string, double> newest;  ///< turn of each page
 
@@ -230,13 +232,19 @@ const std::string& WorkbenchServer::token() const {
 }
 
 void WorkbenchServer::run() {
-  state_->http.listen_after_bind();
+  State& s = *state_;
+  s.running = true;
+  if (!s.stopping) s.http.listen_after_bind();
+  s.running = false;
 }
 
 void WorkbenchServer::stop() {
-  state_->stopping = true;
-  state_->session.cancel_diagnosis();
-  state_->http.stop();
+  State& s = *state_;
+  if (s.stopping.exchange(true)) return;
+  s.session.cancel_diagnosis();
+  // What has not begun to listen does not hear that it shall stop.
+  while (s.running && !s.http.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  s.http.stop();
 }
 
 }  // namespace tribofit

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -25,39 +25,68 @@ namespace {
 
 constexpr std::size_t kMostRungs = 200;
 
-/// A trace with one set of corrections of its motion, and what it said before any fit.
+/// A trace with one set of corrections of its motion, and what it said before any part of it was left out or fitted.
 struct Prepared {
+  explicit Prepared(Identification prepared)
+      : trace(std::move(prepared)),
+        notes(trace.notes),
+        warnings(trace.warnings),
+        segmentation_notes(trace.segmentation.notes),
+        analysed(trace.analysed) {}
+
   Identification trace;
-  std::vector<std::string> warnings, segmentation_notes;
-  bool analysed = true;
+  std::vector<std::string> notes, warnings, segmentation_notes;
+  bool analysed;
+
+  /// The trace with the part that is selected, as before any fit.
+  Identification& with(const Selection& selection) {
+    trace.notes = notes;
+    trace.warnings = warnings;
+    trace.analysed = analysed;
+    trace.segmentation.notes = segmentation_notes;
+    trace.segmentation.left_out.clear();
+    trace.fits.clear();
+    leave_out(selection, trace.motion, trace.segmentation);
+    const auto said = trace.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(segmentation_notes.size());
+    trace.notes.insert(trace.notes.end(), said, trace.segmentation.notes.end());
+    return trace;
+  }
 };
 
-Prepared prepared(const WorkbenchOptions& options, const IdentifyOptions& identify) {
-  Prepared out;
-  out.trace = prepare_trace(options.input, identify);
-  out.trace.notes.insert(out.trace.notes.end(), options.notes.begin(), options.notes.end());
-  out.trace.warnings.insert(out.trace.warnings.begin(), options.warnings.begin(), options.warnings.end());
-  out.warnings = out.trace.warnings;
-  out.segmentation_notes = out.trace.segmentation.notes;
-  out.analysed = out.trace.analysed;
+Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions identify) {
+  identify.selection = {};
+  Identification out = prepare_trace(options.input, identify);
+  out.notes.insert(out.notes.end(), options.notes.begin(), options.notes.end());
+  out.warnings.insert(out.warnings.begin(), options.warnings.begin(), options.warnings.end());
   return out;
 }
 
-std::string corrections_of(const std::vector<Effect>& effects) {
-  std::string keys;
+/// Corrections of the motion, whatever the order in which they were switched on.
+std::vector<std::string> corrections_of(const std::vector<Effect>& effects) {
+  std::vector<std::string> names;
   for (const Effect& effect : effects) {
-    if (is_of_motion(effect)) keys += describe(effect).spelled() + " ";
+    if (is_of_motion(effect)) names.push_back(describe(effect).spelled());
   }
-  return keys;
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
-/// What is drawn beside a rung: the law alone, fitted to the same part of the record.
+bool same_part(const Selection& a, const Selection& b) {
+  const auto ends = [](const Selection::Cycles& c) { return std::pair(c.first, c.last); };
+  const auto alike = [](const Selection::Stretch& x, const Selection::Stretch& y) {
+    return x.from == y.from && x.to == y.to;
+  };
+  const bool cycles = a.cycles && b.cycles ? ends(*a.cycles) == ends(*b.cycles) : !a.cycles && !b.cycles;
+  return cycles && std::equal(a.excluded.begin(), a.excluded.end(), b.excluded.begin(), b.excluded.end(), alike);
+}
+
+/// What is drawn beside a rung: the law alone, from the data, fitted to the same part of the record.
 const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<WorkbenchRung>& rungs) {
   if (rung.fit.model.effects().empty()) return nullptr;
   for (const WorkbenchRung& other : rungs) {
     const bool bare = other.choice.law == rung.choice.law && other.choice.effects.empty() &&
-                      other.choice.formulas.empty() && other.number != rung.number;
-    if (bare && other.fit.cycles == rung.fit.cycles) return &other;
+                      other.choice.formulas.empty() && other.choice.given.empty();
+    if (bare && same_part(other.choice.selection, rung.choice.selection)) return &other;
   }
   return nullptr;
 }
@@ -66,15 +95,17 @@ const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<Workben
 
 struct WorkbenchSession::State {
   WorkbenchOptions options;
+  std::shared_ptr<const Identification> uncorrected;  ///< the whole trace; set once, so that it needs no lock
   /// Traces prepared for fits of one kind, which are made one at a time. A full fit may take a while; quick ones go on
   /// beside it.
   struct Lane {
     std::mutex fitting;
-    std::map<std::string, Prepared> prepared_by_corrections;
+    std::optional<Prepared> plain, corrected;
+    std::vector<std::string> corrections;  ///< of `corrected`, the last that were asked for
   };
   Lane quick, full;
   std::vector<WorkbenchRung> rungs;
-  mutable std::mutex visited;  ///< guards the rungs
+  mutable std::mutex visited;  ///< guards the rungs and options.begin
   DiagnosisRun diagnosis;
 
   IdentifyOptions identify_options(const WorkbenchChoice& choice, FitDetail detail) const {
@@ -90,23 +121,17 @@ struct WorkbenchSession::State {
 
   /// The trace with the corrections that the effects ask for and the part that is selected, as before any fit.
   Identification& fresh(const IdentifyOptions& identify, Lane& lane) {
-    auto& prepared_by_corrections = lane.prepared_by_corrections;
-    const std::string key = corrections_of(identify.effects);
-    auto found = prepared_by_corrections.find(key);
-    if (found == prepared_by_corrections.end()) {
-      IdentifyOptions whole = identify;
-      whole.selection = {};
-      found = prepared_by_corrections.emplace(key, prepared(options, whole)).first;
+    std::vector<std::string> corrections = corrections_of(identify.effects);
+    if (corrections.empty()) {
+      if (!lane.plain) lane.plain.emplace(*uncorrected);
+      return lane.plain->with(identify.selection);
     }
-    Prepared& source = found->second;
-    Identification& trace = source.trace;
-    trace.warnings = source.warnings;
-    trace.analysed = source.analysed;
-    trace.segmentation.notes = source.segmentation_notes;
-    trace.segmentation.left_out.clear();
-    trace.fits.clear();
-    leave_out(identify.selection, trace.motion, trace.segmentation);
-    return trace;
+    if (!lane.corrected || lane.corrections != corrections) {
+      lane.corrected.reset();
+      lane.corrected.emplace(whole_trace(options, identify));
+      lane.corrections = std::move(corrections);
+    }
+    return lane.corrected->with(identify.selection);
   }
 
   std::optional<WorkbenchRung> visited_rung(const WorkbenchChoice& choice) const {
@@ -172,7 +197,8 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
   s.options.identify.selection = {};
   s.options.identify.fit.given.clear();
   s.options.input.trace = read_input(s.options.input, s.options.identify);
-  const Identification& trace = s.fresh(s.options.identify, s.quick);
+  s.uncorrected = std::make_shared<const Identification>(whole_trace(s.options, s.options.identify));
+  const Identification& trace = *s.uncorrected;
   if (!trace.analysed) {
     throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
                      "`identify` without 'explore' says more", {trace.path, 0, ""});
@@ -184,12 +210,13 @@ WorkbenchSession::~WorkbenchSession() {
   cancel_diagnosis();
 }
 
-const WorkbenchChoice& WorkbenchSession::begin() const {
+WorkbenchChoice WorkbenchSession::begin() const {
+  const std::lock_guard lock(state_->visited);
   return state_->options.begin;
 }
 
 const Identification& WorkbenchSession::trace() const {
-  return state_->quick.prepared_by_corrections.at("").trace;
+  return *state_->uncorrected;
 }
 
 WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail detail,
@@ -204,12 +231,12 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
   WorkbenchPicture picture;
   if (known && (known->detail == FitDetail::full || detail == FitDetail::quick)) {
     picture.rung = *known;
-    trace.fits = {known->fit};
   } else {
     picture.rung = s.fitted(choice, identify, detail, trace);
     picture.rung.command = command_of(choice);
     if (keep) s.note(picture.rung);
   }
+  trace.fits = {picture.rung.fit};  // what note() left, which another page may have fitted more finely meanwhile
   trace.best = 0;
   {
     const std::lock_guard visited(s.visited);
@@ -217,7 +244,7 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
   }
   ReportOptions report;
   report.arguments = s.options.arguments;
-  const std::vector<std::string> own = arguments_of(choice);
+  const std::vector<std::string> own = arguments_of(picture.rung.choice);
   report.arguments.insert(report.arguments.end(), own.begin(), own.end());
   report.instruments_declared = s.options.instruments_declared;
   picture.report = report_of(trace, report);
@@ -319,6 +346,7 @@ void WorkbenchSession::load(std::string_view text, const std::string& file) {
     if (!rung.is_object() || !rung.contains("choice")) continue;
     const WorkbenchChoice choice = choice_from(rung["choice"]);
     show(choice, FitDetail::quick);
+    const std::lock_guard lock(state_->visited);
     state_->options.begin = choice;
   }
 }

@@ -26,7 +26,7 @@ class WorkbenchServer {
   std::string address() const;
   const std::string& token() const;
 
-  /// Answers until stop() is called from another thread.
+  /// Answers until stop() is called from another thread; at once over where that was before.
   void run();
   /// Ends run() once what is being answered has been; pending requests are given up.
   void stop();

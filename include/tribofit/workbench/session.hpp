@@ -21,6 +21,10 @@ struct WorkbenchChoice {
   Selection selection;
 };
 
+/// Why one of them cannot be meant: bounds from high to low, a start beyond the bounds given with it, a value beyond all
+/// numbers; empty where all can. Asked at both doors, the command line and the pages.
+std::string contradiction_in(const std::vector<GivenParameter>& given);
+
 /// A model that was visited.
 struct WorkbenchRung {
   static constexpr std::size_t passed_by = static_cast<std::size_t>(-1);
@@ -80,8 +84,8 @@ class WorkbenchSession {
   WorkbenchSession(const WorkbenchSession&) = delete;
   WorkbenchSession& operator=(const WorkbenchSession&) = delete;
 
-  const WorkbenchChoice& begin() const;
-  /// The trace as it was prepared, without fits.
+  WorkbenchChoice begin() const;
+  /// The whole trace as it was prepared, without corrections and fits.
   const Identification& trace() const;
 
   /// Fits a choice and adds it to the rungs; one that was visited is not fitted again unless more detail is asked for.

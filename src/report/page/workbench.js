@@ -42,7 +42,7 @@ function showStatus(rung) {
   document.getElementById("shown-error").textContent = withUnit(rung.held_out_rmse, rung.unit);
   document.getElementById("shown-about").textContent =
     `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles that took no part in the fit (blocks held out in turn); ` +
-    `${ratio ? `${number(ratio, 3)} floors, ` : ""}${rung.cycles} cycles; ` +
+    `${ratio ? `${number(ratio, 3)} floors, ` : ""}${rung.cycles}${rung.cycles < bench.world.cycles ? ` of ${bench.world.cycles}` : ""} cycles; ` +
     (rung.full ? "fitted as the command below does it" : "quick fit, being refined");
   document.getElementById("bench-command").textContent = rung.command;
 }
@@ -118,6 +118,7 @@ function changed(passing = false) {
 }
 
 function goTo(choice) {
+  clearTimeout(changing); // a drag that was under way is of the choice before
   bench.choice = structuredClone(choice);
   fillControls();
   show();
@@ -263,6 +264,7 @@ function parameterControl(p) {
       if (which === 0) ends[0] = Math.min(ends[0], ends[1]);
       else ends[1] = Math.max(ends[0], ends[1]);
       bounds[name] = ends;
+      if (start[name] !== undefined) start[name] = Math.min(Math.max(start[name], ends[0]), ends[1]);
       return ends[which];
     } });
   const reset = make("button", { type: "button", "aria-label": `Start and bounds of ${name} from the data`, onclick: () => {
@@ -276,8 +278,8 @@ function parameterControl(p) {
   valueControl(p, scale, { label: "start", id: `start-${name}`, otherwise: p.start, get: () => start[name] ?? null,
     set: (value) => {
       if (value === null) delete start[name];
-      else start[name] = value;
-      return value;
+      else start[name] = bounds[name] ? Math.min(Math.max(value, bounds[name][0]), bounds[name][1]) : value;
+      return start[name] ?? null;
     } }),
   bound(0, "from", "lower"), bound(1, "to", "upper"), reset);
 }
