@@ -154,11 +154,19 @@ async function diagnose(address) {
 /** The server ends while a page waits: within two seconds, and the page says so. */
 async function stopInMidFit({ server, address, ended }) {
   const { page, close } = await open(address, 1280);
-  await page.check("#effect-rate-state");
+  // Rich enough that the full fit does not end before the server does.
+  const fitted = page.waitForRequest((request) => request.url().endsWith("/api/show") && request.postDataJSON().full &&
+    request.postDataJSON().choice.effects.length === 3);
+  for (const effect of ["rate-state", "contact-spin", "runout"]) {
+    await page.evaluate((id) => document.getElementById(id).closest("details").setAttribute("open", ""), `effect-${effect}`);
+    await page.check(`#effect-${effect}`);
+  }
+  const request = await fitted;
   const begin = performance.now();
   server.kill("SIGTERM");
   assert.equal(await ended, 0);
   assert.ok(performance.now() - begin < 2000, "the server took more than two seconds to end");
+  assert.equal(await request.response(), null, "the fit was over before the server ended");
   await page.check("#effect-viscous");
   await page.waitForSelector("#bench-trouble:not([hidden])");
   assert.match(await page.textContent("#bench-trouble"), /does not answer/);

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -18,11 +19,20 @@ namespace {
 using testing::HasSubstr;
 using Json = nlohmann::json;
 using workbench_test::lagging;
+using workbench_test::Lagging;
 
 WorkbenchChoice with(std::vector<std::string> effects) {
   WorkbenchChoice choice;
   choice.effects = std::move(effects);
   return choice;
+}
+
+WorkbenchDiagnosis waited_for(const WorkbenchSession& session) {
+  for (int k = 0; k < 1200; ++k) {
+    if (session.diagnosis().state != WorkbenchDiagnosis::State::running) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return session.diagnosis();
 }
 
 TEST(Session, finds_the_hidden_lag) {
@@ -48,11 +58,61 @@ TEST(Session, gives_the_numbers_of_the_command_it_shows) {
   const Json fit = Json::parse(out.out)["fits"][0];
   EXPECT_EQ(fit["error"]["rmse"].get<double>(), full.fit.error.rmse);
   EXPECT_EQ(fit["error"]["held_out_rmse"].get<double>(), full.fit.error.held_out_rmse);
+  EXPECT_NEAR(quick.fit.error.held_out_rmse, full.fit.error.held_out_rmse, 0.1 * full.fit.error.held_out_rmse);
   for (std::size_t k = 0; k < full.fit.parameters.size(); ++k) {
     const FitParameter& p = full.fit.parameters[k];
     EXPECT_EQ(fit["parameters"][k]["value"].get<double>(), p.value / p.parameter.si) << p.parameter.name;
-    EXPECT_NEAR(quick.fit.parameters[k].value, p.value, 0.5 * p.std_error) << p.parameter.name;
+    EXPECT_NEAR(quick.fit.parameters[k].value, p.value, 2 * p.std_error) << p.parameter.name;
   }
+}
+
+/// Whatever the JSON door lets in, the printed command is no wrong usage.
+TEST(Session, prints_commands_that_are_accepted) {
+  const WorkbenchSession session(lagging().options());
+  for (const char* text : {R"({"law":"coulomb","effects":["viscous"]})",
+                           R"({"law":"exponential","start":{"mu_s":-1e-9,"alpha":1e20}})",
+                           R"({"law":"exponential","bounds":{"mu_s":[-1,2]},"start":{"mu_s":2,"beta":9}})",
+                           R"({"law":"fractional","bounds":{"mu_s":[0.4,0.4]},"cycles":[0,12]})",
+                           R"({"law":"exponential","excluded":[[-1,0.1],[7.5,1e9]]})",
+                           R"({"law":"exponential","formulas":["it's = a*exp(-v); a=0.001"]})",
+                           R"({"law":"exponential","formulas":["hump = a*exp(-v/w); a=0.02, w=6mm/s"]})"}) {
+    std::string command;
+    try {
+      command = session.command_of(workbench::choice_from(workbench::parsed(text, "the request")));
+    } catch (const InputError&) {
+      continue;  // refused here as there
+    }
+    const Outcome out = lagging().workshop.shell(command + " --starts 1 --quiet");
+    EXPECT_NE(out.status, 2) << command << "\n" << out.err;
+  }
+}
+
+TEST(Session, says_what_part_of_the_record_it_shows) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice choice;
+  choice.selection.cycles = {2, 9};
+  const auto said = [](const WorkbenchPicture& picture) {
+    for (const ReportSection& section : picture.report.sections) {
+      for (const ReportItem& item : section.items) {
+        const auto* text = std::get_if<ReportText>(&item);
+        if (text != nullptr && text->text.find("take part in the fit") != std::string::npos) return text->text;
+      }
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said(session.show(choice, FitDetail::quick)), HasSubstr("8 of "));
+  EXPECT_EQ(said(session.show({}, FitDetail::quick)), "");
+}
+
+TEST(Session, does_not_need_its_file_once_it_has_read_it) {
+  const Lagging record("4s");
+  WorkbenchSession session(record.options());
+  std::filesystem::remove(record.path);
+  EXPECT_GT(session.show(with({"frictional-lag"}), FitDetail::quick).rung.fit.error.held_out_rmse, 0);
+  EXPECT_GT(session.show(with({"radius-offset"}), FitDetail::full).rung.fit.error.held_out_rmse, 0);
+  ASSERT_TRUE(session.begin_diagnosis({}));
+  const WorkbenchDiagnosis found = waited_for(session);
+  EXPECT_EQ(found.state, WorkbenchDiagnosis::State::done) << found.sentence;
 }
 
 TEST(Session, comes_back_to_a_rung_with_the_same_numbers) {
@@ -128,14 +188,6 @@ TEST(Session, saved_and_loaded_has_the_same_rungs) {
   const std::size_t at = changed.find("\"checksum\": \"") + 13;
   changed[at] = changed[at] == '0' ? '1' : '0';
   EXPECT_THROW(other.load(changed, "saved.json"), InputError);
-}
-
-WorkbenchDiagnosis waited_for(const WorkbenchSession& session) {
-  for (int k = 0; k < 1200; ++k) {
-    if (session.diagnosis().state != WorkbenchDiagnosis::State::running) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return session.diagnosis();
 }
 
 TEST(Session, diagnoses_as_the_command_does) {
