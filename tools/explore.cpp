@@ -84,7 +84,7 @@ std::vector<std::string> without_choice(const std::vector<std::string>& argument
 std::vector<std::string> formulas_of(const Settings& s) {
   std::vector<std::string> out;
   for (const std::string& text : s.formulas) {
-    if (text.front() == '@')
+    if (text.starts_with('@'))
       throw CLI::ValidationError("--formula: type it, or paste it into the page; @FILE is not read here");
     out.push_back(text);
   }

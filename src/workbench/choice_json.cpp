@@ -240,10 +240,11 @@ namespace tribofit {
 
 std::string contradiction_in(const std::vector<GivenParameter>& given) {
   for (const GivenParameter& one : given) {
-    const auto beyond_numbers = [](double value) { return !std::isfinite(value); };
+    // SI; widths of bounds and squares of values have to stay finite.
+    const auto beyond_numbers = [](double value) { return !(std::abs(value) <= 1e12); };
     if ((one.start && beyond_numbers(*one.start)) ||
         (one.bounds && (beyond_numbers(one.bounds->lower) || beyond_numbers(one.bounds->upper)))) {
-      return one.name + " is given a value beyond all numbers";
+      return one.name + " is given a value too large to compute with";
     }
     if (!one.bounds) continue;
     if (one.bounds->lower > one.bounds->upper) return "the bounds given for " + one.name + " run from high to low";

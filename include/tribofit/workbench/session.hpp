@@ -21,8 +21,8 @@ struct WorkbenchChoice {
   Selection selection;
 };
 
-/// Why one of them cannot be meant: bounds from high to low, a start beyond the bounds given with it, a value beyond all
-/// numbers; empty where all can. Asked at both doors, the command line and the pages.
+/// Why one of them cannot be meant: bounds from high to low, a start beyond the bounds given with it, a value too
+/// large to compute with; empty where all can. Asked at both doors, the command line and the pages.
 std::string contradiction_in(const std::vector<GivenParameter>& given);
 
 /// A model that was visited.
