@@ -302,10 +302,11 @@ TEST(Explore, ends_in_the_middle_of_a_fit) {
   std::thread asker([&] {
     httplib::Client client("127.0.0.1", port);
     client.set_read_timeout(60);
-    const auto answer = client.Post("/api/show", {{"X-Workbench-Token", token}},
-                R"({"page":"p","turn":1,"full":true,"choice":{"law":"exponential","effects":["rate-state",)"
-                R"("contact-spin","runout"],"formulas":["a = k*exp(-v/w)*sin(t*f); k=0.01, w=6, f=3"]}})",
-                kType);
+    const auto answer =
+        client.Post("/api/show", {{"X-Workbench-Token", token}},
+                    R"({"page":"p","turn":1,"full":true,"choice":{"law":"exponential","effects":["rate-state",)"
+                    R"("contact-spin","runout"],"formulas":["a = k*exp(-v/w)*sin(t*f); k=0.01, w=6, f=3"]}})",
+                    kType);
     answered = answer && answer->status > 0;
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));

@@ -69,13 +69,13 @@ TEST(Session, gives_the_numbers_of_the_command_it_shows) {
 /// Whatever the JSON door lets in, the printed command is no wrong usage.
 TEST(Session, prints_commands_that_are_accepted) {
   const WorkbenchSession session(lagging().options());
-  for (const char* text : {R"({"law":"coulomb","effects":["viscous"]})",
-                           R"({"law":"exponential","start":{"mu_s":-1e-9,"alpha":1e20}})",
-                           R"({"law":"exponential","bounds":{"mu_s":[-1,2]},"start":{"mu_s":2,"beta":9}})",
-                           R"({"law":"fractional","bounds":{"mu_s":[0.4,0.4]},"cycles":[0,12]})",
-                           R"({"law":"exponential","excluded":[[-1,0.1],[7.5,1e9]]})",
-                           R"({"law":"exponential","formulas":["it's = a*exp(-v); a=0.001"]})",
-                           R"({"law":"exponential","formulas":["hump = a*exp(-v/w); a=0.02, w=6mm/s"]})"}) {
+  for (const char* text :
+       {R"({"law":"coulomb","effects":["viscous"]})", R"({"law":"exponential","start":{"mu_s":-1e-9,"alpha":1e20}})",
+        R"({"law":"exponential","bounds":{"mu_s":[-1,2]},"start":{"mu_s":2,"beta":9}})",
+        R"({"law":"fractional","bounds":{"mu_s":[0.4,0.4]},"cycles":[0,12]})",
+        R"({"law":"exponential","excluded":[[-1,0.1],[7.5,1e9]]})",
+        R"({"law":"exponential","formulas":["it's = a*exp(-v); a=0.001"]})",
+        R"({"law":"exponential","formulas":["hump = a*exp(-v/w); a=0.02, w=6mm/s"]})"}) {
     std::string command;
     try {
       command = session.command_of(workbench::choice_from(workbench::parsed(text, "the request")));

@@ -223,9 +223,13 @@ void Script::add_marks(std::size_t panel) {
   std::sort(upright.begin(), upright.end(),
             [&](const ChartMark* a, const ChartMark* b) { return layout_.x.part(a->at) < layout_.x.part(b->at); });
   const Area& area = layout_.panels[panel];
-  for (const ChartMark* mark : upright) {
-    const double width = width_of(mark->text, kSmallTextPoints), x = layout_.x.part(mark->at) * area.width;
-    const bool leftwards = x + 0.8 + width > area.width;
+  const auto place = [&](std::size_t k) { return layout_.x.part(upright[k]->at) * area.width; };
+  for (std::size_t k = 0; k < upright.size(); ++k) {
+    const ChartMark* mark = upright[k];
+    const double width = width_of(mark->text, kSmallTextPoints), x = place(k);
+    // To the right where no other line stands in the way, else to the left where that is free.
+    const double next = k + 1 < upright.size() ? place(k + 1) : area.width, before = k > 0 ? place(k - 1) : 0;
+    const bool leftwards = x + 0.8 + width > area.width || (x + 0.8 + width > next && x - 0.8 - width >= before);
     const double from = leftwards ? x - 0.8 - width : x + 0.8;
     std::size_t row = 0;
     while (row < taken.size() && taken[row] > from) ++row;
