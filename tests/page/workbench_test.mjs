@@ -97,7 +97,7 @@ async function watchTheErrorFall(address, width) {
   assert.match(await page.textContent("#bench-command"), /--start mu_s=/);
   await change(page, () => page.fill("#upper-mu_s", "0.45").then(() => page.keyboard.press("Enter")));
   assert.match(await page.textContent("#bench-command"), /--bounds mu_s=/);
-  assert.match(await page.textContent(".parameter[data-name=mu_s] output"), /at its bound/);
+  assert.match(await page.textContent(".parameter[data-name=mu_s] [data-value]"), /at its bound/);
   await change(page, () => page.click(".parameter[data-name=mu_s] button"));
   assert.doesNotMatch(await page.textContent("#bench-command"), /--bounds|--start/);
   await change(page, () => page.fill("#cycles-to", "20").then(() => page.keyboard.press("Enter")));

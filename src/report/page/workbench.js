@@ -274,7 +274,7 @@ function parameterControl(p) {
   } }, "From the data");
   return make("details", { className: "parameter", "data-name": name, ...(bench.unfolded.has(name) ? { open: "" } : {}),
     ontoggle: (event) => (event.target.open ? bench.unfolded.add(name) : bench.unfolded.delete(name)) },
-  make("summary", {}, make("strong", {}, name), " = ", make("output", { "data-value": name }, parameterText(p))),
+  make("summary", {}, make("strong", {}, name), " = ", make("span", { "data-value": name }, parameterText(p))),
   valueControl(p, scale, { label: "start", id: `start-${name}`, otherwise: p.start, get: () => start[name] ?? null,
     set: (value) => {
       if (value === null) delete start[name];
@@ -298,7 +298,7 @@ function updateParameters(rung) {
   for (const p of rung.parameters) {
     const touched = bench.choice.start[p.full_name] !== undefined || bench.choice.bounds[p.full_name] !== undefined;
     document.querySelector(`.parameter[data-name="${CSS.escape(p.full_name)}"] button`).disabled = !touched;
-    document.querySelector(`output[data-value="${CSS.escape(p.full_name)}"]`).textContent = parameterText(p);
+    document.querySelector(`[data-value="${CSS.escape(p.full_name)}"]`).textContent = parameterText(p);
   }
   document.getElementById("bench-messages").replaceChildren(...rung.messages.map((text) => make("li", {}, prose(text))));
 }
