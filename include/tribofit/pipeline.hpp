@@ -120,8 +120,8 @@ Identification prepare_trace(const TraceInput& input, const IdentifyOptions& opt
 
 /// The stage after them, for a trace that prepare_trace() made with the same effects of the motion and the same
 /// selection: fits take the place of those it has. Warnings are added to those it has.
-/// quick: effects are fitted to means of a few samples where a slip has many, which moves parameters by a small part of
-/// their error; the bare laws are always.
+/// quick: effects are fitted to means of a few samples where a slip has many, which moves parameters by up to about one
+/// standard error; the bare laws are always.
 enum class FitDetail { full, quick };
 void fit_trace(const IdentifyOptions& options, Identification& trace, FitDetail detail = FitDetail::full);
 

@@ -62,6 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"FiguresOfAShard", "--figures x --shard 1/2 --out y a.csv b.csv", "identify merge"},
                       Wrong{"NegativeSeed", "--seed -1 a.csv", "--seed"},
                       Wrong{"SeedTooLarge", "--seed 18446744073709551616 a.csv", "--seed"},
+                      Wrong{"SessionBesideOptions", "explore --session s.json --radius 15mm --port 8080",
+                            "leave out --radius (only"},
                       Wrong{"DiagnoseNothing", "diagnose", "no trace given"},
                       Wrong{"DiagnoseEmptyLoad", "diagnose --load '' a.csv", "--load"},
                       Wrong{"DiagnoseSeed", "diagnose --seed 1.5 a.csv", "--seed"},
