@@ -69,6 +69,7 @@ async function watchTheErrorFall(address, width) {
   const { page, complaints, close } = await open(address, width);
   const before = await shownError(page);
   const rungsBefore = await page.locator("#bench-rungs tbody tr").count();
+  if (!await page.isVisible("#effect-frictional-lag")) await page.locator("summary", { hasText: "What the contact does" }).click();
   await change(page, () => page.check("#effect-frictional-lag"));
   const after = await shownError(page);
   console.log(`at ${width} px the held-out error falls from ${before} to ${after}; answered after ` +
