@@ -8,24 +8,24 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/declared.hpp"
-#include "diagnosis/of_motion.hpp"
-#include "diagnosis/own_effects.hpp"
+#include "diagnosis/instrument_limits.hpp"
+#include "diagnosis/kinematic_effects.hpp"
+#include "diagnosis/user_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
 #include "tribofit/fit/parallel.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
 namespace {
 
 /// Effects with a term in a friction model.
-std::vector<Effect> of_friction(const std::vector<Effect>& effects) {
+std::vector<Effect> friction_effects(const std::vector<Effect>& effects) {
   std::vector<Effect> out;
   for (const Effect& effect : effects) {
-    if (!is_of_motion(effect)) out.push_back(effect);
+    if (!is_kinematic(effect)) out.push_back(effect);
   }
   return out;
 }
@@ -34,7 +34,8 @@ std::vector<Effect> of_friction(const std::vector<Effect>& effects) {
 std::vector<std::pair<FrictionModel, FitOptions>> plan(const IdentifyOptions& options) {
   std::vector<std::pair<FrictionModel, FitOptions>> fits;
   FitOptions inner = options.fit;
-  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, of_friction(options.effects)), inner);
+  for (const BaseLaw law : options.laws)
+    fits.emplace_back(FrictionModel(law, friction_effects(options.effects)), inner);
   inner.protocol = Protocol::published;
   for (const BaseLaw law : options.laws) {
     if (options.published_protocol && law != BaseLaw::coulomb) fits.emplace_back(FrictionModel(law), inner);
@@ -174,7 +175,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   }
   out.motion = compute_motion(std::move(trace), options.instruments, motion_options);
   out.segmentation = find_cycles(out.motion);
-  leave_out(options.selection, out.motion, out.segmentation);
+  exclude(options.selection, out.motion, out.segmentation);
   out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
@@ -192,7 +193,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
 void fit_all(const IdentifyOptions& options, Identification& out, FitDetail detail = FitDetail::full) {
   // Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
   constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
-  const std::vector<Effect> effects = of_friction(options.effects);
+  const std::vector<Effect> effects = friction_effects(options.effects);
   const std::size_t values_per_slip = effects.empty() ? kBare : detail == FitDetail::quick ? kQuick : kFull;
   const Observations observations =
       observe(out.motion, out.segmentation, FrictionModel(BaseLaw::exponential, effects).needs(), values_per_slip);
@@ -214,7 +215,7 @@ void fit_all(const IdentifyOptions& options, Identification& out, FitDetail deta
 /// A load that follows friction within every cycle would pass for friction that follows the load.
 void take_out_load_coupling(Identification& trace) {
   constexpr double kLeast = 0.01, kChance = 0.01 / 28;  // one of the catalogue's effects
-  const Measure kappa = load_coupling(trace.motion, trace.segmentation);
+  const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
   if (!(std::abs(kappa.value) > kLeast)) return;
   if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > kChance) return;
   uncouple_load(kappa.value, trace.motion);
@@ -262,7 +263,7 @@ bool undo_needless_corrections(const std::vector<TraceInput>& inputs, const Iden
     if (traces[k].motion.plateau_correction == PlateauCorrection::none) continue;
     Identification plain = prepare(inputs[k], options, motions[k]);
     if (plain.motion.plateau_correction != PlateauCorrection::none) continue;  // asked for by its effect
-    const Measure gap = gap_beside_creep(fit.model, fit.values(), plain.motion, plain.segmentation);
+    const Estimate gap = gap_beside_creep(fit.model, fit.values(), plain.motion, plain.segmentation);
     if (!plain.analysed || !std::isfinite(gap.value) || diagnosis::is_gap(gap.value, gap.std_error)) continue;
     traces[k] = std::move(plain);
     undone = true;
@@ -300,8 +301,8 @@ Confirmation confirm(const TraceInput& input, const IdentifyOptions& options, co
   MotionOptions motion = options.motion;
   const Identification trace = prepare_to_diagnose(input, options, motion);
   if (!trace.analysed) return out;
-  const Fit frozen_base = frozen_on(base, trace.motion, trace.segmentation);
-  const Fit frozen_last = frozen_on(last, trace.motion, trace.segmentation);
+  const Fit frozen_base = evaluate_frozen(base, trace.motion, trace.segmentation);
+  const Fit frozen_last = evaluate_frozen(last, trace.motion, trace.segmentation);
   out.base_rmse = frozen_base.error.rmse;
   out.final_rmse = frozen_last.error.rmse;
   const Comparison comparison = compare_held_out(frozen_last, frozen_base);
@@ -323,15 +324,15 @@ std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyO
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {
-  IdentifyOptions of_motion = options;  // what effects of friction need is a matter of their fit
-  std::erase_if(of_motion.effects, [](const Effect& effect) { return !is_of_motion(effect); });
-  return prepare(input, of_motion, options.motion);
+  IdentifyOptions kinematic_effect = options;  // what effects of friction need is a matter of their fit
+  std::erase_if(kinematic_effect.effects, [](const Effect& effect) { return !is_kinematic(effect); });
+  return prepare(input, kinematic_effect, options.motion);
 }
 
 void fit_trace(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
   trace.fits.clear();
   trace.best = 0;
-  require_channels(of_friction(options.effects), trace.motion, trace.warnings, trace.analysed);
+  require_channels(friction_effects(options.effects), trace.motion, trace.warnings, trace.analysed);
   require_formulas(options.effects, trace);
   if (trace.analysed) fit_all(options, trace, detail);
 }
@@ -372,7 +373,7 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
   options.effects.clear();
   take_best();
   options.effects = given.effects;
-  if (!of_friction(given.effects).empty()) take_best();
+  if (!friction_effects(given.effects).empty()) take_best();
   trace.fits = std::move(best);
   trace.best = trace.fits.empty() ? 0 : trace.fits.size() - 1;
   if (trace.analysed) {
@@ -391,9 +392,9 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   DiagnosedTraces out;
   refuse_same(given.effects);
   IdentifyOptions options = given;
-  std::vector<Effect> own = of_friction(given.effects);
+  std::vector<Effect> own = friction_effects(given.effects);
   options.effects.erase(std::remove_if(options.effects.begin(), options.effects.end(),
-                                       [](const Effect& effect) { return !is_of_motion(effect); }),
+                                       [](const Effect& effect) { return !is_kinematic(effect); }),
                         options.effects.end());
   const auto first_given = std::stable_partition(
       own.begin(), own.end(), [](const Effect& effect) { return std::holds_alternative<Formula>(effect); });

@@ -203,14 +203,14 @@ std::string counts(const BatchOutcome& outcome) {
 }
 
 void complain_of(const Campaign& campaign, const BatchOutcome& outcome) {
-  for (const std::string& problem : campaign.problems) complain(problem);
+  for (const std::string& problem : campaign.problems) print_error(problem);
   for (const RunEnd& end : outcome.ends) {
     if (!end.begun || end.message.empty()) continue;
-    complain(end.status == RunStatus::failed && end.kept
-                 ? end.run->file + ": the analysis could not be done: " + end.message
-                 : end.message);
+    print_error(end.status == RunStatus::failed && end.kept
+                    ? end.run->file + ": the analysis could not be done: " + end.message
+                    : end.message);
   }
-  if (outcome.stopped) complain("no result can be written any more: the other runs are left for the next time");
+  if (outcome.stopped) print_error("no result can be written any more: the other runs are left for the next time");
 }
 
 int status_of(const Campaign& campaign, const BatchOutcome& outcome) {
@@ -259,7 +259,7 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
       refused = complain_of(all);
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
-    complain(error.what());
+    print_error(error.what());
     return kFailed;
   }
   if (!s.quiet) {

@@ -82,6 +82,6 @@ void ProgressLine::show(std::string_view what, double part) {
   std::fflush(stderr);
 }
 
-void complain(const std::string& text) {
+void print_error(const std::string& text) {
   std::fprintf(stderr, "identify: error: %s\n", text.c_str());
 }

@@ -38,4 +38,4 @@ class ProgressLine {
 };
 
 /// "identify: error: TEXT" to standard error.
-void complain(const std::string& text);
+void print_error(const std::string& text);

@@ -105,7 +105,7 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
     print(render_diagnosis(result, terminal));
   }
   if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return kDone;
-  complain("the diagnosis could not be done: " + reason_of(result));
+  print_error("the diagnosis could not be done: " + reason_of(result));
   return kFailed;
 }
 

@@ -55,7 +55,7 @@ int run_one(const Settings& s, const Input& input, const IdentifyOptions& option
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
   if (result.analysed && fitted) return kDone;
   std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
-  complain(input.trace.path + ": the analysis could not be done: " + reason);
+  print_error(input.trace.path + ": the analysis could not be done: " + reason);
   return kFailed;
 }
 
@@ -70,7 +70,7 @@ int run_all(const Settings& s, const std::vector<Input>& inputs, const IdentifyO
     try {
       status = std::max(status, run_one(s, inputs[k], options, arguments));
     } catch (const InputError& error) {
-      complain(error.what());
+      print_error(error.what());
       ++unreadable;
     }
   }

@@ -25,7 +25,7 @@ struct ChosenEffect {
   std::vector<double> values;
 };
 
-/// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
+/// AddsToReading "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
 /// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
 ChosenEffect read_effect(const std::string& text) {
   auto colon = text.find(':');

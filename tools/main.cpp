@@ -56,8 +56,8 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) text += nearest_option(app, text);
   const auto verbs = app.get_subcommands();
-  complain(text + "\n`identify " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") +
-           "--help` lists the options");
+  print_error(text + "\n`identify " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") +
+              "--help` lists the options");
   return kWrongUsage;
 }
 
@@ -104,13 +104,13 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const tribofit::InputError& error) {
-    complain(error.what());
+    print_error(error.what());
     return kBadInput;
   } catch (const std::bad_alloc&) {
-    complain("not enough memory for this trace; run it on a larger machine or give a part of it");
+    print_error("not enough memory for this trace; run it on a larger machine or give a part of it");
     return kFailed;
   } catch (const std::exception& error) {
-    complain(error.what());
+    print_error(error.what());
     return kFailed;
   }
 }

@@ -36,12 +36,12 @@ int merge(const Settings& s, const std::string& folder, const ReportOptions& sho
   try {
     all = summarise(s, results, shown);
   } catch (const InputError& error) {  // it cannot be written
-    complain(error.what());
+    print_error(error.what());
     return kFailed;
   }
   const CampaignSummary& summary = all.summary;
-  for (const std::string& problem : results.problems()) complain(problem);
-  for (const std::string& complaint : summary.complaints) complain(complaint);
+  for (const std::string& problem : results.problems()) print_error(problem);
+  for (const std::string& complaint : summary.complaints) print_error(complaint);
   if (!s.quiet) {
     print(summary.table);
     print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,

@@ -7,7 +7,7 @@
 
 #include "inputs.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/own_files.hpp"
+#include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/report/page.hpp"
 #include "tribofit/report/pictures.hpp"
 
@@ -205,7 +205,7 @@ void refuse_overwriting(const Settings& s, const std::vector<std::string>& input
     if (!s.json.empty() && same_file(s.json, input)) throw CLI::ValidationError("--json would overwrite " + input);
     if (s.csv.empty()) continue;
     const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();
-    for (const OwnFile& file : own_files) {
+    for (const OwnFile& file : output_tables) {
       if (same_file((s.csv / std::filesystem::path(file.name)).string(), input) ||
           same_file((own_folder / file.name).string(), input)) {
         throw CLI::ValidationError("--csv would overwrite " + input + " with its own " + std::string(file.name));

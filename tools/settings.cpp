@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string_view>
 
-#include "chosen.hpp"
 #include "console.hpp"
 #include "options.hpp"
+#include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"

@@ -26,10 +26,10 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
@@ -291,8 +291,8 @@ void run(const Request& request) {
   const std::string truth_path = json_path(request.out);
   const Plan plan = make_plan(request);
   WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
-  const auto [motion, recording, floor] =
-      hide(plan.machine.model, plan.machine.parameters, plan.machine.rig, plan.drive, plan.options, plan.sensors);
+  const auto [motion, recording, floor] = simulate_recording(plan.machine.model, plan.machine.parameters,
+                                                             plan.machine.rig, plan.drive, plan.options, plan.sensors);
   write_trace(trace_file, recording.trace, plan);
   truth_file.write(truth(request, plan, motion, floor).dump(1) + "\n");
   trace_file.finish();

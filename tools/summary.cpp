@@ -103,7 +103,7 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
 int complain_of(const Summarised& all) {
   int status = 0;
   for (const Summarised::Refusal& refusal : all.refused) {
-    complain(refusal.why);
+    print_error(refusal.why);
     status = std::max(status, refusal.status);
   }
   return status;

@@ -47,7 +47,7 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   drawn.commit();
   if (!s.quiet && s.json != "-") print(render_twin(result, terminal_options(s, arguments_for(input, arguments))));
   if (result.twin.reason.empty()) return kDone;
-  complain(trace.path + ": there is no twin: " + result.twin.reason);
+  print_error(trace.path + ": there is no twin: " + result.twin.reason);
   return kFailed;
 }
 

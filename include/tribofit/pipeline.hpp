@@ -50,7 +50,7 @@ struct Identification {
   Motion motion;
   Segmentation segmentation;
   SpectralPeak spectral_peak;      ///< of v_r
-  Measure load_coupling = {};      ///< found in the load channel by a diagnosis and taken out of it; 0: none
+  Estimate load_coupling = {};     ///< found in the load channel by a diagnosis and taken out of it; 0: none
   std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the published ones
   std::size_t best = 0;            ///< the fit that predicts held-out cycles best
   std::vector<std::string> notes;  ///< how the input was read

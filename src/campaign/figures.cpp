@@ -53,7 +53,7 @@ ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& ob
   const double bins_per_velocity = static_cast<double>(kBins) / fastest;
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
   std::vector<double> model;  // of one slip at a time: a channel of the whole record would cost its pages
-  for (const Observations::Range& range : observations.slips) {
+  for (const Observations::SlipObservation& range : observations.slips) {
     const Slip slip = record.slip(range);
     model.resize(slip.size());
     evaluate<double>(fit.model, p.data(), slip, slip.velocity, model);
@@ -163,7 +163,7 @@ void add_spectrum(const Identification& result, RunFigures& figures) {
 }
 
 /// At most `count` samples of a stretch, evenly, with its first and last.
-void add_samples(const Motion& motion, Span span, std::size_t count, RunFigures& figures) {
+void add_samples(const Motion& motion, SampleRange span, std::size_t count, RunFigures& figures) {
   const std::size_t size = span.size();
   count = std::min(count, size);
   for (std::size_t k = 0; k < count; ++k) {

@@ -16,7 +16,7 @@
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/own_files.hpp"
+#include "tribofit/ingest/output_tables.hpp"
 
 namespace tribofit {
 namespace {

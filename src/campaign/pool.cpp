@@ -7,7 +7,7 @@
 
 #include "meta_regression.hpp"
 #include "order.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 namespace {
@@ -105,7 +105,7 @@ PooledValue pool(std::string name, std::string unit, std::span<const double> val
   out.runs = known.size();
   if (known.empty()) {
     out.value = out.std_error = out.lower95 = out.upper95 = out.statistical = kNaN;
-    out.between = out.mean = out.mean_error = kNaN;
+    out.between = out.mean = out.standard_error_of_mean = kNaN;
     return out;
   }
   const auto n = static_cast<Eigen::Index>(known.size());
@@ -127,7 +127,7 @@ PooledValue pool(std::string name, std::string unit, std::span<const double> val
   out.upper95 = out.value + half;
   out.mean = y.mean();
   const double squares = (y.array() - out.mean).square().sum();
-  out.mean_error = n > 1 ? std::sqrt(squares / static_cast<double>(n * (n - 1))) : kNaN;
+  out.standard_error_of_mean = n > 1 ? std::sqrt(squares / static_cast<double>(n * (n - 1))) : kNaN;
   return out;
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 namespace {

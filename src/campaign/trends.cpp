@@ -12,7 +12,7 @@
 
 #include "condition_columns.hpp"
 #include "meta_regression.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 namespace {

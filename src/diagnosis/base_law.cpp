@@ -7,7 +7,7 @@ namespace tribofit::diagnosis {
 namespace {
 
 /// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
-bool bends(const Bench& bench, const Trial& trial) {
+bool bends(const DiagnosisContext& bench, const Trial& trial) {
   constexpr double kStraight = 0.5;  // of the rise still to come at the fastest slip
   const bool falls = trial.p[0] > trial.p[1];
   return falls || stribeck_shape(trial.model.law(), trial.p[2] * bench.fine.observations.fastest) < kStraight;
@@ -24,7 +24,7 @@ std::vector<BaseLaw> base_laws(std::span<const Record> records, std::vector<Base
   return given;
 }
 
-std::size_t told_ladder(const Bench& bench, const std::vector<Ladder>& ladders) {
+std::size_t told_ladder(const DiagnosisContext& bench, const std::vector<Ladder>& ladders) {
   const auto coulomb =
       std::find_if(ladders.begin(), ladders.end(), [](const Ladder& l) { return l.law == BaseLaw::coulomb; });
   if (coulomb == ladders.end() || !coulomb->top().usable) return better_ladder(bench, ladders);

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "fit/starts.hpp"
-#include "lines.hpp"
+#include "spectral_lines.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -107,7 +107,7 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
 
 double scale_of(const Parameter& parameter, const Observations& observations) {
   return parameter.si *
-         (parameter.of_friction || parameter.of_force ? std::max(1.0, observations.largest_friction) : 1.0);
+         (parameter.friction_effects || parameter.of_force ? std::max(1.0, observations.largest_friction) : 1.0);
 }
 
 /// Values over the bounds from which a search begins, in SI.
@@ -183,11 +183,11 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
   const Excitation seen = excitation_of(records, observations);
   std::vector<Candidate> out;
   for (const Effect& effect : effect_catalogue()) {
-    if (is_of_motion(effect)) continue;
+    if (is_kinematic(effect)) continue;
     EffectInfo info = describe(effect);
     std::string why = obstacle(info, observations, seen);
     const Motion& motion = *records[0].motion;
-    const auto possible = possible_beside_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
+    const auto possible = allowed_beside_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
       EffectInfo other_info = describe(other);

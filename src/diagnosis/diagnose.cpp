@@ -6,7 +6,7 @@
 
 #include "base_law.hpp"
 #include "findings.hpp"
-#include "lines.hpp"
+#include "spectral_lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/parallel.hpp"
 
@@ -19,9 +19,9 @@ using namespace diagnosis;
 constexpr std::size_t kFewestCycles = 12;
 
 /// Says what is being done, one voice at a time.
-class Voice {
+class ProgressReporter {
  public:
-  explicit Voice(const DiagnosisOptions& options) : progress_(options.progress) {}
+  explicit ProgressReporter(const DiagnosisOptions& options) : progress_(options.progress) {}
   void say(std::string_view what, double part) {
     const std::lock_guard lock(mutex_);
     if (progress_) progress_(what, part);
@@ -62,7 +62,7 @@ std::size_t count_cycles(std::span<const Record> records) {
     const bool sticks = record.segmentation->kind == MotionKind::stick_slip;
     const auto& all = record.segmentation->cycles;
     const auto taken = std::count_if(all.begin(), all.end(),
-                                     [&](const Cycle& cycle) { return record.segmentation->takes_part(cycle); });
+                                     [&](const Cycle& cycle) { return record.segmentation->is_selected(cycle); });
     cycles += sticks ? static_cast<std::size_t>(taken) : kFewestCycles;
   }
   return cycles;
@@ -131,7 +131,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
                    : "Record until the block has broken away a dozen times.";
     return out;
   }
-  Voice voice(options);
+  ProgressReporter voice(options);
   voice.say("reading slips", 0.02);
   const Channels channels = all_channels(records);
   constexpr std::size_t kFineValues = 20000, kCoarseValues = 5000;
@@ -140,7 +140,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
       observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400), leaves.noise);
   const Observations coarse =
       observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40), leaves.noise);
-  Bench bench(records, fine, coarse, leaves.noise, leaves.scatter);
+  DiagnosisContext bench(records, fine, coarse, leaves.noise, leaves.scatter);
   bench.threads = options.threads;
   bench.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "tribofit/friction/effect_pairs.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -24,15 +24,15 @@ bool contains(const std::vector<std::size_t>& list, std::size_t value) {
 
 /// The last time a candidate was judged, with the step beside which it was.
 struct LastJudged {
-  const Judged* judged = nullptr;
+  const CandidateResult* judged = nullptr;
   std::size_t step = 0;  ///< it stood beside this step of the ladder
   bool ever_passed = false;
 };
 
 LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
   LastJudged out;
-  const auto look = [&](const std::vector<Judged>& list, std::size_t step) {
-    for (const Judged& judged : list) {
+  const auto look = [&](const std::vector<CandidateResult>& list, std::size_t step) {
+    for (const CandidateResult& judged : list) {
       if (judged.candidate != candidate || !judged.trial.usable) continue;
       out.judged = &judged;
       out.step = step;
@@ -44,7 +44,7 @@ LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
   return out;
 }
 
-std::string why_not(const Judged& judged, const Candidate& candidate) {
+std::string why_not(const CandidateResult& judged, const Candidate& candidate) {
   const double value = judged.trial.p[judged.trial.model.offset_of(candidate.info.key)];
   if (candidate.possible && !candidate.possible->holds(value)) {
     return "it would help only by more than the instruments file leaves room for";
@@ -95,7 +95,7 @@ std::size_t form_of(const Ladder& ladder, const std::vector<Candidate>& all, std
 /// Standard error of a held-out RMSE from the squares of each cycle; samples: behind their mean.
 double std_error_of_rmse(std::span<const double> squares, double samples, double rmse) {
   if (squares.size() < 3 || !(rmse > 0)) return kNaN;
-  return mean_error(squares).std_error * static_cast<double>(squares.size()) / samples / (2 * rmse);
+  return standard_error_of_mean(squares).std_error * static_cast<double>(squares.size()) / samples / (2 * rmse);
 }
 
 /// The user has not thought of it already.
@@ -108,8 +108,8 @@ bool is_new(const FrictionModel& model, const Formula& formula) {
 
 }  // namespace
 
-std::vector<EffectFinding> findings_of(const Bench& bench, const Ladder& ladder, const std::vector<Candidate>& all,
-                                       const std::vector<Fit>& fits, double floor) {
+std::vector<EffectFinding> findings_of(const DiagnosisContext& bench, const Ladder& ladder,
+                                       const std::vector<Candidate>& all, const std::vector<Fit>& fits, double floor) {
   std::vector<EffectFinding> out;
   const double base = fits.front().error.held_out_rmse;
   const double above = std::max(1e-300, base * base - floor * floor);
@@ -198,7 +198,7 @@ void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& 
   double p_value = 1;
   const auto creeping = std::find_if(ladder.steps.begin(), ladder.steps.end(),
                                      [](const LadderStep& step) { return step.trial.stick.rows > 0; });
-  for (const Judged& judged : creeping->judged) {
+  for (const CandidateResult& judged : creeping->judged) {
     if (creeping->added == judged.candidate) p_value = judged.p_value;
   }
   const Share share = {"stick", std::min(1.0, gain / above), p_value};
@@ -254,7 +254,7 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
   return text;
 }
 
-std::string closed_form(const Bench& bench, const Trial& top, const Probe& probe) {
+std::string closed_form(const DiagnosisContext& bench, const Trial& top, const Probe& probe) {
   std::vector<std::string> forms;
   // A coefficient is of the order of one, a force of the order of what was recorded; probes may overshoot either.
   double largest = std::max(1.0, bench.fine.observations.largest_friction);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lines.hpp"
+#include "spectral_lines.hpp"
 #include "tribofit/fit/parallel.hpp"
 
 namespace tribofit::diagnosis {
@@ -26,7 +26,7 @@ bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
 
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
 /// the effect says, where the data draw it there. noise: variance of a residual, correlation counted.
-bool is_plausible(const Bench& bench, const Trial& trial, const Candidate& candidate, double noise) {
+bool is_plausible(const DiagnosisContext& bench, const Trial& trial, const Candidate& candidate, double noise) {
   const EffectInfo& info = candidate.info;
   const std::size_t offset = trial.model.offset_of(info.key);
   if (candidate.possible && !candidate.possible->holds(trial.p[offset])) return false;
@@ -64,7 +64,7 @@ Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, 
   return out;
 }
 
-/// Degrees of freedom of what correlates between n cycles: see mean_error().
+/// Degrees of freedom of what correlates between n cycles: see standard_error_of_mean().
 double few_frequencies(double n) {
   return std::max(3.0, 0.4 * std::pow(n, 2.0 / 3));
 }
@@ -88,10 +88,10 @@ bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial
 
 }  // namespace
 
-Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const Candidate& candidate,
-               double tests, const Limits& limits) {
+CandidateResult compare(const DiagnosisContext& bench, const Level& level, const Trial& poorer, Trial richer,
+                        const Candidate& candidate, double tests, const Limits& limits) {
   const EffectInfo& info = candidate.info;
-  Judged out;
+  CandidateResult out;
   out.trial = std::move(richer);
   const Trial& trial = out.trial;
   if (!trial.usable) return out;
@@ -127,18 +127,19 @@ Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Tria
 
 namespace {
 
-bool told_apart(const Bench& bench, const Judged& better, const Judged& worse) {
+bool told_apart(const DiagnosisContext& bench, const CandidateResult& better, const CandidateResult& worse) {
   const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
   return difference > kToldApart * noise_of(bench.fine, better.trial) * better.design_effect &&
          difference > kToldApartSize * bench.noise_squares();
 }
 
 /// Of the forms of one effect one has the name: the plain one, unless the data tell another from it.
-void keep_one_form(const Bench& bench, const std::vector<Candidate>& candidates, std::vector<Judged>& judged) {
-  for (Judged& form : judged) {
+void keep_one_form(const DiagnosisContext& bench, const std::vector<Candidate>& candidates,
+                   std::vector<CandidateResult>& judged) {
+  for (CandidateResult& form : judged) {
     const EffectInfo& info = candidates[form.candidate].info;
     if (info.option.empty() || !form.passes) continue;
-    const auto plain = std::find_if(judged.begin(), judged.end(), [&](const Judged& other) {
+    const auto plain = std::find_if(judged.begin(), judged.end(), [&](const CandidateResult& other) {
       const EffectInfo& known = candidates[other.candidate].info;
       return known.key == info.key && known.option.empty();
     });
@@ -149,7 +150,8 @@ void keep_one_form(const Bench& bench, const std::vector<Candidate>& candidates,
 
 }  // namespace
 
-Choice choose(const Bench& bench, std::vector<Judged>& judged, const std::vector<Candidate>& candidates) {
+Choice choose(const DiagnosisContext& bench, std::vector<CandidateResult>& judged,
+              const std::vector<Candidate>& candidates) {
   keep_one_form(bench, candidates, judged);
   Choice choice;
   std::optional<std::size_t> best;
@@ -184,15 +186,15 @@ namespace {
 
 /// Every testable candidate beside the top of a ladder, judged first at low resolution and then, those that may lead
 /// or be in the leader's group, at full resolution.
-class Round {
+class CandidateScreening {
  public:
-  Round(const Bench& bench, const Trial& top, const Trial& coarse_top, const std::vector<Candidate>& candidates,
-        const Limits& limits);
+  CandidateScreening(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
+                     const std::vector<Candidate>& candidates, const Limits& limits);
 
   void judge_coarsely();
   /// Judges anew at full resolution what promises enough beside the best; false where nothing more does.
   bool judge_promising();
-  std::vector<Judged> result() &&;
+  std::vector<CandidateResult> result() &&;
 
  private:
   const EffectInfo& info(std::size_t t) const { return candidates_[out_[t].candidate].info; }
@@ -201,7 +203,7 @@ class Round {
   void search(std::size_t t, const Level& level, const Trial& beside);
   bool is_hopeless(std::size_t t, double best) const;
 
-  const Bench& bench_;
+  const DiagnosisContext& bench_;
   const Trial &top_, &coarse_top_;
   const std::vector<Candidate>& candidates_;
   const Limits& limits_;
@@ -209,14 +211,14 @@ class Round {
   static constexpr double kLeastPart = 0.02;
   double least_ = 0, least_plain_ = 0;
   double next_ = 0;  ///< what may be added before a line
-  std::vector<Judged> out_;
-  std::vector<Opening> openings_;
+  std::vector<CandidateResult> out_;
+  std::vector<SearchStart> openings_;
   std::vector<double> at_low_;  ///< held-out squares at low resolution
   std::vector<bool> judged_finely_;
 };
 
-Round::Round(const Bench& bench, const Trial& top, const Trial& coarse_top, const std::vector<Candidate>& candidates,
-             const Limits& limits)
+CandidateScreening::CandidateScreening(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& limits)
     : bench_(bench), top_(top), coarse_top_(coarse_top), candidates_(candidates), limits_(limits) {
   const auto enough = [&](double floor, double squares) {
     return std::max(0.5 * limits.least_size * floor, kLeastPart * (squares - floor));
@@ -234,8 +236,8 @@ Round::Round(const Bench& bench, const Trial& top, const Trial& coarse_top, cons
   judged_finely_.assign(out_.size(), false);
 }
 
-void Round::judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
-                  const std::vector<double>& start) {
+void CandidateScreening::judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
+                               const std::vector<double>& start) {
   const std::size_t candidate = out_[t].candidate;
   const double tests = openings_[t].places * static_cast<double>(candidates_.size());
   out_[t] =
@@ -243,12 +245,12 @@ void Round::judge(std::size_t t, const Level& level, const Trial& beside, const 
   out_[t].candidate = candidate;
 }
 
-void Round::search(std::size_t t, const Level& level, const Trial& beside) {
+void CandidateScreening::search(std::size_t t, const Level& level, const Trial& beside) {
   const FrictionModel model = with_effect(top_.model, candidates_[out_[t].candidate].effect);
   judge(t, level, beside, model, nearest(level, model, beside.whitening, openings_[t].starts));
 }
 
-void Round::judge_coarsely() {
+void CandidateScreening::judge_coarsely() {
   const std::vector<double> residual = residual_of(bench_, top_);
   run_tasks(out_.size(), bench_.threads, [&](std::size_t t) {
     const bool narrow = is_narrow(info(t));
@@ -258,14 +260,14 @@ void Round::judge_coarsely() {
     openings_[t] = opening_of(bench_, level, beside, candidate, residual, least_, least_plain_);
     if (!narrow && !openings_[t].starts.empty()) search(t, level, beside);
   });
-  for (const Judged& judged : out_) {
+  for (const CandidateResult& judged : out_) {
     at_low_.push_back(judged.trial.held_out_squares);
     if (judged.passes) next_ = std::max(next_, judged.fall);
   }
 }
 
-bool Round::is_hopeless(std::size_t t, double best) const {
-  const Judged& judged = out_[t];
+bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
+  const CandidateResult& judged = out_[t];
   if (is_narrow(info(t))) {
     // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
     constexpr double kPutOff = 0.3;
@@ -278,7 +280,7 @@ bool Round::is_hopeless(std::size_t t, double best) const {
   return !judged.by_level && (far || judged.fall < 0 || small);
 }
 
-bool Round::judge_promising() {
+bool CandidateScreening::judge_promising() {
   double best = coarse_top_.held_out_squares;
   for (std::size_t t = 0; t < out_.size(); ++t) {
     if (out_[t].trial.usable && out_[t].plausible && !is_narrow(info(t))) best = std::min(best, at_low_[t]);
@@ -299,16 +301,16 @@ bool Round::judge_promising() {
   return !promising.empty();
 }
 
-std::vector<Judged> Round::result() && {
-  for (Judged& judged : out_) judged.passes = judged.passes && !judged.hopeless;
+std::vector<CandidateResult> CandidateScreening::result() && {
+  for (CandidateResult& judged : out_) judged.passes = judged.passes && !judged.hopeless;
   return std::move(out_);
 }
 
 }  // namespace
 
-std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const Trial& coarse_top,
-                              const std::vector<Candidate>& candidates, const Limits& limits) {
-  Round round(bench, top, coarse_top, candidates, limits);
+std::vector<CandidateResult> judge_all(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& limits) {
+  CandidateScreening round(bench, top, coarse_top, candidates, limits);
   round.judge_coarsely();
   // Which turn out implausible at full resolution stand before the others no longer, and those get their turn.
   while (round.judge_promising()) {

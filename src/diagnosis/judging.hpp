@@ -10,7 +10,7 @@
 namespace tribofit::diagnosis {
 
 /// A candidate judged beside the model so far.
-struct Judged {
+struct CandidateResult {
   std::size_t candidate = 0;
   Trial trial;
   double fall = 0;  ///< of the whitened squares on held-out cycles
@@ -47,14 +47,15 @@ struct Choice {
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect. tests: the p-value is corrected for
 /// as many.
-Judged compare(const Bench& bench, const Level& level, const Trial& poorer, Trial richer, const Candidate& candidate,
-               double tests, const Limits& limits);
+CandidateResult compare(const DiagnosisContext& bench, const Level& level, const Trial& poorer, Trial richer,
+                        const Candidate& candidate, double tests, const Limits& limits);
 
 /// Every testable candidate beside the top of a ladder (top, and the same at low resolution).
-std::vector<Judged> judge_all(const Bench& bench, const Trial& top, const Trial& coarse_top,
-                              const std::vector<Candidate>& candidates, const Limits& limits);
+std::vector<CandidateResult> judge_all(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& limits);
 
 /// Who leads, and who cannot be told from the leader. Of the forms of one effect one passes afterwards.
-Choice choose(const Bench& bench, std::vector<Judged>& judged, const std::vector<Candidate>& candidates);
+Choice choose(const DiagnosisContext& bench, std::vector<CandidateResult>& judged,
+              const std::vector<Candidate>& candidates);
 
 }  // namespace tribofit::diagnosis

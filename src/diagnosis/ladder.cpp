@@ -9,13 +9,13 @@ namespace tribofit::diagnosis {
 
 namespace {
 
-std::vector<Judged> judge_beside(const Bench& bench, const LadderStep& step, const std::vector<Candidate>& candidates,
-                                 const Limits& limits) {
+std::vector<CandidateResult> judge_beside(const DiagnosisContext& bench, const LadderStep& step,
+                                          const std::vector<Candidate>& candidates, const Limits& limits) {
   return judge_all(bench, step.trial, step.coarse, candidates, limits);
 }
 
 /// Fills in what is asked of every step.
-void look_beside(const Bench& bench, LadderStep& step) {
+void look_beside(const DiagnosisContext& bench, LadderStep& step) {
   if (!step.trial.usable) return;
   step.coarse = try_model(bench, bench.coarse, step.trial.model, step.trial.p);
   step.probes = probe_all(bench, step.coarse, step.trial, residual_of(bench, step.trial));
@@ -28,7 +28,7 @@ std::size_t index_of(const FrictionModel& model, const std::string& key) {
 
 /// Puts the steps of a ladder in order anew, from the top down: what was found beside an effect that is gone need not
 /// have come first. top: the trial with the effects of all its steps.
-void put_in_order(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, Trial top) {
+void put_in_order(const DiagnosisContext& bench, Ladder& ladder, const std::vector<Candidate>& candidates, Trial top) {
   const auto key = [&](const LadderStep& step) { return candidates[*step.added].info.key; };
   for (std::size_t last = ladder.steps.size() - 1; last > 0; --last) {
     std::size_t least = last;
@@ -72,12 +72,13 @@ void withdraw(Ladder& ladder) {
 }
 
 /// Drops effects that the ones added after them made redundant.
-void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+void prune(const DiagnosisContext& bench, Ladder& ladder, const std::vector<Candidate>& candidates,
+           const Limits& limits) {
   for (std::size_t s = 1; s + 1 < ladder.steps.size();) {
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
     Trial without = try_without(bench, bench.fine, full, index_of(full.model, candidate.info.key));
-    const Judged needed = compare(bench, bench.fine, without, full, candidate, 1, limits);
+    const CandidateResult needed = compare(bench, bench.fine, without, full, candidate, 1, limits);
     if (!without.usable || needed.passes) {
       ++s;
       continue;
@@ -89,7 +90,8 @@ void prune(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& can
 }
 
 /// The model of `without` with the effect of a judged candidate, at the values found when it was judged.
-Trial try_instead(const Bench& bench, const Trial& without, const Candidate& candidate, const Trial& judged) {
+Trial try_instead(const DiagnosisContext& bench, const Trial& without, const Candidate& candidate,
+                  const Trial& judged) {
   FrictionModel model = with_effect(without.model, candidate.effect);
   const std::size_t offset = model.offset_of(candidate.info.key), added = candidate.info.parameters.size();
   const std::size_t from = judged.model.offset_of(candidate.info.key);
@@ -103,16 +105,17 @@ Trial try_instead(const Bench& bench, const Trial& without, const Candidate& can
 /// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with
 /// those that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
 /// replaced.
-bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+bool reconsider(const DiagnosisContext& bench, Ladder& ladder, const std::vector<Candidate>& candidates,
+                const Limits& limits) {
   constexpr double kNearly = 0.5;
   for (std::size_t s = 1; s < ladder.steps.size() && ladder.steps.size() > 2; ++s) {
     LadderStep& step = ladder.steps[s];
     const Trial& full = ladder.top();
     const std::vector<std::string> present = full.model.effect_keys();
     const auto chosen = std::find_if(step.judged.begin(), step.judged.end(),
-                                     [&](const Judged& j) { return j.candidate == *step.added; });
-    std::vector<const Judged*> rivals;
-    for (const Judged& judged : step.judged) {
+                                     [&](const CandidateResult& j) { return j.candidate == *step.added; });
+    std::vector<const CandidateResult*> rivals;
+    for (const CandidateResult& judged : step.judged) {
       const std::string& key = candidates[judged.candidate].info.key;
       const bool is_present = std::find(present.begin(), present.end(), key) != present.end();
       const bool near = chosen == step.judged.end() || judged.fall > kNearly * chosen->fall;
@@ -122,9 +125,10 @@ bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>
     const Candidate& now = candidates[*step.added];
     const Trial without = try_without(bench, bench.fine, full, index_of(full.model, now.info.key));
     if (!without.usable) continue;
-    std::erase_if(rivals, [&](const Judged* r) { return !without.model.acts_with(candidates[r->candidate].effect); });
+    std::erase_if(rivals,
+                  [&](const CandidateResult* r) { return !without.model.acts_with(candidates[r->candidate].effect); });
     if (rivals.empty()) continue;
-    std::vector<Judged> judged(rivals.size() + 1);
+    std::vector<CandidateResult> judged(rivals.size() + 1);
     judged[0] = compare(bench, bench.fine, without, full, now, 1, limits);
     judged[0].candidate = *step.added;
     run_tasks(rivals.size(), bench.threads, [&](std::size_t r) {
@@ -146,8 +150,8 @@ bool reconsider(const Bench& bench, Ladder& ladder, const std::vector<Candidate>
 }
 
 /// Adds the effect that leads, if one passes.
-void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits,
-            int most_effects) {
+void extend(const DiagnosisContext& bench, Ladder& ladder, const std::vector<Candidate>& candidates,
+            const Limits& limits, int most_effects) {
   ladder.finished = true;
   ladder.last = judge_beside(bench, ladder.steps.back(), candidates, limits);
   if (static_cast<int>(ladder.steps.size()) > most_effects) return;
@@ -155,7 +159,7 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   if (!choice.leader) return;
   // Two effects of the same variable may each explain half of what a free function finds there, but not much less.
   constexpr double kHopeless = 0.35;
-  const Judged& leader = ladder.last[*choice.leader];
+  const CandidateResult& leader = ladder.last[*choice.leader];
   if (!leader.by_level && leader.fall < kHopeless * largest_fall(ladder.steps.back())) {
     ladder.withdrawn.push_back(leader.candidate);
     return;
@@ -172,7 +176,8 @@ void extend(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
 }
 
 /// What is done once, when nothing more passes.
-void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& candidates, const Limits& limits) {
+void finish(const DiagnosisContext& bench, Ladder& ladder, const std::vector<Candidate>& candidates,
+            const Limits& limits) {
   const std::size_t before = ladder.steps.size();
   prune(bench, ladder, candidates, limits);
   bool replaced = false;
@@ -194,7 +199,7 @@ void finish(const Bench& bench, Ladder& ladder, const std::vector<Candidate>& ca
   }
 }
 
-Ladder start_ladder(const Bench& bench, BaseLaw law, const std::vector<Candidate>& from_the_start) {
+Ladder start_ladder(const DiagnosisContext& bench, BaseLaw law, const std::vector<Candidate>& from_the_start) {
   Ladder ladder;
   ladder.law = law;
   LadderStep base;
@@ -207,7 +212,7 @@ Ladder start_ladder(const Bench& bench, BaseLaw law, const std::vector<Candidate
 }
 
 /// The second predicts held-out cycles better, or as well with fewer parameters.
-bool is_better(const Bench& bench, const Trial& first, const Trial& second) {
+bool is_better(const DiagnosisContext& bench, const Trial& first, const Trial& second) {
   if (!second.usable || !first.usable) return second.usable;
   const double difference = first.held_out_squares - second.held_out_squares;
   const double noise = std::min(noise_of(bench.fine, first), noise_of(bench.fine, second));
@@ -219,7 +224,7 @@ bool is_better(const Bench& bench, const Trial& first, const Trial& second) {
 }
 
 /// A finished ladder leaves nothing, is no longer and does as well.
-bool is_beaten(const Bench& bench, const Ladder& ladder, const std::vector<Ladder>& all) {
+bool is_beaten(const DiagnosisContext& bench, const Ladder& ladder, const std::vector<Ladder>& all) {
   return std::any_of(all.begin(), all.end(), [&](const Ladder& other) {
     return other.finished && other.top().usable && largest_fall(other.steps.back()) == 0 &&
            ladder.steps.size() >= other.steps.size() && !is_better(bench, other.top(), ladder.top());
@@ -228,7 +233,7 @@ bool is_beaten(const Bench& bench, const Ladder& ladder, const std::vector<Ladde
 
 }  // namespace
 
-std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& bench, const std::vector<BaseLaw>& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& limits, int most_effects,
                           const std::function<void(std::string_view, double)>& progress) {
@@ -251,7 +256,7 @@ std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
   return ladders;
 }
 
-std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders) {
+std::size_t better_ladder(const DiagnosisContext& bench, const std::vector<Ladder>& ladders) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < ladders.size(); ++k) {
     if (is_better(bench, ladders[best].top(), ladders[k].top())) best = k;

@@ -20,7 +20,7 @@ struct LadderStep {
   Trial coarse;                         ///< the same at low resolution
   std::vector<Probe> probes;            ///< what free functions find beside it
   std::vector<std::size_t> equivalent;  ///< candidates that do as well
-  std::vector<Judged> judged;           ///< every candidate tried beside the step before
+  std::vector<CandidateResult> judged;  ///< every candidate tried beside the step before
 };
 
 /// The rungs from one base law up.
@@ -28,7 +28,7 @@ struct Ladder {
   BaseLaw law = BaseLaw::exponential;
   std::vector<LadderStep> steps;       ///< the base law first
   std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
-  std::vector<Judged> last;            ///< candidates judged beside the last rung: none of them passes
+  std::vector<CandidateResult> last;   ///< candidates judged beside the last rung: none of them passes
   bool finished = false;               ///< nothing more passes
   const Trial& top() const { return steps.back().trial; }
 };
@@ -38,12 +38,12 @@ struct Ladder {
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
-std::vector<Ladder> climb(const Bench& bench, const std::vector<BaseLaw>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& bench, const std::vector<BaseLaw>& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& limits, int most_effects,
                           const std::function<void(std::string_view, double)>& progress = {});
 
 /// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.
-std::size_t better_ladder(const Bench& bench, const std::vector<Ladder>& ladders);
+std::size_t better_ladder(const DiagnosisContext& bench, const std::vector<Ladder>& ladders);
 
 }  // namespace tribofit::diagnosis

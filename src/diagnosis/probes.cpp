@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "lines.hpp"
+#include "spectral_lines.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit::diagnosis {
@@ -49,7 +49,7 @@ std::vector<double> even_knots(double first, double last, int count) {
   return knots;
 }
 
-double middle_time(const Observations& observations, const Observations::Range& slip) {
+double middle_time(const Observations& observations, const Observations::SlipObservation& slip) {
   return 0.5 * (observations.time[slip.begin] + observations.time[slip.end - 1]);
 }
 
@@ -57,14 +57,14 @@ double middle_time(const Observations& observations, const Observations::Range& 
 using Columns = ModelResiduals::FurtherColumns;
 
 /// A design in preparation: what all builders need of the coarse trial.
-struct Ground {
+struct ProbeInputs {
   const Observations& observations;
   std::vector<std::vector<double>> mu;  ///< |model| at every value of each slip
   std::vector<double> level;            ///< |model| at break-away
 };
 
-Ground ground_of(const Observations& observations, const Trial& trial) {
-  Ground out{observations, {}, {}};
+ProbeInputs ground_of(const Observations& observations, const Trial& trial) {
+  ProbeInputs out{observations, {}, {}};
   for (const auto& range : observations.slips) {
     const Slip slip = observations.slip(range);
     std::vector<double> mu(slip.size());
@@ -91,8 +91,8 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
 }
 
 /// Judges a probe and returns its coefficients.
-Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial& trial, const Columns& columns,
-                            double places, Probe& probe) {
+Eigen::VectorXd judge_probe(const DiagnosisContext& bench, const Level& level, const Trial& trial,
+                            const Columns& columns, double places, Probe& probe) {
   const Observations& observations = level.observations;
   const std::vector<std::size_t> all = all_slips(observations);
   ModelResiduals residuals(trial.model, observations, all);
@@ -123,7 +123,7 @@ Eigen::VectorXd judge_probe(const Bench& bench, const Level& level, const Trial&
   return step.tail(static_cast<Eigen::Index>(width - own));
 }
 
-Probe over_velocity(const Bench& bench, const Trial& trial) {
+Probe over_velocity(const DiagnosisContext& bench, const Trial& trial) {
   const Observations& o = bench.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 12));
   Probe probe;
@@ -139,7 +139,7 @@ Probe over_velocity(const Bench& bench, const Trial& trial) {
   return probe;
 }
 
-Probe over_branch(const Bench& bench, const Trial& trial) {
+Probe over_branch(const DiagnosisContext& bench, const Trial& trial) {
   const Observations& o = bench.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 6));
   Probe probe;
@@ -165,7 +165,7 @@ Probe over_branch(const Bench& bench, const Trial& trial) {
 
 /// Columns that scale |mu| of a whole slip by functions of the slip.
 template <class Functions>
-Columns scaling(const Ground& ground, Eigen::Index count, Functions functions) {
+Columns scaling(const ProbeInputs& ground, Eigen::Index count, Functions functions) {
   return columns_of(ground.observations, count, [&ground, functions](std::size_t k, std::size_t i) {
     const bool at_rest = i == ground.mu[k].size();
     return Eigen::RowVectorXd((at_rest ? ground.level[k] : ground.mu[k][i]) * functions(k, i));
@@ -173,7 +173,7 @@ Columns scaling(const Ground& ground, Eigen::Index count, Functions functions) {
 }
 
 /// Period of the strongest swing of the levels of the slips over time, and the number of periods looked at.
-std::pair<double, double> strongest_swing(const Ground& ground) {
+std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
   const Observations& o = ground.observations;
   std::vector<double> times, levels, weights;
   double mean = 0, total = 0;
@@ -212,7 +212,7 @@ std::pair<double, double> strongest_swing(const Ground& ground) {
   return {frequency > 0 ? 1 / frequency : 0, highest * span};
 }
 
-Probe over_time(const Bench& bench, const Trial& trial, const Ground& ground) {
+Probe over_time(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
   const Observations& o = bench.coarse.observations;
   Probe probe;
   probe.variable = "time";
@@ -242,7 +242,7 @@ Probe over_time(const Bench& bench, const Trial& trial, const Ground& ground) {
   return probe;
 }
 
-std::optional<Probe> over_angle(const Bench& bench, const Trial& trial, const Ground& ground) {
+std::optional<Probe> over_angle(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
   const Observations& o = bench.coarse.observations;
   if (o.angle.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
@@ -264,7 +264,7 @@ std::optional<Probe> over_angle(const Bench& bench, const Trial& trial, const Gr
   return probe;
 }
 
-std::optional<Probe> over_load(const Bench& bench, const Trial& trial, const Ground& ground) {
+std::optional<Probe> over_load(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
   const Observations& o = bench.coarse.observations;
   if (o.load.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.load.begin(), o.load.end());
@@ -290,7 +290,7 @@ std::vector<double> log_stick_times(const Observations& o) {
   return out;
 }
 
-std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
+std::optional<Probe> over_stick_time(const DiagnosisContext& bench, const Trial& trial) {
   const Observations& o = bench.coarse.observations;
   const std::vector<double> given = log_stick_times(o);
   std::vector<double> sticks;
@@ -317,7 +317,8 @@ std::optional<Probe> over_stick_time(const Bench& bench, const Trial& trial) {
   return probe;
 }
 
-std::optional<Probe> over_frequency(const Bench& bench, const Trial& fine, std::span<const double> residual) {
+std::optional<Probe> over_frequency(const DiagnosisContext& bench, const Trial& fine,
+                                    std::span<const double> residual) {
   const Observations& o = bench.fine.observations;
   const SpectralLine line = strongest_line(bench.records[0], o, residual, 2, 0.4 * observation_rate(o));
   if (!(line.frequency > 0)) return std::nullopt;
@@ -340,9 +341,9 @@ std::optional<Probe> over_frequency(const Bench& bench, const Trial& fine, std::
 
 }  // namespace
 
-std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Trial& fine,
+std::vector<Probe> probe_all(const DiagnosisContext& bench, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual) {
-  const Ground ground = ground_of(bench.coarse.observations, coarse);
+  const ProbeInputs ground = ground_of(bench.coarse.observations, coarse);
   std::vector<Probe> out;
   const auto add = [&](std::optional<Probe> probe) {
     if (probe) out.push_back(std::move(*probe));

@@ -12,7 +12,7 @@ namespace tribofit::diagnosis {
 struct Probe {
   std::string variable;
   double fall = 0;     ///< of the squares on held-out cycles
-  double size = 0;     ///< see Judged::size
+  double size = 0;     ///< see CandidateResult::size
   double p_value = 1;  ///< not corrected for the number of variables
   double period = 0;   ///< of the strongest swing over time [s], or 1/frequency of the strongest line; else 0
   std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|
@@ -20,7 +20,7 @@ struct Probe {
 
 /// Every variable that these data can tell apart: velocity, branch, time, angle, stick-time, load, frequency.
 /// trial: at the coarse level of the bench.
-std::vector<Probe> probe_all(const Bench& bench, const Trial& coarse, const Trial& fine,
+std::vector<Probe> probe_all(const DiagnosisContext& bench, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual);
 
 /// The probes that no chance makes and that are large enough to matter, largest first.

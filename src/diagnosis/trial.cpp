@@ -47,7 +47,7 @@ bool is_earned(const ModelResiduals::StickSquares& stick, double noise) {
 }
 
 /// Fills what a trial says from its parameters; what is to be taken off the squares for the stick is returned.
-double judge(const Bench& bench, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
+double judge(const DiagnosisContext& bench, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
   trial.linear.rows = residuals.white_rows(trial.p.data());
   trial.usable = trial.linear.finite();
   if (!trial.usable) return 0;
@@ -126,8 +126,8 @@ void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
 Level::Level(const Observations& given)
     : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
 
-Bench::Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
-             double sensor_noise, double break_away_scatter)
+DiagnosisContext::DiagnosisContext(std::span<const Record> given, const Observations& finely,
+                                   const Observations& coarsely, double sensor_noise, double break_away_scatter)
     : records(given),
       fine(finely),
       coarse(coarsely),
@@ -135,7 +135,7 @@ Bench::Bench(std::span<const Record> given, const Observations& finely, const Ob
       noise(sensor_noise),
       scatter(break_away_scatter) {}
 
-double Bench::floor_squares(const ModelResiduals::Whitening& whitening) const {
+double DiagnosisContext::floor_squares(const ModelResiduals::Whitening& whitening) const {
   double sensitivity = 0;
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   return noise_squares() + scatter * scatter * sensitivity;
@@ -145,7 +145,8 @@ double noise_of(const Level& level, const Trial& trial) {
   return (trial.squares - trial.stick.left + trial.stick.rigid) / level.values;
 }
 
-Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start) {
+Trial try_model(const DiagnosisContext& bench, const Level& level, const FrictionModel& model,
+                std::vector<double> start) {
   if (bench.cancelled && bench.cancelled()) throw DiagnosisCancelled();
   Trial trial;
   trial.model = model;
@@ -177,14 +178,14 @@ std::vector<double> nearest(const Level& level, const FrictionModel& model, cons
   return best.p;
 }
 
-Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model) {
+Trial try_base(const DiagnosisContext& bench, const Level& level, const FrictionModel& model) {
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals plain = residuals_of(level.observations, model, {});
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
   return try_model(bench, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
 }
 
-std::vector<double> residual_of(const Bench& bench, const Trial& trial) {
+std::vector<double> residual_of(const DiagnosisContext& bench, const Trial& trial) {
   const Observations& observations = bench.fine.observations;
   std::vector<double> residual(observations.size()), mu;
   for (const auto& range : observations.slips) {
@@ -204,8 +205,8 @@ FrictionModel with_effect(const FrictionModel& model, const Effect& effect) {
   return FrictionModel(model.law(), std::move(effects));
 }
 
-Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                   std::span<const double> residual, double least, double least_plain) {
+SearchStart opening_of(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& candidate,
+                       std::span<const double> residual, double least, double least_plain) {
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
@@ -254,7 +255,7 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.score < b.score; });
-  Opening opening;
+  SearchStart opening;
   opening.places = starts.places;
   if (promises.empty()) return opening;
   opening.promised = now - promises[0].squares;
@@ -274,15 +275,15 @@ Opening opening_of(const Bench& bench, const Level& level, const Trial& base, co
   return opening;
 }
 
-Trial try_with(const Bench& bench, const Level& level, const Trial& base, const Candidate& effect) {
+Trial try_with(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& effect) {
   constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
-  const Opening opening = opening_of(bench, level, base, effect, residual_of(bench, base), kAnyFall, kAnyFall);
+  const SearchStart opening = opening_of(bench, level, base, effect, residual_of(bench, base), kAnyFall, kAnyFall);
   const FrictionModel model = with_effect(base.model, effect.effect);
   if (opening.starts.empty()) return try_base(bench, level, model);
   return try_model(bench, level, model, nearest(level, model, base.whitening, opening.starts));
 }
 
-Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect) {
+Trial try_without(const DiagnosisContext& bench, const Level& level, const Trial& full, std::size_t effect) {
   std::vector<Effect> effects;
   std::vector<double> start(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
   for (std::size_t k = 0; k < full.model.effects().size(); ++k) {

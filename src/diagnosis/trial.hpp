@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "candidates.hpp"
-#include "evidence.hpp"
+#include "held_out.hpp"
 #include "tribofit/fit/fit.hpp"
 
 namespace tribofit::diagnosis {
@@ -48,7 +48,7 @@ struct Level {
 };
 
 /// What all trials of one diagnosis share.
-struct Bench {
+struct DiagnosisContext {
   std::span<const Record> records;
   Level fine;    ///< what models are judged by
   Level coarse;  ///< fewer values a slip: where a search begins, and where the hopeless are found out
@@ -59,8 +59,8 @@ struct Bench {
   int threads = 1;                       ///< over candidates
   std::function<bool()> cancelled = {};  ///< asked before each trial, which then throws DiagnosisCancelled
 
-  Bench(std::span<const Record> given, const Observations& finely, const Observations& coarsely, double sensor_noise,
-        double break_away_scatter);
+  DiagnosisContext(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
+                   double sensor_noise, double break_away_scatter);
   /// Squares that sensor noise leaves.
   double noise_squares() const { return fine.samples * noise * noise; }
   /// Squares that noise and scatter leave together, in slips whose friction follows break-away as the whitening says.
@@ -71,20 +71,21 @@ struct Bench {
 double noise_of(const Level& level, const Trial& trial);
 
 /// Fits a model from a start, with the scatter of break-away as the model sees it there.
-Trial try_model(const Bench& bench, const Level& level, const FrictionModel& model, std::vector<double> start);
+Trial try_model(const DiagnosisContext& bench, const Level& level, const FrictionModel& model,
+                std::vector<double> start);
 
 /// The start from which a few steps lead lowest, after those steps.
 std::vector<double> nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
                             const std::vector<std::vector<double>>& starts);
 
 /// Fits a model from the data alone.
-Trial try_base(const Bench& bench, const Level& level, const FrictionModel& model);
+Trial try_base(const DiagnosisContext& bench, const Level& level, const FrictionModel& model);
 
 /// What the model of a trial leaves at each value of the fine observations [1 or N].
-std::vector<double> residual_of(const Bench& bench, const Trial& trial);
+std::vector<double> residual_of(const DiagnosisContext& bench, const Trial& trial);
 
 /// Where one effect more begins to lower what a trial leaves.
-struct Opening {
+struct SearchStart {
   std::vector<std::vector<double>> starts;  ///< of all parameters [SI], the most promising first; empty: none promises
                                             ///< a fall of the squares
   double places = 1;                        ///< independent places that were looked at
@@ -94,16 +95,16 @@ struct Opening {
 /// The best two of the starts of an effect beside the model of `base`, a trial at `level`.
 /// residual: see residual_of; least, least_plain: falls of the whitened and of the plain squares, one of which a start
 /// must promise.
-Opening opening_of(const Bench& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                   std::span<const double> residual, double least, double least_plain);
+SearchStart opening_of(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& candidate,
+                       std::span<const double> residual, double least, double least_plain);
 
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
 
 /// The trial's model with one effect more, fitted from the best of its starts.
-Trial try_with(const Bench& bench, const Level& level, const Trial& base, const Candidate& effect);
+Trial try_with(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& effect);
 
 /// The trial's model without one of its effects.
-Trial try_without(const Bench& bench, const Level& level, const Trial& full, std::size_t effect);
+Trial try_without(const DiagnosisContext& bench, const Level& level, const Trial& full, std::size_t effect);
 
 }  // namespace tribofit::diagnosis

@@ -6,7 +6,7 @@
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -22,7 +22,7 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
     difference[c] = (first.cycle_squares[c] - second.cycle_squares[c]) * static_cast<double>(n) / counts;
     comparison.difference += difference[c] / static_cast<double>(n);
   }
-  const MeanError error = mean_error(difference);
+  const MeanError error = standard_error_of_mean(difference);
   comparison.std_error = error.std_error;
   if (error.std_error > 0) {
     comparison.p_value = t_p_value(comparison.difference / error.std_error, error.degrees_of_freedom);
@@ -31,7 +31,7 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
   return comparison;
 }
 
-Fit frozen_on(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
   Fit out = fit;
   const Observations observations = observe(motion, segmentation, fit.model.needs());
   const Record one = {&motion, &segmentation};
@@ -53,7 +53,7 @@ double held_out_std_error(const Fit& fit) {
   if (n < 3 || !(counts > 0) || !(fit.error.held_out_rmse > 0)) return 0;
   std::vector<double> squares(n);
   for (std::size_t c = 0; c < n; ++c) squares[c] = fit.cycle_squares[c] * static_cast<double>(n) / counts;
-  return mean_error(squares).std_error / (2 * fit.error.held_out_rmse);
+  return standard_error_of_mean(squares).std_error / (2 * fit.error.held_out_rmse);
 }
 
 Curve law_curve(const Fit& fit, std::span<const double> velocity) {

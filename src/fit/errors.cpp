@@ -15,11 +15,11 @@ FullRecord::FullRecord(std::span<const Record> records, const Observations& obse
   }
 }
 
-std::span<const double> FullRecord::friction(const Observations::Range& range) const {
+std::span<const double> FullRecord::friction(const Observations::SlipObservation& range) const {
   return std::span(records_[range.record].motion->friction).subspan(range.samples.begin, range.samples.size());
 }
 
-Slip FullRecord::slip(const Observations::Range& range) const {
+Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   const auto part = [&](const std::vector<double>& channel) {
     return channel.empty() ? std::span<const double>()
                            : std::span<const double>(channel).subspan(range.samples.begin, range.samples.size());

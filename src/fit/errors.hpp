@@ -12,9 +12,9 @@ class FullRecord {
  public:
   FullRecord(std::span<const Record> records, const Observations& observations, const Channels& needs);
   /// Valid until the next call.
-  Slip slip(const Observations::Range& range) const;
+  Slip slip(const Observations::SlipObservation& range) const;
   /// Measured friction of a slip, signed.
-  std::span<const double> friction(const Observations::Range& range) const;
+  std::span<const double> friction(const Observations::SlipObservation& range) const;
 
  private:
   struct Channel {

@@ -19,7 +19,7 @@
 #include "starts.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -59,7 +59,7 @@ SolverOptions short_search() {
 }
 
 /// One fit in the making: what all its steps share.
-struct Job {
+struct FitContext {
   const FrictionModel& model;
   std::span<const Record> records;
   const Observations& observations;
@@ -86,7 +86,7 @@ struct Job {
 
 /// Best of several starts, compared on a part of the slips; then all of them, first by plain least squares to see the
 /// scatter of break-away, then with that scatter taken out.
-SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
+SolverResult joint_estimate(FitContext& job, Fit& fit, std::vector<double>& start) {
   auto starts = make_starts(job.model, job.observations, job.bounds, job.options.starts, job.options.seed);
   if (!job.options.start.empty()) starts = {job.options.start};
   for (auto& s : starts) apply_given(job.model, job.options.given, job.bounds, s);
@@ -132,7 +132,7 @@ SolverResult joint_estimate(Job& job, Fit& fit, std::vector<double>& start) {
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
-SolverResult published_estimate(Job& job, const CycleExtremes& extremes, Fit& fit, std::vector<double>& start) {
+SolverResult published_estimate(FitContext& job, const CycleExtremes& extremes, Fit& fit, std::vector<double>& start) {
   start = start_from_data(job.model, job.observations, job.bounds);
   apply_given(job.model, job.options.given, job.bounds, start);
   const std::array<double, 2> levels = extremes.means();
@@ -155,8 +155,9 @@ SolverResult published_estimate(Job& job, const CycleExtremes& extremes, Fit& fi
 /// Gauss-Newton step from the fit of all. The step is mostly short (a fraction of a standard error), so it ends where a
 /// refit would; where it is not, the rest is fitted again.
 /// Levels from extremes are those of the cycles kept.
-void hold_out(const Job& job, const std::vector<double>& p, const NormalEquations& equations,
-              const std::vector<bool>& free, const SampleErrors& errors, const CycleExtremes* extremes, Fit& fit) {
+void cross_validate(const FitContext& job, const std::vector<double>& p, const NormalEquations& equations,
+                    const std::vector<bool>& free, const SampleErrors& errors, const CycleExtremes* extremes,
+                    Fit& fit) {
   const std::size_t folds = fold_count(job.observations, job.options);
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
@@ -224,7 +225,7 @@ std::string in_newtons(const std::string& unit) {
   return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
 }
 
-void fill_parameters(const Job& job, const Bounds& given, const SolverResult& solution,
+void fill_parameters(const FitContext& job, const Bounds& given, const SolverResult& solution,
                      const std::vector<double>& start, const Eigen::MatrixXd& influences, Fit& fit) {
   const Spread spread = spread_of(influences);
   for (std::size_t k = 0; k < solution.p.size(); ++k) {
@@ -235,7 +236,7 @@ void fill_parameters(const Job& job, const Bounds& given, const SolverResult& so
     const bool held = !(job.bounds.lower[k] < job.bounds.upper[k]);  // by the published protocol
     out.parameter.lower = given.lower[k] / slot.parameter.si;
     out.parameter.upper = given.upper[k] / slot.parameter.si;
-    if ((k < 2 || slot.parameter.of_friction) && job.records[0].motion->friction_kind == FrictionKind::force) {
+    if ((k < 2 || slot.parameter.friction_effects) && job.records[0].motion->friction_kind == FrictionKind::force) {
       out.parameter.unit = in_newtons(out.parameter.unit);
     }
     out.effect = slot.effect;
@@ -286,7 +287,7 @@ Floor mean_floor(std::span<const Record> records) {
   return floor;
 }
 
-void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
+void fill_floor(const FitContext& job, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   fit.floor = mean_floor(job.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
   const ModelResiduals::Whitening whitening =
@@ -300,7 +301,7 @@ void fill_floor(const Job& job, const std::vector<double>& p, const SampleErrors
 }
 
 /// Starts that were given and cannot be had.
-void tell_moved_starts(const Job& job, Fit& fit) {
+void tell_moved_starts(const FitContext& job, Fit& fit) {
   for (std::size_t k = 0; k < job.model.parameters().size(); ++k) {
     const FrictionModel::Slot& slot = job.model.parameters()[k];
     for (const GivenParameter& known : job.options.given) {
@@ -356,7 +357,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   if (observations.cycles < kFewestCycles) {
     return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
   }
-  Job job{model, records, observations, instruments, options};
+  FitContext job{model, records, observations, instruments, options};
   job.bounds = bounds_of(model, observations);
   apply_given(model, options.given, job.bounds);
   const Bounds given = job.bounds;
@@ -383,13 +384,13 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
                       "the model is not finite on these data: an effect or formula divides by zero, "
                       "overflows or leaves its domain");
   }
-  std::vector<bool> silent = equations.silent();
+  std::vector<bool> unconstrained = equations.unconstrained();
   // A change point is known far better than what depends on it smoothly, or not by a derivative: held for the others.
   const std::optional<ChangePoint> change = published ? std::nullopt : change_point_of(model);
-  if (change) silent[change->time] = false;
+  if (change) unconstrained[change->time] = false;
   std::vector<bool> free(p.size()), inside(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
-    free[k] = !silent[k] && job.bounds.lower[k] < job.bounds.upper[k];
+    free[k] = !unconstrained[k] && job.bounds.lower[k] < job.bounds.upper[k];
     inside[k] = free[k] && !on_bound(p[k], job.bounds.lower[k], job.bounds.upper[k]);
   }
   if (change) free[change->time] = inside[change->time] = false;
@@ -423,7 +424,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   fit.error = errors.figures;
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
   fill_floor(job, p, errors, fit);
-  hold_out(job, p, equations, inside, errors, published ? &extremes : nullptr, fit);
+  cross_validate(job, p, equations, inside, errors, published ? &extremes : nullptr, fit);
   if (records.size() == 1) {
     const Motion& motion = *records[0].motion;
     const std::vector<double> systematic =
@@ -432,7 +433,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
     if (model.acts_in_stick()) fit.stick_rmse = stick_creep_rmse(model, p, motion, *records[0].segmentation);
   }
   if (options.profile && !published) add_profiles(residuals, given, inverse_over(equations.total, inside), fit);
-  add_messages(silent, groups, fit);
+  add_messages(unconstrained, groups, fit);
   return fit;
 }
 

@@ -80,7 +80,7 @@ std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& 
   std::vector<Residual> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
-    if (cycle.stick.size() < kShortestStick || !segmentation.takes_part(cycle)) continue;
+    if (cycle.stick.size() < kShortestStick || !segmentation.is_selected(cycle)) continue;
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
     const std::size_t pieces = std::max<std::size_t>(1, length / kStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
@@ -96,10 +96,10 @@ std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& s
   std::vector<Residual> parts;
   const bool sticks = segmentation.kind == MotionKind::stick_slip;
   for (const Cycle& cycle : segmentation.cycles) {
-    if (sticks && !segmentation.takes_part(cycle)) continue;
+    if (sticks && !segmentation.is_selected(cycle)) continue;
     const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, kStretch);
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
-      if (segmentation.takes_part(Span{i, i + stretch})) {
+      if (segmentation.is_selected(SampleRange{i, i + stretch})) {
         parts.push_back(about_parabola(motion.friction, i, i + stretch));
       }
     }
@@ -124,7 +124,7 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   double noise = 0;
   for (const Cycle& cycle : segmentation.cycles) {
     if (cycle.stick.size() == 0 || !std::isfinite(cycle.break_away_friction)) continue;
-    if (!segmentation.takes_part(cycle)) continue;
+    if (!segmentation.is_selected(cycle)) continue;
     const std::size_t i = cycle.slip.begin;
     const double u = motion.time[i] / motion.time.back();
     std::vector<double> row = {1, u, u * u, static_cast<double>(cycle.direction)};

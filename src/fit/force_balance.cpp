@@ -80,7 +80,7 @@ std::size_t hop_of(std::size_t h) {
   return std::max<std::size_t>(1, h / 2);
 }
 
-Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const Span& span, std::size_t h) {
+Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const SampleRange& span, std::size_t h) {
   std::vector<double> velocity(span.size()), force(span.size());
   for (std::size_t k = 0; k < span.size(); ++k) {
     const std::size_t i = span.begin + k;
@@ -109,9 +109,10 @@ Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const Spa
 /// Gathers the noise of a column from the sticks, where it is straight.
 class StickNoise {
  public:
-  void add(const Eigen::MatrixXd& rows, const Span& block, std::size_t h, const std::vector<Span>& sticks) {
+  void add(const Eigen::MatrixXd& rows, const SampleRange& block, std::size_t h,
+           const std::vector<SampleRange>& sticks) {
     const std::size_t hop = hop_of(h);
-    for (const Span& stick : sticks) {
+    for (const SampleRange& stick : sticks) {
       const std::size_t begin = std::max(stick.begin, block.begin), end = std::min(stick.end, block.end);
       if (begin + kOrder * h >= end) continue;
       const std::size_t first = (begin - block.begin + hop - 1) / hop, last = (end - block.begin - kOrder * h) / hop;
@@ -144,8 +145,8 @@ Eigen::MatrixXd white_noise(const Motion& motion, std::size_t h) {
 }
 
 /// The sticks without their first and last tenths, where re-stick rings and break-away begins.
-std::vector<Span> quiet_sticks(const Segmentation& segmentation) {
-  std::vector<Span> out;
+std::vector<SampleRange> quiet_sticks(const Segmentation& segmentation) {
+  std::vector<SampleRange> out;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t tenth = cycle.stick.size() / 10;
     if (tenth > 0) out.push_back({cycle.stick.begin + tenth, cycle.stick.end - tenth});
@@ -154,10 +155,10 @@ std::vector<Span> quiet_sticks(const Segmentation& segmentation) {
 }
 
 /// Without the blocks in which the load steps from one stated value to another.
-void drop_changing_loads(const Motion& motion, std::vector<Span>& blocks) {
+void drop_changing_loads(const Motion& motion, std::vector<SampleRange>& blocks) {
   for (const Step& step : motion.steps) {
     if (step.begin == 0) continue;
-    std::erase_if(blocks, [&](const Span& b) { return b.begin < step.begin && step.begin < b.end; });
+    std::erase_if(blocks, [&](const SampleRange& b) { return b.begin < step.begin && step.begin < b.end; });
   }
 }
 
@@ -197,7 +198,7 @@ NormalForce normal_force(const Motion& motion) {
   return out;
 }
 
-std::vector<Span> balance_blocks(const Motion& motion, const Segmentation& segmentation, std::size_t least) {
+std::vector<SampleRange> balance_blocks(const Motion& motion, const Segmentation& segmentation, std::size_t least) {
   std::vector<std::size_t> ends;
   if (segmentation.kind == MotionKind::stick_slip) {
     for (const Cycle& cycle : segmentation.cycles) {
@@ -211,7 +212,7 @@ std::vector<Span> balance_blocks(const Motion& motion, const Segmentation& segme
     const std::size_t length = std::max({least, samples, (n + kMostPieces - 1) / kMostPieces, std::size_t{1}});
     for (std::size_t begin = 0; begin <= n; begin += length) ends.push_back(std::min(begin, n - 1));
   }
-  std::vector<Span> blocks;
+  std::vector<SampleRange> blocks;
   for (std::size_t k = 1; k < ends.size(); ++k) blocks.push_back({ends[k - 1], ends[k]});
   drop_changing_loads(motion, blocks);
   return blocks;
@@ -236,13 +237,13 @@ Balance force_balance(const Motion& motion, const Segmentation& segmentation, co
   Balance out;
   const std::size_t h = knots(period, motion.step);
   out.width = static_cast<double>(kOrder * h) * motion.step;
-  const std::vector<Span> sticks = quiet_sticks(segmentation);
+  const std::vector<SampleRange> sticks = quiet_sticks(segmentation);
   StickNoise noise;
   auto stick = sticks.begin();
-  for (const Span& span : balance_blocks(motion, segmentation, kOrder * h + (kFewestRows + 4) * hop_of(h))) {
+  for (const SampleRange& span : balance_blocks(motion, segmentation, kOrder * h + (kFewestRows + 4) * hop_of(h))) {
     Eigen::MatrixXd rows = rows_of(motion, load, span, h);
     while (stick != sticks.end() && stick->end <= span.begin) ++stick;
-    std::vector<Span> within;
+    std::vector<SampleRange> within;
     for (auto s = stick; s != sticks.end() && s->begin < span.end; ++s) within.push_back(*s);
     noise.add(rows, span, h, within);
     take_off_line(rows);

@@ -27,7 +27,7 @@ enum BalanceColumn { kAcceleration, kVelocity, kDisplacement, kIntegral, kJerk, 
 /// what goes straight with time is taken off every column.
 struct Balance {
   std::vector<Eigen::MatrixXd> blocks;  ///< rows x kBalanceColumns
-  std::vector<Span> spans;              ///< samples of each block
+  std::vector<SampleRange> spans;       ///< samples of each block
   /// Covariance of what is noise in velocity, acceleration and jerk (zero for the other columns): their scatter in
   /// stick, where they are straight, or that of white noise where nothing sticks.
   Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(kBalanceColumns, kBalanceColumns);
@@ -37,7 +37,7 @@ struct Balance {
 
 /// Stretches of samples that are one unit of evidence each: from the middle of a stick to that of the next, or, where
 /// nothing sticks, pieces of at least two periods. Those shorter than `least` samples are joined to the next.
-std::vector<Span> balance_blocks(const Motion& motion, const Segmentation& segmentation, std::size_t least);
+std::vector<SampleRange> balance_blocks(const Motion& motion, const Segmentation& segmentation, std::size_t least);
 
 /// Period of the free block as the slips or the spectrum suggest it [s]; 0 where nothing does.
 double period_guess(const Motion& motion, const Segmentation& segmentation);

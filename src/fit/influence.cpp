@@ -3,14 +3,14 @@
 #include <cmath>
 #include <limits>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
-std::vector<bool> NormalEquations::silent() const {
-  std::vector<bool> silent(static_cast<std::size_t>(total.rows()));
-  for (Eigen::Index k = 0; k < total.rows(); ++k) silent[static_cast<std::size_t>(k)] = !(total(k, k) > 0);
-  return silent;
+std::vector<bool> NormalEquations::unconstrained() const {
+  std::vector<bool> unconstrained(static_cast<std::size_t>(total.rows()));
+  for (Eigen::Index k = 0; k < total.rows(); ++k) unconstrained[static_cast<std::size_t>(k)] = !(total(k, k) > 0);
+  return unconstrained;
 }
 
 NormalEquations normal_equations(const ModelResiduals& residuals, const Observations& observations,
@@ -139,7 +139,7 @@ Spread spread_of(const Eigen::MatrixXd& influence) {
   spread.degrees_of_freedom.resize(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::VectorXd column = influence.col(k);
-    const MeanError error = mean_error({column.data(), static_cast<std::size_t>(cycles)});
+    const MeanError error = standard_error_of_mean({column.data(), static_cast<std::size_t>(cycles)});
     spread.std_error(k) = error.std_error;
     spread.degrees_of_freedom(k) = error.degrees_of_freedom;
   }

@@ -19,7 +19,7 @@ struct NormalEquations {
   bool finite = false;    ///< the model could be evaluated at p
 
   /// Parameters the data say nothing about: their column of J is zero.
-  std::vector<bool> silent() const;
+  std::vector<bool> unconstrained() const;
 };
 
 /// Evaluates the residuals and their derivatives once. Cost: one pass over the slips per four parameters.

@@ -31,7 +31,8 @@ void add_correlations(Fit& fit) {
 
 }  // namespace
 
-void add_messages(const std::vector<bool>& silent, const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {
+void add_messages(const std::vector<bool>& unconstrained, const std::vector<std::vector<std::size_t>>& groups,
+                  Fit& fit) {
   for (const std::vector<std::size_t>& group : groups) {
     std::string names;
     for (const std::size_t k : group) {
@@ -44,7 +45,7 @@ void add_messages(const std::vector<bool>& silent, const std::vector<std::vector
   add_correlations(fit);
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
-    if (silent[k] && fit.protocol == Protocol::joint) {
+    if (unconstrained[k] && fit.protocol == Protocol::joint) {
       fit.messages.push_back(fmt::format("{} was not moved: no sample depends on it", shown_name(p)));
     } else if (p.at_bound) {
       const bool low = std::abs(p.value / p.parameter.si - p.parameter.lower) <

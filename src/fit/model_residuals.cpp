@@ -20,7 +20,7 @@ using Dual = ceres::Jet<double, kStride>;
 
 /// sign(r) sqrt(rho(r^2)) for a residual whose weight has the square root given.
 template <class T>
-T bend(const T& r, const ModelResiduals::Options& options, double root_weight) {
+T robust_residual(const T& r, const ModelResiduals::Options& options, double root_weight) {
   using std::abs;
   using std::sqrt;
   if (options.loss == Loss::squares || options.loss_width <= 0) return r;
@@ -54,7 +54,7 @@ ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& o
 
 /// Weighted differences between v_r and the creep of the model in the stick before a slip.
 template <class T>
-std::vector<T> ModelResiduals::stick_residuals(const Observations::Range& range, const T* p) const {
+std::vector<T> ModelResiduals::stick_residuals(const Observations::SlipObservation& range, const T* p) const {
   const auto n = static_cast<std::size_t>(stick_rows(range));
   std::vector<T> rows(n, T(0.0 * p[0]));
   if (n == 0) return rows;
@@ -72,7 +72,7 @@ std::vector<T> ModelResiduals::stick_residuals(const Observations::Range& range,
 
 /// Calls write(row, residual) for every row of a slip; false where the model is not finite.
 template <class T, class Write>
-bool ModelResiduals::run(const Observations::Range& range, const T* p, double level, Write&& write) const {
+bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p, double level, Write&& write) const {
   const T* mean = p;  // the noise of stick holds what the levels of the slips do there
   std::vector<T> at_level;
   if (level != 0) {
@@ -88,12 +88,12 @@ bool ModelResiduals::run(const Observations::Range& range, const T* p, double le
     const double root_weight = observations_.root_weight[range.begin + i];
     const T r = root_weight * (observations_.friction[range.begin + i] - mu[i]);
     if (!std::isfinite(scalar_part(r))) return false;
-    write(i, bend(r, options_, root_weight));
+    write(i, robust_residual(r, options_, root_weight));
   }
   if (range.from_stick) {
     const T r = range.break_away_friction - break_away_level(model_, p, slip);
     if (!std::isfinite(scalar_part(r))) return false;
-    write(slip.size(), bend(r, options_, 1.0));
+    write(slip.size(), robust_residual(r, options_, 1.0));
   }
   auto row = static_cast<std::size_t>(friction_rows(range));
   for (const T& r : stick_residuals(range, mean)) {

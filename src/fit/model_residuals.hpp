@@ -109,21 +109,21 @@ class ModelResiduals final : public Residuals {
   using Block = Eigen::MatrixXd;
   std::size_t rows_per_slip() const { return parameter_count() + 2; }
   /// Rows of friction: values and break-away.
-  static Eigen::Index friction_rows(const Observations::Range& range) {
+  static Eigen::Index friction_rows(const Observations::SlipObservation& range) {
     return static_cast<Eigen::Index>(range.end - range.begin + (range.from_stick ? 1 : 0));
   }
-  Eigen::Index stick_rows(const Observations::Range& range) const {
+  Eigen::Index stick_rows(const Observations::SlipObservation& range) const {
     return range.stick == Observations::npos || weights_.empty() ? 0 : weights_[range.record].rows();
   }
   template <class T>
-  std::vector<T> stick_residuals(const Observations::Range& range, const T* p) const;
+  std::vector<T> stick_residuals(const Observations::SlipObservation& range, const T* p) const;
   bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
   std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
   template <class T, class Write>
-  bool run(const Observations::Range& range, const T* p, double level, Write&& write) const;
+  bool run(const Observations::SlipObservation& range, const T* p, double level, Write&& write) const;
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
   const Observations& observations_;

@@ -14,7 +14,7 @@ constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show 
 constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
 
 /// Median number of samples of the slips.
-std::size_t median_size(const std::vector<Observations::Range>& slips) {
+std::size_t median_size(const std::vector<Observations::SlipObservation>& slips) {
   std::vector<std::size_t> sizes;
   for (const auto& slip : slips) sizes.push_back(slip.samples.size());
   if (sizes.empty()) return 0;
@@ -30,7 +30,7 @@ double friction_after(const Motion& motion, const Segmentation& segmentation, st
   if (!cycle.slip_complete) return std::numeric_limits<double>::quiet_NaN();
   // The stick after the last slip belongs to no cycle: it has no slip.
   const bool last = segment + 1 >= segmentation.cycles.size();
-  const Span stick = last ? Span{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
+  const SampleRange stick = last ? SampleRange{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
   const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
   const std::size_t end =
       std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
@@ -40,11 +40,11 @@ double friction_after(const Motion& motion, const Segmentation& segmentation, st
   return sum / static_cast<double>(end - begin);
 }
 
-/// A stick that began before the record is taken to be as long as the others were. takes_part: which slips are known.
-void fill_stick_times(std::vector<Observations::Range>& slips, const std::vector<bool>& takes_part) {
+/// A stick that began before the record is taken to be as long as the others were. is_selected: which slips are known.
+void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const std::vector<bool>& is_selected) {
   std::vector<double> known;
   for (std::size_t k = 0; k < slips.size(); ++k) {
-    if (takes_part[k] && std::isfinite(slips[k].stick_time)) known.push_back(slips[k].stick_time);
+    if (is_selected[k] && std::isfinite(slips[k].stick_time)) known.push_back(slips[k].stick_time);
   }
   if (known.empty()) return;
   const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
@@ -56,7 +56,7 @@ void fill_stick_times(std::vector<Observations::Range>& slips, const std::vector
 
 /// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
 /// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
-void trim_rest(const Motion& motion, Span& samples) {
+void trim_rest(const Motion& motion, SampleRange& samples) {
   constexpr double kSigmas = 6;
   const std::size_t least = samples.begin + samples.size() / 2;
   while (samples.end > least && std::abs(motion.relative_velocity[samples.end - 1]) < kSigmas * motion.velocity_noise) {
@@ -66,12 +66,13 @@ void trim_rest(const Motion& motion, Span& samples) {
 
 /// Takes out of each stick time what the levels of its own re-stick and break-away made of it. A break-away that is
 /// high by chance is reached later: left in, its scatter would pass for ageing. What stays is how long the disc took.
-void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips, const std::vector<bool>& takes_part) {
+void free_stick_times_of_their_own_level(std::vector<Observations::SlipObservation>& slips,
+                                         const std::vector<bool>& is_selected) {
   constexpr double kLeastLeft = 0.1;
   std::vector<double> pulled(slips.size(), std::numeric_limits<double>::quiet_NaN());
   double sum = 0, count = 0;
   for (std::size_t k = 1; k < slips.size(); ++k) {
-    if (!slips[k].from_stick || !takes_part[k] || !takes_part[k - 1]) continue;
+    if (!slips[k].from_stick || !is_selected[k] || !is_selected[k - 1]) continue;
     pulled[k] = slips[k].break_away_friction - slips[k].direction * slips[k - 1].tail_friction;
     if (!std::isfinite(pulled[k])) continue;
     sum += pulled[k];
@@ -85,10 +86,10 @@ void free_stick_times_of_their_own_level(std::vector<Observations::Range>& slips
 }
 
 /// Drops the slips that take no part; those that are left are the units of evidence.
-void keep(const std::vector<bool>& takes_part, std::vector<Observations::Range>& slips) {
+void keep(const std::vector<bool>& is_selected, std::vector<Observations::SlipObservation>& slips) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < slips.size(); ++k) {
-    if (!takes_part[k]) continue;
+    if (!is_selected[k]) continue;
     slips[kept] = slips[k];
     slips[kept].cycle = kept;
     ++kept;
@@ -98,9 +99,9 @@ void keep(const std::vector<bool>& takes_part, std::vector<Observations::Range>&
 
 /// One range per slip of the segmentation that takes part; slips without stick are cut into pieces of about equal
 /// length.
-std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentation& segmentation) {
-  std::vector<Observations::Range> ranges;
-  std::vector<bool> takes_part;
+std::vector<Observations::SlipObservation> ranges_of(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Observations::SlipObservation> ranges;
+  std::vector<bool> is_selected;
   std::size_t slipping = 0;
   for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
   const bool pieces = segmentation.kind == MotionKind::always_slipping;
@@ -110,7 +111,7 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
     const bool from_stick = cycle.stick.size() > 0 && std::isfinite(cycle.break_away_friction);
     const std::size_t parts = pieces ? (cycle.slip.size() + piece - 1) / piece : 1;
     for (std::size_t k = 0; k < parts; ++k) {
-      Observations::Range range;
+      Observations::SlipObservation range;
       range.samples = {cycle.slip.begin + k * cycle.slip.size() / parts,
                        cycle.slip.begin + (k + 1) * cycle.slip.size() / parts};
       if (!pieces && cycle.slip_complete) trim_rest(motion, range.samples);
@@ -133,12 +134,12 @@ std::vector<Observations::Range> ranges_of(const Motion& motion, const Segmentat
         range.break_away_friction = cycle.break_away_friction;
       }
       ranges.push_back(range);
-      takes_part.push_back(pieces ? segmentation.takes_part(range.samples) : segmentation.takes_part(cycle));
+      is_selected.push_back(pieces ? segmentation.is_selected(range.samples) : segmentation.is_selected(cycle));
     }
   }
-  fill_stick_times(ranges, takes_part);
-  free_stick_times_of_their_own_level(ranges, takes_part);
-  keep(takes_part, ranges);
+  fill_stick_times(ranges, is_selected);
+  free_stick_times_of_their_own_level(ranges, is_selected);
+  keep(is_selected, ranges);
   return ranges;
 }
 
@@ -169,7 +170,7 @@ std::vector<double> slope_weights(std::size_t left, std::size_t right) {
 /// Means of `channel` over each value of the observations.
 class Reducer {
  public:
-  Reducer(const std::vector<Observations::Range>& slips, std::size_t per_value)
+  Reducer(const std::vector<Observations::SlipObservation>& slips, std::size_t per_value)
       : slips_(slips), per_value_(per_value) {}
 
   template <class Write>
@@ -193,7 +194,7 @@ class Reducer {
   }
 
  private:
-  const std::vector<Observations::Range>& slips_;
+  const std::vector<Observations::SlipObservation>& slips_;
   std::size_t per_value_;
 };
 
@@ -241,9 +242,9 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
 }
 
 /// Which slip came to rest in the stick before each.
-void add_earlier_slips(std::vector<Observations::Range>& slips) {
+void add_earlier_slips(std::vector<Observations::SlipObservation>& slips) {
   for (std::size_t k = 1; k < slips.size(); ++k) {
-    const Observations::Range& before = slips[k - 1];
+    const Observations::SlipObservation& before = slips[k - 1];
     const bool next = slips[k].from_stick && slips[k].segment == before.segment + 1;
     if (!next || !std::isfinite(before.restick_time)) continue;
     slips[k].earlier_begin = before.begin;
@@ -261,7 +262,7 @@ double mean_of(const std::vector<double>& x, double otherwise) {
 
 }  // namespace
 
-Slip Observations::slip(const Range& range) const {
+Slip Observations::slip(const SlipObservation& range) const {
   const auto part = [&](const std::vector<double>& channel) {
     return channel.empty() ? std::span<const double>()
                            : std::span<const double>(channel).subspan(range.begin, range.end - range.begin);
@@ -298,7 +299,7 @@ Slip Observations::slip(const Range& range) const {
   return slip;
 }
 
-std::vector<double> slip_acceleration(const Motion& motion, const Span& samples) {
+std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples) {
   // The same stretch of time at any rate leaves about the same noise; a longer one would flatten what turns quickly.
   constexpr double kStretch = 0.5e-3;  // [s]
   const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(kStretch / motion.step), 2.0, 10.0));
@@ -346,7 +347,7 @@ Observations join(std::vector<Observations> records) {
     out.mean_load += (next.mean_load - out.mean_load) * more / (values + more);
     out.mean_temperature += (next.mean_temperature - out.mean_temperature) * more / (values + more);
     values += more;
-    for (Observations::Range slip : next.slips) {
+    for (Observations::SlipObservation slip : next.slips) {
       slip.begin += out.time.size();
       slip.end += out.time.size();
       slip.earlier_begin += out.time.size();

@@ -13,7 +13,7 @@
 #include "kinematics/corrections.hpp"
 #include "rig_messages.hpp"
 #include "rig_solution.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 namespace {
@@ -41,7 +41,7 @@ struct Line {
 };
 
 /// Nothing where the samples are too few or the disc stands.
-std::optional<Line> force_over_way(const Motion& motion, const NormalForce& load, const Span& span) {
+std::optional<Line> force_over_way(const Motion& motion, const NormalForce& load, const SampleRange& span) {
   if (span.end < span.begin + 8) return std::nullopt;
   const auto n = static_cast<double>(span.size());
   const double first = load.at(span.begin) * motion.friction[span.begin];
@@ -61,15 +61,15 @@ std::optional<Line> force_over_way(const Motion& motion, const NormalForce& load
 }
 
 /// The same over the inner part of a stick: what follows re-stick and what precedes break-away are left out.
-std::optional<Line> within_stick(const Motion& motion, const NormalForce& load, const Span& stick) {
+std::optional<Line> within_stick(const Motion& motion, const NormalForce& load, const SampleRange& stick) {
   const std::size_t tenth = stick.size() / 10;
   return force_over_way(motion, load, {stick.begin + tenth, stick.end - tenth});
 }
 
-Measure mean_of(const std::vector<double>& values) {
+Estimate mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double x : values) sum += x;
-  const MeanError error = mean_error(values);
+  const MeanError error = standard_error_of_mean(values);
   return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
 }
 
@@ -95,7 +95,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
     middles.push_back(middle);
   }
   if (slopes.size() < 3) return;
-  const Measure mean = mean_of(slopes);
+  const Estimate mean = mean_of(slopes);
   fit.stick_slope_stiffness = rig_value(mean.value, mean.std_error, mean.degrees_of_freedom);
   if (!fit.stiffness.determined || balance == nullptr) return;
   for (std::size_t k = 0, b = 0; k < slopes.size(); ++k) {
@@ -103,7 +103,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
     if (b == balance->spans.size()) break;
     if (balance->spans[b].begin <= middles[k]) differences.push_back(influence(Eigen::Index(b)) - slopes[k]);
   }
-  const MeanError error = mean_error(differences);
+  const MeanError error = standard_error_of_mean(differences);
   if (error.std_error > 0) fit.stick_slope_difference = (fit.stiffness.value - mean.value) / error.std_error;
 }
 
@@ -122,7 +122,7 @@ void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit
     influence[i * kPieces / motion.size()] += kPieces * x * residual / line->squares;
     way += motion.step * motion.disc_velocity_at(i);
   }
-  const MeanError error = mean_error(influence);
+  const MeanError error = standard_error_of_mean(influence);
   fit.stick_slope_stiffness = rig_value(line->slope, error.std_error, error.degrees_of_freedom);
   if (!(std::abs(line->slope) > kClear * error.std_error)) return;
   fit.stiffness = fit.stick_slope_stiffness;

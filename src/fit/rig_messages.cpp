@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit::rig {
 namespace {

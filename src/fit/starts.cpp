@@ -90,9 +90,9 @@ double median(std::vector<double> x) {
 }
 
 /// How far the slips of these data exceed those of a tribometer; pieces of a record that never sticks say nothing.
-double growth_of(Grows grows, const Observations& observations) {
+double growth_of(BoundScaling grows, const Observations& observations) {
   constexpr double kSlipTime = 0.1, kSlipLength = 5e-3;  // [s], [m]
-  if (grows == Grows::never) return 1;
+  if (grows == BoundScaling::never) return 1;
   std::vector<double> sizes;
   for (const auto& slip : observations.slips) {
     if (!slip.from_stick || slip.end - slip.begin < 2) continue;
@@ -102,7 +102,7 @@ double growth_of(Grows grows, const Observations& observations) {
       speed += observations.weight[i] * std::abs(observations.velocity[i]);
       weight += observations.weight[i];
     }
-    sizes.push_back(grows == Grows::with_slip_time ? time / kSlipTime : time * speed / weight / kSlipLength);
+    sizes.push_back(grows == BoundScaling::with_slip_time ? time / kSlipTime : time * speed / weight / kSlipLength);
   }
   return sizes.empty() ? 1 : std::max(1.0, median(std::move(sizes)));
 }
@@ -115,7 +115,7 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   Bounds bounds;
   for (const auto& slot : model.parameters()) {
     const Parameter& q = slot.parameter;
-    const double unit = q.si * (q.of_friction || q.of_force ? scale : 1.0);
+    const double unit = q.si * (q.friction_effects || q.of_force ? scale : 1.0);
     const double grown = growth_of(q.grows, observations);
     bounds.lower.push_back(q.lower * unit * (q.lower < 0 ? grown : 1.0));
     bounds.upper.push_back(q.upper * unit * grown);
@@ -155,7 +155,7 @@ std::vector<double> start_from_data(const FrictionModel& model, const Observatio
   std::vector<double> p;
   const double scale = std::max(1.0, observations.largest_friction);
   for (const auto& slot : model.parameters()) {
-    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.of_friction ? scale : 1.0));
+    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.friction_effects ? scale : 1.0));
   }
   const std::vector<SpeedBin> bins = bin_by_speed(observations);
   const auto [slowest, fastest] = decay_range(observations);
@@ -191,7 +191,7 @@ std::vector<std::vector<double>> make_starts(const FrictionModel& model, const O
     for (std::size_t k = model.base_count(); k < p.size(); ++k) {
       const Parameter& q = model.parameters()[k].parameter;
       const double neutral = std::isnan(q.neutral) ? q.start : q.neutral;
-      p[k] = std::clamp(neutral * q.si * (q.of_friction ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
+      p[k] = std::clamp(neutral * q.si * (q.friction_effects ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
     }
     starts.push_back(p);
   }

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "tribofit/friction/creep.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 #include "tribofit/segmentation/stick_motion.hpp"
 
 namespace tribofit {
@@ -54,8 +54,8 @@ double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p
   return count > 0 ? std::sqrt(squares / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Measure gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
-                         const Segmentation& segmentation) {
+Estimate gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
+                          const Segmentation& segmentation) {
   const Prediction predict(model, p, motion, segmentation);
   std::vector<double> gaps;
   double sum = 0, creeps = 0;
@@ -72,11 +72,11 @@ Measure gap_beside_creep(const FrictionModel& model, const std::vector<double>& 
     sum += gap / disc;
     creeps += creep / disc;
   }
-  Measure out;
+  Estimate out;
   out.value = std::numeric_limits<double>::quiet_NaN();
   if (gaps.empty()) return out;
   const auto n = static_cast<double>(gaps.size());
-  const MeanError error = mean_error(gaps);
+  const MeanError error = standard_error_of_mean(gaps);
   const double allowed = creep_law(model).inaccuracy * std::abs(creeps) / n;
   out.value = std::copysign(std::max(0.0, std::abs(sum / n) - allowed), sum);
   out.std_error = error.std_error;

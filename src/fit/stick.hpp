@@ -13,7 +13,7 @@ double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p
 
 /// What the creep of a model does not explain of the gap between v_b in stick and omega r, as a part of omega r, beyond
 /// what its law of creep may be wrong by; with its standard error over sticks. NaN where no stick is long enough.
-Measure gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
-                         const Segmentation& segmentation);
+Estimate gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
+                          const Segmentation& segmentation);
 
 }  // namespace tribofit

@@ -59,7 +59,7 @@ double left_beside(const Observations& observations, const Eigen::MatrixXd& weig
 double mean_break_away(const Segmentation& segmentation) {
   double sum = 0, count = 0;
   for (const Cycle& cycle : segmentation.cycles) {
-    if (!std::isfinite(cycle.break_away_friction) || !segmentation.takes_part(cycle)) continue;
+    if (!std::isfinite(cycle.break_away_friction) || !segmentation.is_selected(cycle)) continue;
     sum += cycle.break_away_friction;
     count += 1;
   }

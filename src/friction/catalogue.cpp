@@ -29,7 +29,7 @@ std::span<const Effect> effect_catalogue() {
 
 EffectInfo describe(const Effect& effect) {
   EffectInfo info = std::visit([](const auto& e) { return e.info(); }, effect);
-  info.of_motion = is_of_motion(effect);
+  info.kinematic_effect = is_kinematic(effect);
   info.pairs = look_alikes(info.key);
   return info;
 }
@@ -48,8 +48,8 @@ std::string_view to_string(EffectGroup group) {
   return "your own";
 }
 
-bool is_of_motion(const Effect& effect) {
-  return std::visit([]<class E>(const E&) { return hooks::OfMotion<E>; }, effect);
+bool is_kinematic(const Effect& effect) {
+  return std::visit([]<class E>(const E&) { return hooks::KinematicEffect<E>; }, effect);
 }
 
 }  // namespace tribofit

@@ -19,7 +19,7 @@ struct OneSample {
   double time, velocity, acceleration, angle, distance, load, temperature;
   Slip slip;
 
-  explicit OneSample(const Instant<double>& at)
+  explicit OneSample(const SlidingState<double>& at)
       : time(at.time),
         velocity(at.velocity),
         acceleration(at.acceleration),
@@ -45,7 +45,7 @@ struct OneSample {
   OneSample& operator=(const OneSample&) = delete;
 };
 
-double modulated(const FrictionModel& model, const double* p, const Instant<double>& at, double mu) {
+double modulated(const FrictionModel& model, const double* p, const SlidingState<double>& at, double mu) {
   for_each_effect(model, p, [&]<class E>(const E& effect, const double* q) {
     if constexpr (hooks::Modulates<E, double>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, double>) {
@@ -70,8 +70,8 @@ void FrictionDynamics::begin_stick(std::span<const double> state) {
   age_left_ = 0;
   std::size_t k = 0;
   for_each_effect(model_, p_.data(), [&]<class E>(const E&, const double*) {
-    if constexpr (hooks::Ages<E, double>) age_left_ = state[k];
-    if constexpr (hooks::Ages<E, double> || hooks::Remembers<E, double>) ++k;
+    if constexpr (hooks::HasContactAge<E, double>) age_left_ = state[k];
+    if constexpr (hooks::HasContactAge<E, double> || hooks::Remembers<E, double>) ++k;
   });
 }
 
@@ -90,16 +90,16 @@ void FrictionDynamics::begin_slip(double stick_time, double direction, double of
 double FrictionDynamics::friction_at_rest() const {
   double level = law_.mu_s;
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
-    if constexpr (hooks::Ages<E, double>) {
-      const double speed = effect.aged_speed(q, age_);
-      level = steady_friction(model_, p_.data(), law_, Instant<double>{.velocity = 0}, &speed);
+    if constexpr (hooks::HasContactAge<E, double>) {
+      const double speed = effect.equivalent_speed(q, age_);
+      level = steady_friction(model_, p_.data(), law_, SlidingState<double>{.velocity = 0}, &speed);
     }
   });
   return level;
 }
 
-double FrictionDynamics::break_away_friction(const Instant<double>& at) const {
-  Instant<double> rest = at;
+double FrictionDynamics::break_away_friction(const SlidingState<double>& at) const {
+  SlidingState<double> rest = at;
   rest.velocity = 0;
   rest.direction = direction_;
   return direction_ * modulated(model_, p_.data(), rest, direction_ * friction_at_rest());
@@ -109,12 +109,12 @@ void FrictionDynamics::states_at_break_away(std::span<double> state) const {
   const double level = friction_at_rest();
   std::size_t k = 0;
   for_each_effect(model_, p_.data(), [&]<class E>(const E&, const double*) {
-    if constexpr (hooks::Ages<E, double>) state[k++] = age_;
+    if constexpr (hooks::HasContactAge<E, double>) state[k++] = age_;
     if constexpr (hooks::Remembers<E, double>) state[k++] = level;
   });
 }
 
-void FrictionDynamics::steady_states(const Instant<double>& at, std::span<double> state) const {
+void FrictionDynamics::steady_states(const SlidingState<double>& at, std::span<double> state) const {
   states_at_break_away(state);
   const auto n = static_cast<Eigen::Index>(state.size());
   Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(state.data(), n);
@@ -144,23 +144,23 @@ void FrictionDynamics::steady_states(const Instant<double>& at, std::span<double
   std::copy(y.data(), y.data() + n, state.begin());
 }
 
-double FrictionDynamics::run(const Instant<double>& now, std::span<const double> state, std::span<double> rate,
+double FrictionDynamics::run(const SlidingState<double>& now, std::span<const double> state, std::span<double> rate,
                              bool want_rates) const {
   if (model_.effects().empty()) {  // simulations spend most of their time here
     const double shape = stribeck_shape(model_.law(), law_.decay * std::abs(now.velocity));
     const double mu = law_.mu_k + (law_.mu_s - law_.mu_k) * shape;
     return (now.velocity != 0 ? now.velocity : now.direction) < 0 ? -mu : mu;
   }
-  Instant<double> at = now;
+  SlidingState<double> at = now;
   if (at.velocity != 0) at.direction = at.velocity < 0 ? -1 : 1;
   double speed = std::abs(at.velocity);
   std::size_t k = 0;
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
-    if constexpr (hooks::Ages<E, double>) {
-      if (want_rates) rate[k] = 1 - effect.renewal(q, speed) * state[k];
-      speed = effect.aged_speed(q, state[k]);
+    if constexpr (hooks::HasContactAge<E, double>) {
+      if (want_rates) rate[k] = 1 - effect.contact_renewal_rate(q, speed) * state[k];
+      speed = effect.equivalent_speed(q, state[k]);
     }
-    if constexpr (hooks::Ages<E, double> || hooks::Remembers<E, double>) ++k;
+    if constexpr (hooks::HasContactAge<E, double> || hooks::Remembers<E, double>) ++k;
   });
   const bool aged = speed != std::abs(at.velocity);
   double mu = steady_friction(model_, p_.data(), law_, at, aged ? &speed : nullptr);
@@ -178,17 +178,18 @@ double FrictionDynamics::run(const Instant<double>& now, std::span<const double>
       is_signed = hooks::ActsInStick<E>;
       ++k;
     }
-    if constexpr (hooks::Ages<E, double>) ++k;
+    if constexpr (hooks::HasContactAge<E, double>) ++k;
   });
   if (!is_signed && at.direction < 0) mu = -mu;
   return want_rates ? mu : modulated(model_, p_.data(), at, mu);
 }
 
-double FrictionDynamics::friction(const Instant<double>& at, std::span<const double> state) const {
+double FrictionDynamics::friction(const SlidingState<double>& at, std::span<const double> state) const {
   return run(at, state, {}, false);
 }
 
-void FrictionDynamics::rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const {
+void FrictionDynamics::rates(const SlidingState<double>& at, std::span<const double> state,
+                             std::span<double> rate) const {
   run(at, state, rate, true);
 }
 

@@ -94,7 +94,7 @@ std::string_view formula_unit(Quantity quantity) {
   }
 }
 
-/// Reads "0.02", "25mm/s" or "25mm/s[5,60]" into a parameter whose unit is that of the formula's variables.
+/// AddsToReading "0.02", "25mm/s" or "25mm/s[5,60]" into a parameter whose unit is that of the formula's variables.
 Parameter read_start(const std::string& name, const std::string& value, const std::string& text) {
   Parameter parameter;
   parameter.name = name;
@@ -276,7 +276,7 @@ void Formula::evaluate(std::span<const double> values, const Slip& slip, std::sp
   std::copy(values.begin(), values.end(), p.value.begin());
   try {
     for (std::size_t i = 0; i < slip.size(); ++i) {
-      const Instant<double> at = slip.at(i, speed[i]);
+      const SlidingState<double> at = slip.at(i, speed[i]);
       const std::array<double, kVariables.size()> si = {speed[i],    at.acceleration, at.time, at.angle,
                                                         at.distance, at.stick_time,   at.load, at.temperature};
       for (std::size_t k = 0; k < si.size(); ++k) p.variable[k] = si[k] * kVariables[k].per_si;

@@ -35,7 +35,7 @@ bool in_stick(const Effect& effect) {
 
 /// The contacts have an age, which counts the time of a rigid stick.
 bool ages(const Effect& effect) {
-  return std::visit([]<class E>(const E&) { return hooks::Ages<E, double>; }, effect);
+  return std::visit([]<class E>(const E&) { return hooks::HasContactAge<E, double>; }, effect);
 }
 
 void refuse_two_of_stick(const std::vector<Effect>& effects) {
@@ -68,7 +68,7 @@ FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(la
     for (const Parameter& parameter : info.parameters) slots_.push_back({parameter, info.key});
     std::visit(
         [&]<class E>(const E&) {
-          if constexpr (hooks::Remembers<E, double> || hooks::Ages<E, double>) ++state_count_;
+          if constexpr (hooks::Remembers<E, double> || hooks::HasContactAge<E, double>) ++state_count_;
         },
         effect);
   }

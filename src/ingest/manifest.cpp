@@ -21,7 +21,7 @@
 #include "table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
-#include "tribofit/ingest/own_files.hpp"
+#include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {

@@ -43,7 +43,7 @@ struct FileRecord {
   std::size_t recipe_size() const { return recipe_steps.empty() ? 0 : recipe_steps.back() + 1; }
 };
 
-/// Reads one file; its time is made to start at 0 and to increase, its steps are found (clock.hpp).
+/// AddsToReading one file; its time is made to start at 0 and to increase, its steps are found (clock.hpp).
 FileRecord read_recording(const std::string& path, const ReadOptions& options);
 
 /// Throws the InputError for columns that are missing; says which there are.

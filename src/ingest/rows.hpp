@@ -34,7 +34,7 @@ struct Rows {
   std::size_t size() const { return values.empty() ? 0 : values.front().size(); }
 };
 
-/// Reads the rows of the table in chunks of a megabyte, in parallel; only `columns` are converted.
+/// AddsToReading the rows of the table in chunks of a megabyte, in parallel; only `columns` are converted.
 ///
 /// Lines are read by fast-cpp-csv-parser; cells are taken as text and converted exactly rounded. Blank lines are
 /// skipped; comments and lines of text are dropped and counted. Cells that are empty, no number or not finite, and rows

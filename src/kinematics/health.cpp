@@ -307,7 +307,7 @@ HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::si
   const auto half = static_cast<std::size_t>(std::clamp(0.01 / motion.step, 4.0, 2000.0));
   std::vector<double> jump(2 * half, 0.0);
   std::size_t used = 0;
-  for (const Rest& run : rests.runs) {
+  for (const StickPlateau& run : rests.runs) {
     std::size_t i = std::min(run.inner_begin() * factor, n - 1);
     while (i > 0 && std::abs(v[i] - motion.plateau_velocity) < edge) --i;
     if (i < half + 1 || i + half + 1 >= n || used >= 400) continue;

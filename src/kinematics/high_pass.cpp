@@ -40,7 +40,7 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& res
   const std::span<const double> v(velocity.mean);
   const double usual = std::abs(rests.level);
   for (std::size_t r = 0; r < rests.runs.size(); ++r) {
-    const Rest& run = rests.runs[r];
+    const StickPlateau& run = rests.runs[r];
     const std::size_t length = run.inner_end() - run.inner_begin();
     if (length < 8 || std::abs(run.level) < 0.2 * usual) continue;
     const auto inner = v.subspan(run.inner_begin(), length);
@@ -89,7 +89,7 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
     double time, value, weight;
   };
   std::vector<Level> levels;
-  for (const Rest& run : rests.runs) {
+  for (const StickPlateau& run : rests.runs) {
     const std::size_t n = run.inner_end() - run.inner_begin();
     const Line line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
     levels.push_back(

@@ -12,8 +12,8 @@
 #include "high_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_ratio.hpp"
+#include "plateau_search.hpp"
 #include "ripple.hpp"
-#include "survey.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -29,11 +29,11 @@ using kinematics::first_known;
 using kinematics::HighPassEstimate;
 using kinematics::largest_of;
 using kinematics::LevelRange;
-using kinematics::Rest;
+using kinematics::PlateauSearch;
 using kinematics::Rests;
 using kinematics::RippleEstimate;
 using kinematics::run_up_blocks;
-using kinematics::Survey;
+using kinematics::StickPlateau;
 
 void require_channels(const Trace& trace) {
   const std::size_t n = trace.size();
@@ -57,11 +57,11 @@ void take_conditions_from_instruments(Conditions& conditions, const Instruments:
 }
 
 // The direction of the vibrometer, where nobody declared it, from the plateau.
-bool points_the_other_way(const Trace& trace, const Disc& disc, const Survey& s) {
+bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& s) {
   if (!s.sticks || trace.velocity_kind != VelocityKind::block || !disc.varying.empty()) return false;
   if (disc.known) return s.rests.level * disc.constant < 0;
   double sum = 0;
-  for (const Rest& run : s.rests.runs) {
+  for (const StickPlateau& run : s.rests.runs) {
     const auto part = std::span<const double>(trace.friction).subspan(run.inner_begin() * s.blocks.length);
     sum += part[0] + part[(run.inner_end() - run.inner_begin()) * s.blocks.length - 1];
   }
@@ -112,12 +112,12 @@ void settle_friction_sign(Motion& motion, double scale) {
 
 // Where v_b rests beside a recorded speed. A record whose rests follow the recorded speed is compared there; where none
 // do, or far from it, the rests of v_b alone tell what the disc did.
-std::optional<kinematics::RecordedPlateau> recorded_plateau(const Survey& s, const Disc& disc, bool block) {
+std::optional<kinematics::RecordedPlateau> recorded_plateau(const PlateauSearch& s, const Disc& disc, bool block) {
   if (!block || disc.varying.empty() || s.disc.mean.empty()) return std::nullopt;
   const auto recorded_in = [&](const Rests& rests) {
     double sum = 0;
     std::size_t count = 0;
-    for (const Rest& run : rests.runs) {
+    for (const StickPlateau& run : rests.runs) {
       for (std::size_t b = run.begin; b < run.end; ++b) sum += s.disc.mean[b], ++count;
     }
     return sum / static_cast<double>(std::max<std::size_t>(1, count));
@@ -134,14 +134,14 @@ std::optional<kinematics::RecordedPlateau> recorded_plateau(const Survey& s, con
                                                       : find_rests(v);
   if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
   std::size_t resting = 0;
-  for (const Rest& run : alone.runs) resting += run.size();
+  for (const StickPlateau& run : alone.runs) resting += run.size();
   const bool rests = 10 * resting > v.size() && std::abs(alone.level) > 3 * s.noise;
   return rests ? kinematics::RecordedPlateau{alone.level, recorded_in(alone)} : following;
 }
 
 // Where the velocity as recorded repeats in stick when there is no noise.
-std::optional<double> plateau_as_recorded(const Survey& s, const Disc& disc, const Instruments& instruments, bool block,
-                                          bool stated, bool reversed,
+std::optional<double> plateau_as_recorded(const PlateauSearch& s, const Disc& disc, const Instruments& instruments,
+                                          bool block, bool stated, bool reversed,
                                           const std::optional<kinematics::RecordedPlateau>& recorded) {
   double level = 0;  // of v_r
   if (block) {
@@ -179,7 +179,7 @@ double steady_speed(const Trace& trace) {
 }
 
 // A ripple of the disc's speed. Where the speed is read off the plateau, it is read off again without the ripple.
-RippleEstimate find_ripple(Trace& trace, const Survey& s, Disc& disc, bool stated) {
+RippleEstimate find_ripple(Trace& trace, const PlateauSearch& s, Disc& disc, bool stated) {
   if (!s.sticks || !disc.varying.empty() || trace.velocity_kind != VelocityKind::block) return {};
   const double omega = steady_speed(trace);
   if (!(std::abs(omega) > 0)) return {};
@@ -198,7 +198,7 @@ RippleEstimate find_ripple(Trace& trace, const Survey& s, Disc& disc, bool state
 }
 
 // The survey as a disc without the ripple would have shown it.
-void flatten(Survey& s, const RippleEstimate& ripple, double omega, std::span<const double> time) {
+void flatten(PlateauSearch& s, const RippleEstimate& ripple, double omega, std::span<const double> time) {
   std::vector<double> middles(s.blocks.mean.size());
   for (std::size_t b = 0; b < middles.size(); ++b) middles[b] = time[b * s.blocks.length + s.blocks.length / 2];
   const kinematics::RippledDisc rippled = kinematics::rippled_disc(ripple, omega, middles);
@@ -250,7 +250,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   }
 
   // Where the velocity rests; a vibrometer that points the other way; a high-pass.
-  Survey s = survey(trace, disc, motion.step);
+  PlateauSearch s = survey(trace, disc, motion.step);
   const bool reversed = points_the_other_way(trace, disc, s);
   if (reversed) {
     for (double& v : trace.velocity) v = -v;
@@ -348,8 +348,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   // Rests in blocks of the trimmed record.
   Rests rests = s.rests;
   const std::size_t cut = (head + s.blocks.length - 1) / s.blocks.length, kept = motion.size() / s.blocks.length;
-  std::erase_if(rests.runs, [&](const Rest& run) { return run.begin < cut || run.end - cut > kept; });
-  for (Rest& run : rests.runs) run.begin -= cut, run.end -= cut;
+  std::erase_if(rests.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
+  for (StickPlateau& run : rests.runs) run.begin -= cut, run.end -= cut;
 
   motion.health = {
       std::move(clipping),

@@ -52,13 +52,14 @@ bool is_flat(std::span<const double> run, double half_band) {
   return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right))) < flatness * half_band * 2;
 }
 
-double weighted_level(const std::vector<Rest>& runs) {
-  std::vector<const Rest*> order;
+double weighted_level(const std::vector<StickPlateau>& runs) {
+  std::vector<const StickPlateau*> order;
   std::size_t total = 0;
-  for (const Rest& run : runs) order.push_back(&run), total += run.size();
-  std::sort(order.begin(), order.end(), [](const Rest* a, const Rest* b) { return a->level < b->level; });
+  for (const StickPlateau& run : runs) order.push_back(&run), total += run.size();
+  std::sort(order.begin(), order.end(),
+            [](const StickPlateau* a, const StickPlateau* b) { return a->level < b->level; });
   std::size_t sum = 0;
-  for (const Rest* run : order) {
+  for (const StickPlateau* run : order) {
     sum += run->size();
     if (2 * sum >= total) return run->level;
   }
@@ -131,7 +132,7 @@ Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> ran
       ++i;
       continue;
     }
-    Rest run{i, i, 0};
+    StickPlateau run{i, i, 0};
     while (i < velocity.size() && std::abs(velocity[i] - mode) <= half_band) ++i;
     run.end = i;
     if (!is_flat(velocity.subspan(run.begin, run.size()), half_band)) continue;
@@ -162,7 +163,7 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches,
+std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
                                             std::size_t factor) {
   constexpr std::size_t most_stretches = 256, parts = 4, least_samples = 8;
   std::vector<double> spreads;
@@ -188,7 +189,8 @@ std::vector<double> spreads_about_parabolas(std::span<const double> signal, cons
   return spreads;
 }
 
-double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor) {
+double spread_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
+                              std::size_t factor) {
   return median(spreads_about_parabolas(signal, stretches, factor));
 }
 

@@ -21,7 +21,7 @@ std::size_t block_length(std::span<const double> signal);
 BlockMeans block_means(std::span<const double> signal, std::size_t length, double step);
 
 /// A stretch of blocks [begin, end) in which the velocity rests on a level.
-struct Rest {
+struct StickPlateau {
   std::size_t begin = 0, end = 0;
   double level = 0;  ///< mean over the middle of the stretch [m/s]
   std::size_t size() const { return end - begin; }
@@ -32,7 +32,7 @@ struct Rest {
 
 /// All rests of a record.
 struct Rests {
-  std::vector<Rest> runs;
+  std::vector<StickPlateau> runs;
   double level = 0;  ///< median over rests, weighted by their duration [m/s]
   double depth = 0;  ///< largest excursion from that level (one block in a thousand exceeds it) [m/s]
   bool empty() const { return runs.empty(); }
@@ -62,9 +62,10 @@ double median(std::vector<double> values);
 
 /// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
 /// parabolas through windows in the given stretches of samples, one value a window.
-std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches,
+std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
                                             std::size_t factor);
 /// The median of these.
-double spread_about_parabolas(std::span<const double> signal, const std::vector<Rest>& stretches, std::size_t factor);
+double spread_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
+                              std::size_t factor);
 
 }  // namespace tribofit::kinematics

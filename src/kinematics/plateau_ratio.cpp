@@ -27,7 +27,7 @@ double mean_of(std::span<const double> values) {
 }
 
 // Between re-stick, whose ringing makes a contact creep more, and break-away.
-bool make_stick(const Motion& motion, const Rest& run, std::size_t factor, Stick& stick) {
+bool make_stick(const Motion& motion, const StickPlateau& run, std::size_t factor, Stick& stick) {
   const std::size_t first = run.begin * factor, size = run.size() * factor;
   const std::size_t begin = first + size * 9 / 20, end = std::min(first + size * 4 / 5, motion.size());
   if (end < begin + least_samples) return false;
@@ -113,7 +113,7 @@ Estimate net_velocity(const Motion& motion, const Rests& rests, std::size_t fact
   std::vector<double> time, position;
   double x = 0;
   std::size_t i = 0;
-  for (const Rest& run : rests.runs) {
+  for (const StickPlateau& run : rests.runs) {
     const std::size_t middle = std::min((run.begin + run.end) / 2 * factor, motion.size() - 1);
     for (; i < middle; ++i) x += motion.step * (motion.disc_velocity_at(i) - motion.relative_velocity[i]);
     time.push_back(static_cast<double>(middle) * motion.step);

@@ -35,10 +35,10 @@ double mean_of(std::span<const double> values) {
 std::vector<Level> levels_of(const BlockMeans& velocity, const Rests& rests, std::span<const double> time,
                              std::span<const double> friction) {
   std::vector<double> sizes;
-  for (const Rest& run : rests.runs) sizes.push_back(static_cast<double>(run.size()));
+  for (const StickPlateau& run : rests.runs) sizes.push_back(static_cast<double>(run.size()));
   const double least = 0.25 * median(std::move(sizes));
   std::vector<Level> levels;
-  for (const Rest& run : rests.runs) {
+  for (const StickPlateau& run : rests.runs) {
     const std::size_t begin = run.inner_begin() * velocity.length, end = run.inner_end() * velocity.length;
     if (static_cast<double>(run.size()) < least || end <= begin || end > time.size()) continue;
     Level level{time[begin], time[end - 1], run.level};

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 
@@ -82,7 +82,7 @@ const FingerprintAxis kMu = {"mu", "", 1}, kLeft = {"mu minus bare law", "", 1},
 /// A record with the effect, and what it is compared with.
 struct Scene {
   PublishedTest test = published_test(0.015, BaseLaw::exponential);
-  Hidden with, without;
+  SimulatedRecording with, without;
   const Trace& trace() const { return with.recording.trace; }
   double stated() const { return test.speed * test.radius; }
 
@@ -135,9 +135,9 @@ Scene play(View view, const FrictionModel& model, const std::vector<double>& eff
   if (is_slow(view)) options.duration = 42;
   if (options.duration > 5) options.rate = 1000;
   const Drive drive = drive_for(view, test);
-  scene.with = hide(model, p, test.rig, drive, options);
+  scene.with = simulate_recording(model, p, test.rig, drive, options);
   const bool compares = view == View::curve || view == View::stick_time || view == View::creep;
-  if (compares) scene.without = hide(FrictionModel(BaseLaw::exponential), bare, test.rig, drive, options);
+  if (compares) scene.without = simulate_recording(FrictionModel(BaseLaw::exponential), bare, test.rig, drive, options);
   return scene;
 }
 

@@ -12,7 +12,7 @@
 #include "normal_stream.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 
@@ -94,7 +94,7 @@ void round_to(std::vector<double>& x, double resolution) {
 template <class E>
 void sense_record(const E& effect, const double* q, const SimulatedMotion& motion, const Slip& whole,
                   std::vector<double>& mu) {
-  if constexpr (hooks::Reads<E, double>) {
+  if constexpr (hooks::AddsToReading<E, double>) {
     auto next = motion.slips.begin();
     double last_break_away = std::numeric_limits<double>::quiet_NaN();
     double direction = 1;
@@ -103,14 +103,14 @@ void sense_record(const E& effect, const double* q, const SimulatedMotion& motio
         if (next->stick_time > 0) last_break_away = next->break_away_time;
         direction = next->direction;
       }
-      Instant<double> at = whole.at(i, motion.relative_velocity[i]);
+      SlidingState<double> at = whole.at(i, motion.relative_velocity[i]);
       at.velocity = motion.relative_velocity[i];
       at.direction = direction;
       at.since_break_away = motion.time[i] - last_break_away;
-      mu[i] = effect.read(q, at, mu[i]);
+      mu[i] = effect.add_to_reading(q, at, mu[i]);
     }
   }
-  if constexpr (hooks::Senses<E, double>) effect.sense(q, whole, 0.0, std::span<double>(mu));
+  if constexpr (hooks::FiltersReading<E, double>) effect.filter_reading(q, whole, 0.0, std::span<double>(mu));
 }
 
 /// The normal force at the contact [N]: that of the drive, changed where the tangential force loads the contact. Empty
@@ -208,7 +208,7 @@ std::pair<FrictionModel, std::vector<double>> at_the_interface(const FrictionMod
   std::vector<double> kept(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(model.base_count()));
   for (std::size_t k = 0; k < model.effects().size(); ++k) {
     const Effect& effect = model.effects()[k];
-    if (std::visit([]<class E>(const E&) { return hooks::OfSensor<E>; }, effect)) continue;
+    if (std::visit([]<class E>(const E&) { return hooks::SensorEffect<E>; }, effect)) continue;
     effects.push_back(effect);
     const std::size_t count = describe(effect).parameters.size();
     for (std::size_t i = 0; i < count; ++i) kept.push_back(p[model.offset(k) + i]);

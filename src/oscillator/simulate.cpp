@@ -13,7 +13,7 @@
 #include "simulation_checks.hpp"
 #include "slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 
@@ -179,18 +179,18 @@ double Simulation::gap_to_break_away(double t) {
   const double stick_time = t - stick_begin_;
   const double direction = pull < 0 ? -1 : 1;
   friction_.begin_slip(stick_time, direction, scatter_.value());
-  const Instant<double> at = {.velocity = 0,
-                              .direction = direction,
-                              .acceleration = setup_.disc_acceleration(t),
-                              .time = std::max(t, 0.0),
-                              .angle = setup_.drive.speed.angle(t),
-                              .distance = t > 0 ? slid_ : 0,
-                              .stick_time = stick_time,
-                              .load = setup_.load(t),
-                              .mean_load = setup_.drive.mean_load,
-                              .temperature = setup_.temperature(t),
-                              .mean_temperature = setup_.drive.mean_temperature,
-                              .disc_speed = setup_.drive.speed.speed(t)};
+  const SlidingState<double> at = {.velocity = 0,
+                                   .direction = direction,
+                                   .acceleration = setup_.disc_acceleration(t),
+                                   .time = std::max(t, 0.0),
+                                   .angle = setup_.drive.speed.angle(t),
+                                   .distance = t > 0 ? slid_ : 0,
+                                   .stick_time = stick_time,
+                                   .load = setup_.load(t),
+                                   .mean_load = setup_.drive.mean_load,
+                                   .temperature = setup_.temperature(t),
+                                   .mean_temperature = setup_.drive.mean_temperature,
+                                   .disc_speed = setup_.drive.speed.speed(t)};
   const double limit = at.load * friction_.break_away_friction(at);
   if (!(at.load > 0) || !std::isfinite(limit)) {
     throw InputError((at.load > 0 ? "friction is not finite at t = " : "the load is not positive at t = ") +

@@ -18,7 +18,7 @@ double SlipFlow::slid(double t, const BlockState& y) const {
   return slid_before_ + std::abs(lag - lag_before_);
 }
 
-Instant<double> SlipFlow::instant(double speed, double block_acceleration, double t, const BlockState& y) const {
+SlidingState<double> SlipFlow::instant(double speed, double block_acceleration, double t, const BlockState& y) const {
   return {.velocity = direction_ * speed,
           .direction = direction_,
           .acceleration = block_acceleration,
@@ -35,7 +35,7 @@ Instant<double> SlipFlow::instant(double speed, double block_acceleration, doubl
 
 double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,
                              BlockState* dy) const {
-  const Instant<double> at = instant(speed, block_acceleration, t, y);
+  const SlidingState<double> at = instant(speed, block_acceleration, t, y);
   const std::size_t memories = friction_.state_count();
   const std::span<const double> state(y.data() + 2, memories);
   if (dy != nullptr && memories > 0) friction_.rates(at, state, std::span<double>(dy->data() + 2, memories));

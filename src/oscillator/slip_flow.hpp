@@ -71,7 +71,7 @@ class SlipFlow {
   void steady_memories(double t, BlockState& y) const;
 
  private:
-  Instant<double> instant(double speed, double acceleration, double t, const BlockState& y) const;
+  SlidingState<double> instant(double speed, double acceleration, double t, const BlockState& y) const;
   /// Friction at the slip speed `speed` >= 0, with the rates of the memories when asked for.
   double friction_at(double speed, double acceleration, double t, const BlockState& y, BlockState* dy) const;
   double acceleration(double mu, double t, const BlockState& y) const;

@@ -7,7 +7,7 @@
 #include "simulation_checks.hpp"
 #include "slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 

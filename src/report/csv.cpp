@@ -12,7 +12,7 @@
 #include "measures.hpp"
 #include "numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/own_files.hpp"
+#include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "whole_folder.hpp"
@@ -22,7 +22,8 @@ namespace {
 
 /// How the header of one of the tables begins.
 std::string_view header_of(std::string_view name) {
-  return std::find_if(own_files.begin(), own_files.end(), [&](const OwnFile& f) { return f.name == name; })->header;
+  return std::find_if(output_tables.begin(), output_tables.end(), [&](const OwnFile& f) { return f.name == name; })
+      ->header;
 }
 
 /// One line of a CSV file, cell by cell. What is not known is an empty cell.

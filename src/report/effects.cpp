@@ -87,7 +87,7 @@ std::string what_it_is(const EffectInfo& effect, const Style& style) {
 }
 
 std::string what_next(const EffectInfo& effect) {
-  return effect.of_motion
+  return effect.kinematic_effect
              ? "\nNext, to look for it:\n  identify diagnose --radius 15mm trace.csv\n"
              : "\nNext, to fit it:\n  identify --radius 15mm --effect " + effect.spelled() + " trace.csv\n";
 }

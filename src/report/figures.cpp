@@ -65,13 +65,14 @@ void write_groups(FigureFiles& files, const ConditionCells& conditions, std::spa
   for (const PooledGroup& group : groups) {
     const std::string front = std::to_string(group.runs.size()) + "," + conditions.of(group.conditions, group.others);
     if (const PooledValue* v = pooled_value(group.measures, "rms_velocity"))
-      write_line(rms, front, {v->mean, v->mean_error});
+      write_line(rms, front, {v->mean, v->standard_error_of_mean});
     for (const PooledGroup::OfFit& fit : group.fits) {
       const PooledValue *mu_s = pooled_value(fit.parameters, "mu_s"), *mu_k = pooled_value(fit.parameters, "mu_k");
       if (mu_s == nullptr || mu_k == nullptr) continue;
       const ResultMeasure drop = drop_of(runs, group, fit);
       write_line(levels, front + "," + fit.law + "," + fit.protocol + "," + mu_s->unit,
-                 {mu_s->mean, mu_s->mean_error, mu_k->mean, mu_k->mean_error, drop.value, drop.std_error});
+                 {mu_s->mean, mu_s->standard_error_of_mean, mu_k->mean, mu_k->standard_error_of_mean, drop.value,
+                  drop.std_error});
     }
   }
 }

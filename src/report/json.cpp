@@ -30,7 +30,7 @@ std::string_view name_of(HealthItem::Status status) {
   return "problem";
 }
 
-Json measure_json(const Measure& measure, double unit) {
+Json measure_json(const Estimate& measure, double unit) {
   const Interval ci = interval_of(measure);
   return {{"value", number(measure.value / unit)},
           {"std_error", number(measure.std_error / unit)},

@@ -6,11 +6,11 @@
 
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
-Interval interval_of(const Measure& measure) {
+Interval interval_of(const Estimate& measure) {
   const double half = t_quantile_95(measure.degrees_of_freedom) * measure.std_error;
   return {measure.value - half, measure.value + half};
 }
@@ -63,14 +63,14 @@ Membership membership(const Identification& trace, const Fit* fit, std::size_t b
   out.cycle.assign(trace.motion.size(), Membership::none);
   out.fold.assign(trace.motion.size(), Membership::none);
   for (std::size_t c = 0; c < cycles.size(); ++c) {
-    for (const Span& span : {cycles[c].stick, cycles[c].slip}) {
+    for (const SampleRange& span : {cycles[c].stick, cycles[c].slip}) {
       const std::size_t end = std::min(span.end, out.cycle.size());
       for (std::size_t i = span.begin; i < end; ++i) out.cycle[i] = c;
     }
   }
   if (fit == nullptr || fit->cycles == 0) return out;
   // The unit of evidence is a slip, or a piece of one where nothing sticks; stick goes with the slip after it.
-  for (const Observations::Range& range : observe(trace.motion, trace.segmentation, {}, 1).slips) {
+  for (const Observations::SlipObservation& range : observe(trace.motion, trace.segmentation, {}, 1).slips) {
     const std::size_t fold = fit->fold_of(before + range.cycle);
     std::size_t begin = range.samples.begin;
     const std::size_t c = out.cycle[begin];

@@ -19,7 +19,7 @@ struct Interval {
 };
 
 /// 95 % interval of a mean over cycles.
-Interval interval_of(const Measure& measure);
+Interval interval_of(const Estimate& measure);
 
 /// Sticks of more than a second, and the longest [s] (NaN where none is complete).
 struct LongSticks {

@@ -26,8 +26,8 @@ constexpr const char* kValueColumns =
 
 std::string cells(const PooledValue& value) {
   std::string text = cell(value.unit) + "," + std::to_string(value.runs);
-  for (const double x : {value.mean, value.mean_error, value.value, value.std_error, value.lower95, value.upper95,
-                         value.statistical, value.between, value.systematic}) {
+  for (const double x : {value.mean, value.standard_error_of_mean, value.value, value.std_error, value.lower95,
+                         value.upper95, value.statistical, value.between, value.systematic}) {
     text += "," + cell(x);
   }
   return text;
@@ -87,7 +87,7 @@ Json json_of(const PooledValue& value) {
           {"unit", value.unit},
           {"runs", value.runs},
           {"mean", number(value.mean)},
-          {"mean_std_error", number(value.mean_error)},
+          {"mean_std_error", number(value.standard_error_of_mean)},
           {"value", number(value.value)},
           {"std_error", number(value.std_error)},
           {"ci95", {number(value.lower95), number(value.upper95)}},

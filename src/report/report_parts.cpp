@@ -170,7 +170,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Identification& 
        fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate))}};
   for (auto& fact : condition_texts(r.motion)) facts.push_back(std::move(fact));
   facts.emplace_back("cycles with a stick and a slip", count_text(s));
-  const auto measure = [&](const char* name, const Measure& m, double unit, const char* unit_name) {
+  const auto measure = [&](const char* name, const Estimate& m, double unit, const char* unit_name) {
     if (!std::isfinite(m.value) || s.kind != MotionKind::stick_slip) return;
     facts.emplace_back(name, with_error(m.value / unit, m.std_error / unit) + " " + unit_name);
   };

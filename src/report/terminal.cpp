@@ -87,7 +87,7 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
   const Segmentation& s = r.segmentation;
   std::string text = style.heading("Stick-slip");
   text += item(style, "cycles", motion_sentence(s));
-  const auto measure = [&](std::string_view name, const Measure& m, double unit, std::string_view unit_name,
+  const auto measure = [&](std::string_view name, const Estimate& m, double unit, std::string_view unit_name,
                            std::string_view more = "") {
     if (!std::isfinite(m.value)) return;
     text += item(style, name, fmt::format("{} {}{}", with_error(m.value / unit, m.std_error / unit), unit_name, more));
@@ -108,7 +108,7 @@ std::string stick_slip_lines(const Identification& r, const Style& style) {
             uneven ? fmt::format("; the longest {} s, {} over 1 s", significant(sticks.longest, 3), sticks.count) : "");
     measure("slip time", s.slip_time, kMillisecond, "ms");
   }
-  const Measure& branches = s.branch_difference;
+  const Estimate& branches = s.branch_difference;
   const Interval interval = interval_of(branches);
   if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
     text += item(

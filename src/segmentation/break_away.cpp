@@ -304,7 +304,7 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   return result;
 }
 
-double locate_restick(const Motion& motion, Span slip, std::size_t next, int direction, double peak) {
+double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, int direction, double peak) {
   const double noise = motion.velocity_noise;
   const double low = std::min(4 * noise, 0.02 * peak),
                high = std::max({0.02 * peak, std::min(25 * noise, 0.06 * peak)});
@@ -348,7 +348,7 @@ std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t e
 
 }  // namespace
 
-StickFriction friction_at(const Motion& motion, Span stick, double time, int direction) {
+StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction) {
   StickFriction result;
   std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
   std::size_t end = std::min(stick.end, motion.size());

@@ -34,13 +34,13 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
 
 /// Time at which the velocity reaches the plateau again: a line through the last samples of the slip.
 /// `slip` ends with the first sample below the stick threshold; `next` is where the following slip begins.
-double locate_restick(const Motion& motion, Span slip, std::size_t next, int direction, double peak);
+double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, int direction, double peak);
 
 /// Friction at break-away by a straight line (a parabola where it is clearly bent) through the later half of the stick.
 struct StickFriction {
   double value = 0, std_error = 0;
   double slope = 0;  ///< of the straight line [1/s]
 };
-StickFriction friction_at(const Motion& motion, Span stick, double time, int direction);
+StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction);
 
 }  // namespace tribofit::segmentation

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -42,9 +42,9 @@ Line line_of(const Motion& motion, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-Measure load_coupling(const Motion& motion, const Segmentation& segmentation) {
+Estimate load_coupling(const Motion& motion, const Segmentation& segmentation) {
   constexpr std::size_t kFewestCycles = 12, kFewestSamples = 20;
-  Measure out;
+  Estimate out;
   out.value = out.std_error = std::numeric_limits<double>::quiet_NaN();
   if (motion.load.empty() || segmentation.kind != MotionKind::stick_slip) return out;
   std::vector<double> slopes;
@@ -57,7 +57,7 @@ Measure load_coupling(const Motion& motion, const Segmentation& segmentation) {
   if (slopes.size() < kFewestCycles) return out;
   out.value = 0;
   for (const double slope : slopes) out.value += slope / static_cast<double>(slopes.size());
-  const MeanError error = mean_error(slopes);
+  const MeanError error = standard_error_of_mean(slopes);
   out.std_error = error.std_error;
   out.degrees_of_freedom = error.degrees_of_freedom;
   return out;

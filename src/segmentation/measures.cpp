@@ -4,16 +4,16 @@
 #include <array>
 #include <cmath>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit::segmentation {
 
-Measure mean_over_cycles(std::vector<double> values) {
+Estimate mean_over_cycles(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !(v == v); });
   if (values.empty()) return {std::nan(""), std::nan("")};
   double sum = 0;
   for (double v : values) sum += v;
-  const MeanError error = mean_error(values);
+  const MeanError error = standard_error_of_mean(values);
   return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
 }
 
@@ -45,7 +45,7 @@ double branch_difference(std::span<const double> velocity, std::span<const doubl
   return compared > 0 ? difference / compared : std::nan("");
 }
 
-Measure frequency_of(const std::vector<double>& periods) {
+Estimate frequency_of(const std::vector<double>& periods) {
   std::vector<double> known;
   for (double p : periods) {
     if (p == p) known.push_back(p);
@@ -61,7 +61,7 @@ Measure frequency_of(const std::vector<double>& periods) {
   for (double p : known) deviation.push_back(std::abs(p - centre));
   const double limit = std::max(3 * 1.4826 * median(std::move(deviation)), 0.02 * centre);
   std::erase_if(known, [&](double p) { return std::abs(p - centre) > limit; });
-  const Measure period = mean_over_cycles(std::move(known));
+  const Estimate period = mean_over_cycles(std::move(known));
   return {1 / period.value, period.std_error / (period.value * period.value), period.degrees_of_freedom};
 }
 

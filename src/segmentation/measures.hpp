@@ -7,9 +7,9 @@
 
 namespace tribofit::segmentation {
 
-/// Mean of the values that are not NaN, with a standard error that stands correlated cycles (mean_error.hpp). NaN where
-/// there are no values; its error is NaN where there are fewer than three.
-Measure mean_over_cycles(std::vector<double> values);
+/// Mean of the values that are not NaN, with a standard error that stands correlated cycles
+/// (standard_error_of_mean.hpp). NaN where there are no values; its error is NaN where there are fewer than three.
+Estimate mean_over_cycles(std::vector<double> values);
 
 /// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed
 /// between a quarter and three quarters of the peak. NaN where the slip does not show both branches.
@@ -17,6 +17,6 @@ double branch_difference(std::span<const double> velocity, std::span<const doubl
 
 /// Frequency from the periods: one over their mean without those further than three robust standard deviations from the
 /// median (a long stick, a missed slip), which belong to another motion.
-Measure frequency_of(const std::vector<double>& periods);
+Estimate frequency_of(const std::vector<double>& periods);
 
 }  // namespace tribofit::segmentation

@@ -21,9 +21,9 @@ Thresholds thresholds_of(const Motion& motion);
 
 /// A slip as the thresholds see it.
 struct RawSlip {
-  Span samples;       ///< from the sample that rises above the slip threshold to the last above the stick threshold
-  int direction = 1;  ///< sign of v_r
-  double peak = 0;    ///< largest |v_r - plateau| [m/s]
+  SampleRange samples;  ///< from the sample that rises above the slip threshold to the last above the stick threshold
+  int direction = 1;    ///< sign of v_r
+  double peak = 0;      ///< largest |v_r - plateau| [m/s]
   bool begins_within = false, ends_within = false;  ///< neither end is cut off by the record
 };
 

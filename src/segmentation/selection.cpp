@@ -9,11 +9,11 @@ namespace tribofit {
 
 namespace {
 
-Span whole(const Cycle& cycle) {
+SampleRange whole(const Cycle& cycle) {
   return {cycle.stick.size() > 0 ? cycle.stick.begin : cycle.slip.begin, cycle.slip.end};
 }
 
-void leave_out_cycles(const Selection::Cycles& chosen, const Motion& motion, Segmentation& segmentation) {
+void exclude_cycles(const Selection::Cycles& chosen, const Motion& motion, Segmentation& segmentation) {
   if (segmentation.kind != MotionKind::stick_slip) {
     segmentation.notes.push_back("there are no cycles of stick and slip to choose from: all of the motion takes part");
     return;
@@ -33,26 +33,26 @@ std::size_t sample_at(const Motion& motion, double time) {
 
 }  // namespace
 
-bool Segmentation::takes_part(const Span& samples) const {
+bool Segmentation::is_selected(const SampleRange& samples) const {
   return std::none_of(left_out.begin(), left_out.end(),
-                      [&](const Span& out) { return out.begin < samples.end && samples.begin < out.end; });
+                      [&](const SampleRange& out) { return out.begin < samples.end && samples.begin < out.end; });
 }
 
-bool Segmentation::takes_part(const Cycle& cycle) const {
-  return takes_part(whole(cycle));
+bool Segmentation::is_selected(const Cycle& cycle) const {
+  return is_selected(whole(cycle));
 }
 
-void leave_out(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
+void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
   if (selection.empty()) return;
-  if (selection.cycles) leave_out_cycles(*selection.cycles, motion, segmentation);
+  if (selection.cycles) exclude_cycles(*selection.cycles, motion, segmentation);
   for (const Selection::Stretch& stretch : selection.excluded) {
     segmentation.left_out.push_back({sample_at(motion, stretch.from), sample_at(motion, stretch.to)});
   }
-  std::erase_if(segmentation.left_out, [](const Span& span) { return span.begin >= span.end; });
+  std::erase_if(segmentation.left_out, [](const SampleRange& span) { return span.begin >= span.end; });
   if (segmentation.kind != MotionKind::stick_slip) return;
   const auto& cycles = segmentation.cycles;
   const auto left =
-      std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.takes_part(c); });
+      std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.is_selected(c); });
   if (static_cast<std::size_t>(left) == cycles.size()) {
     segmentation.notes.push_back("all cycles take part: what was to be left out holds none of them");
     return;

@@ -21,7 +21,7 @@ std::vector<StickCreep> stick_motion(const Motion& motion, const Segmentation& s
   for (std::size_t c = 0; c < segmentation.cycles.size(); ++c) {
     const Cycle& cycle = segmentation.cycles[c];
     const std::size_t length = cycle.stick.size() / tenths;
-    if (length < least_samples || !segmentation.takes_part(cycle)) continue;
+    if (length < least_samples || !segmentation.is_selected(cycle)) continue;
     const double sign = cycle.direction;
     StickCreep stick;
     stick.cycle = c;

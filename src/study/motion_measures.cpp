@@ -133,13 +133,13 @@ MotionMeasures measure_motion(const Motion& motion, const Segmentation& s) {
     for (std::size_t h = 0; h < kHarmonics; ++h) harmonics[h].push_back(of.amplitude[h]);
   }
   const double f = s.frequency.value;
-  const Measure period{1 / f, s.frequency.std_error / (f * f), s.frequency.degrees_of_freedom};
-  Measure rms = mean_over_cycles(squares);
+  const Estimate period{1 / f, s.frequency.std_error / (f * f), s.frequency.degrees_of_freedom};
+  Estimate rms = mean_over_cycles(squares);
   rms.value = std::sqrt(rms.value);
   rms.std_error /= 2 * rms.value;
   // The line lies where the mean frequency does, and is as well known.
-  const Measure line{fundamental(motion.relative_velocity, motion.step).frequency, s.frequency.std_error,
-                     s.frequency.degrees_of_freedom};
+  const Estimate line{fundamental(motion.relative_velocity, motion.step).frequency, s.frequency.std_error,
+                      s.frequency.degrees_of_freedom};
   MotionMeasures out;
   out.values = {period, s.stick_time, s.amplitude, mean_over_cycles(break_away), mean_over_cycles(least), rms, line};
   for (const std::vector<double>& harmonic : harmonics) out.values.push_back(mean_over_cycles(harmonic));

@@ -17,10 +17,10 @@ struct MotionMeasureInfo {
 /// Measures of a record of stick-slip, each a mean over its cycles, by the same rules for a measured and a simulated
 /// one.
 struct MotionMeasures {
-  std::vector<Measure> values;  ///< as motion_measures() lists them
+  std::vector<Estimate> values;  ///< as motion_measures() lists them
   /// Mean slip in the plane of displacement since break-away and v_b, at equal parts of the slip: x [m], then v_b
   /// [m/s].
-  std::vector<Measure> portrait;
+  std::vector<Estimate> portrait;
 };
 
 /// Period, stick time, peak v_r, break-away friction, least friction in slip (of means over a twentieth of it), RMS of

@@ -126,12 +126,12 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
 /// What the simulations predict for one measure of a record of this length.
 class Predictions {
  public:
-  Predictions(const std::vector<MotionMeasures>& simulations, const Measure& break_away)
+  Predictions(const std::vector<MotionMeasures>& simulations, const Estimate& break_away)
       : simulations_(simulations), break_away_(break_away.value) {}
 
   /// With its error and the difference in those. `given_break_away`: at the mean break-away that the record has, by a
   /// straight line through the simulations; else their mean.
-  TwinMeasure::Simulated of(std::vector<Measure> MotionMeasures::*list, std::size_t k, const Measure& measured,
+  TwinMeasure::Simulated of(std::vector<Estimate> MotionMeasures::*list, std::size_t k, const Estimate& measured,
                             bool given_break_away) const {
     std::vector<double> x, y;
     double within = 0;
@@ -170,7 +170,7 @@ class Predictions {
 };
 
 /// Root mean square of the differences over the loop.
-double portrait_distance(const std::vector<Measure>& measured, const Predictions& predictions) {
+double portrait_distance(const std::vector<Estimate>& measured, const Predictions& predictions) {
   double squares = 0, n = 0;
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const double d = predictions.of(&MotionMeasures::portrait, k, measured[k], true).difference;
@@ -268,7 +268,7 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   const bool force = motion.friction_kind == FrictionKind::force;
   for (std::size_t k = 0; k < measured.values.size(); ++k) {
     const MotionMeasureInfo& info = motion_measures()[k];
-    const Measure& m = measured.values[k];
+    const Estimate& m = measured.values[k];
     twin.measures.push_back(
         {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }

@@ -46,7 +46,7 @@ struct Prepared {
     trace.segmentation.notes = segmentation_notes;
     trace.segmentation.left_out.clear();
     trace.fits.clear();
-    leave_out(selection, trace.motion, trace.segmentation);
+    exclude(selection, trace.motion, trace.segmentation);
     const auto said = trace.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(segmentation_notes.size());
     trace.notes.insert(trace.notes.end(), said, trace.segmentation.notes.end());
     return trace;
@@ -65,7 +65,7 @@ Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions iden
 std::vector<std::string> corrections_of(const std::vector<Effect>& effects) {
   std::vector<std::string> names;
   for (const Effect& effect : effects) {
-    if (is_of_motion(effect)) names.push_back(describe(effect).spelled());
+    if (is_kinematic(effect)) names.push_back(describe(effect).spelled());
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -272,7 +272,7 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   candidates.formulas = choice.formulas;
   identify.effects = effects_of(candidates);
   for (const std::string& name : choice.effects) {  // corrections of the motion stay as they are
-    if (const Effect effect = make_effect(name); is_of_motion(effect)) identify.effects.push_back(effect);
+    if (const Effect effect = make_effect(name); is_kinematic(effect)) identify.effects.push_back(effect);
   }
   TerminalOptions terminal;
   terminal.arguments = {"diagnose"};
@@ -284,7 +284,7 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   part.formulas = choice.formulas;
   part.selection = choice.selection;
   for (const Effect& effect : identify.effects) {
-    if (is_of_motion(effect)) part.effects.push_back(describe(effect).spelled());
+    if (is_kinematic(effect)) part.effects.push_back(describe(effect).spelled());
   }
   std::vector<std::string> own = arguments_of(part);
   own.erase(own.begin(), own.begin() + 2);  // the law: both climb

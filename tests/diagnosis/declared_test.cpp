@@ -1,5 +1,5 @@
 /// What the instruments file declares bounds what may be named.
-#include "diagnosis/declared.hpp"
+#include "diagnosis/instrument_limits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
   lab.force_sensor.mass_below = {0.1, 0.005};
   lab.vibrometer.delay = {-1e-3, 2e-5};
   const auto left = [&](const char* key) {
-    const auto possible = possible_beside_declared(lab, key, FrictionKind::coefficient, {});
+    const auto possible = allowed_beside_declared(lab, key, FrictionKind::coefficient, {});
     if (possible) {
       EXPECT_EQ(possible->lower, -possible->upper) << key;
     }
@@ -33,15 +33,15 @@ TEST(Declared, AZeroInNewtonsIsTakenOverTheLoad) {
   lab.force_sensor.zero = {0.5, 0.05};
   lab.force_sensor.zero_is_force = true;
   const Condition load = {50, "test"};
-  EXPECT_DOUBLE_EQ(possible_beside_declared(lab, "sensor-offset", FrictionKind::coefficient, load)->upper,
+  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, "sensor-offset", FrictionKind::coefficient, load)->upper,
                    3 * 0.05 / 50);
-  EXPECT_DOUBLE_EQ(possible_beside_declared(lab, "sensor-offset", FrictionKind::force, load)->upper, 3 * 0.05);
+  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, "sensor-offset", FrictionKind::force, load)->upper, 3 * 0.05);
 }
 
 TEST(Declared, AFilterIsNotSlowerThanDeclared) {
   Instruments lab;
   lab.force_sensor.bandwidth = {1000, 50};
-  const auto possible = possible_beside_declared(lab, "force-bandwidth", FrictionKind::coefficient, {});
+  const auto possible = allowed_beside_declared(lab, "force-bandwidth", FrictionKind::coefficient, {});
   ASSERT_TRUE(possible);
   EXPECT_FALSE(possible->holds(300));
   EXPECT_TRUE(possible->holds(850));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tribofit/fit/observations.hpp"
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/rig.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 
@@ -42,7 +42,8 @@ Made make(const std::vector<Effect>& effects, const std::vector<double>& values,
   sensors.velocity_noise = 2e-5;
   sensors.seed = 22;
   const FrictionModel model(BaseLaw::exponential, effects);
-  Hidden hidden = hide(model, p, rig_with_damping_ratio(0.85, 16.2e3, 0.02), drive, options, sensors);
+  SimulatedRecording hidden =
+      simulate_recording(model, p, rig_with_damping_ratio(0.85, 16.2e3, 0.02), drive, options, sensors);
   Made made;
   made.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
   made.motion = compute_motion(Trace(*made.trace));
@@ -85,7 +86,7 @@ TEST(LoadCoupling, ComesBackFromTheLoadChannel) {
   for (const double kappa : {-0.2, -0.1, 0.1, 0.2}) {
     Made made = make({make_effect("load-coupling")}, {kappa}, steady(), 0.004);
     ASSERT_FALSE(made.motion.load.empty());
-    const Measure found = load_coupling(made.motion, made.segmentation);
+    const Estimate found = load_coupling(made.motion, made.segmentation);
     EXPECT_NEAR(found.value, kappa, 0.005) << kappa;
     uncouple_load(found.value, made.motion);
     for (const double load : made.motion.load) ASSERT_NEAR(load, 50, 0.25);
@@ -96,7 +97,7 @@ TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
   Drive drive = steady();
   drive.load = [](double t) { return 50 + 20 * std::sin(2 * std::numbers::pi * t / 17); };
   const Made made = make({}, {}, drive, 0.004);
-  const Measure found = load_coupling(made.motion, made.segmentation);
+  const Estimate found = load_coupling(made.motion, made.segmentation);
   EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.01);
 }
 

@@ -11,8 +11,8 @@
 #include "../fit/synthetic.hpp"
 #include "diagnosis/base_law.hpp"
 #include "diagnosis/candidates.hpp"
-#include "diagnosis/lines.hpp"
 #include "diagnosis/probes.hpp"
+#include "diagnosis/spectral_lines.hpp"
 #include "diagnosis/trial.hpp"
 
 namespace {
@@ -137,7 +137,7 @@ std::vector<Probe> probes_of(const synthetic::Record& made) {
   const Record record = {&made.motion, &made.segmentation};
   const Observations fine = observe(made.motion, made.segmentation, channels(), 200);
   const Observations coarse = observe(made.motion, made.segmentation, channels(), 40);
-  const Bench bench(std::span(&record, 1), fine, coarse, kNoise, 0.004);
+  const DiagnosisContext bench(std::span(&record, 1), fine, coarse, kNoise, 0.004);
   const FrictionModel model(BaseLaw::exponential);
   const Trial trial = try_base(bench, bench.fine, model);
   return probe_all(bench, try_model(bench, bench.coarse, model, trial.p), trial, residual_of(bench, trial));

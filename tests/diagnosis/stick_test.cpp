@@ -10,9 +10,9 @@
 
 #include "../fit/synthetic.hpp"
 #include "fit/stick_evidence.hpp"
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/rig.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace {
@@ -117,7 +117,7 @@ DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double
   sensors.noise_colour = colour;
   sensors.seed = 12;
   const FrictionModel model(BaseLaw::exponential, {make_effect(key)});
-  Hidden hidden = hide(model, p, rig, drive, options, sensors);
+  SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
   TraceInput input;
   input.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
   return diagnose({input}, IdentifyOptions());

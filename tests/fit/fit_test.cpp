@@ -10,7 +10,7 @@
 
 #include "synthetic.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace {
 
@@ -436,7 +436,7 @@ TEST(Uncertainty, MeanErrorCovers) {
         value = noise();
         mean += value / 100;
       }
-      const MeanError error = mean_error(x);
+      const MeanError error = standard_error_of_mean(x);
       covered += std::abs(mean) <= t_quantile_95(error.degrees_of_freedom) * error.std_error ? 1 : 0;
     }
     const double rate = covered / double(kSeries);

@@ -13,8 +13,8 @@
 #include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace {
 
@@ -173,7 +173,8 @@ struct CutOut {
 };
 
 TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
-  // Hidden in a simulated record and cut out of it, a slip must read as the fit evaluates it. Noise is 0.003.
+  // SimulatedRecording in a simulated record and cut out of it, a slip must read as the fit evaluates it. Noise is
+  // 0.003.
   const PublishedTest test = published_test(0.015, BaseLaw::exponential);
   const Drive drive = {.speed = constant_speed(test.speed),
                        .radius = test.radius,
@@ -181,7 +182,7 @@ TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
                        .load = [](double t) { return 50 + 5 * std::sin(2 * t); },
                        .temperature = [](double t) { return 20 + 5 * std::cos(3 * t); }};
   const std::vector<double> p = example();
-  const Hidden hidden = hide(model_, p, test.rig, drive, {.duration = 1.5, .settle = 2});
+  const SimulatedRecording hidden = simulate_recording(model_, p, test.rig, drive, {.duration = 1.5, .settle = 2});
   int slips = 0;
   for (const SimulatedSlip& event : hidden.motion.slips) {
     if (event.break_away_time < 0.05 || std::isnan(event.restick_time)) continue;

@@ -25,7 +25,7 @@ Slip slip_in(double direction) {
 
 /// Friction of a contact that turns on the disc, sliding at v.
 double friction_at(const FrictionModel& model, const std::vector<double>& p, double v) {
-  Instant<double> at;
+  SlidingState<double> at;
   at.velocity = v;
   at.disc_speed = kOmega;
   return steady_friction(model, p.data(), law_for(model, p.data(), slip_in(1)), at);

@@ -238,14 +238,14 @@ TEST(ChannelDelay, ShiftsTheChannel) {
   slip.from_stick = true;
   slip.stick_slope = 3;
   const double delay = 10.3e-3, back = -2.2e-3;
-  ChannelDelay{}.sense(&delay, slip, 0.5, std::span<double>(late));
-  ChannelDelay{}.sense(&back, slip, 0.5, std::span<double>(early));
+  ChannelDelay{}.filter_reading(&delay, slip, 0.5, std::span<double>(late));
+  ChannelDelay{}.filter_reading(&back, slip, 0.5, std::span<double>(early));
   for (std::size_t i = 0; i < time.size(); ++i) {
     const double then = time[i] - delay;
     EXPECT_NEAR(late[i], then < 0 ? 0.5 + 3 * then : 0.5 - 2 * then, 1e-12);
     EXPECT_NEAR(early[i], 0.5 - 2 * (time[i] - back), 1e-12);
   }
-  EXPECT_NEAR(ChannelDelay{}.sense_break_away(&delay, slip, 0.5), 0.5 - 3 * delay, 1e-12);
+  EXPECT_NEAR(ChannelDelay{}.filter_break_away_reading(&delay, slip, 0.5), 0.5 - 3 * delay, 1e-12);
 }
 
 TEST(ChannelDelay, ShowsTheJumpOfReStickAsOneRampAboutItsTime) {
@@ -257,7 +257,7 @@ TEST(ChannelDelay, ShowsTheJumpOfReStickAsOneRampAboutItsTime) {
   slip.tail_friction = -0.2;
   slip.restick_time = 49.9e-3;  // nine tenths of an interval after the last sample
   const double back = -9.5e-3;  // the samples lie half an interval off the grid
-  ChannelDelay{}.sense(&back, slip, 0.5, std::span<double>(early));
+  ChannelDelay{}.filter_reading(&back, slip, 0.5, std::span<double>(early));
   EXPECT_NEAR(early[39], 0.4, 1e-12);              // of 48.5 ms
   EXPECT_NEAR(early[40], 0.4 - 0.6 * 0.1, 1e-12);  // of 49.5 ms, the ramp is from 49.4 to 50.4 ms
   EXPECT_NEAR(early[41], -0.2, 1e-12);             // of 50.5 ms
@@ -279,7 +279,7 @@ TEST(Interference, ReachesTheLevelOfBreakAwayAsThroughALineFit) {
       y1 += (u + 0.5) * y / n;
       u2 += (u + 0.5) * (u + 0.5) / n;
     }
-    EXPECT_NEAR(Interference{}.sense_break_away(p, slip, 0.5), 0.5 + y0 + 0.5 * y1 / u2, 1e-7) << f;
+    EXPECT_NEAR(Interference{}.filter_break_away_reading(p, slip, 0.5), 0.5 + y0 + 0.5 * y1 / u2, 1e-7) << f;
   }
 }
 
@@ -292,7 +292,7 @@ TEST(ForceBandwidth, FollowsARampLateAndAnswersAStepInClosedForm) {
     for (const double t : time) mu.push_back(before + (t > 0 ? step : 0) + slope * t);
     Slip slip;
     slip.time = time;
-    ForceBandwidth{}.sense(p, slip, 0.0, std::span<double>(mu));
+    ForceBandwidth{}.filter_reading(p, slip, 0.0, std::span<double>(mu));
     return mu;
   };
   const std::vector<double> step = answer(0.5, -0.2, 0), ramp = answer(0.5, 0, 2);

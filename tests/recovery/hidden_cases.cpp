@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "hidden_effects.hpp"
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace recovery {
 
@@ -335,7 +335,7 @@ std::pair<double, double> duration_and_rate(Setting setting) {
 }
 
 /// Record number `number` of a case, from its own random numbers.
-Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
+SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
   Random random((c.seed ^ 0x5bd1e995u) + number);
   SimulationOptions options;
   std::tie(options.duration, options.rate) = duration_and_rate(run.setting);
@@ -354,7 +354,7 @@ Hidden hide_in(const Case& c, const Run& run, const Model& truth, std::size_t nu
   sensors.velocity_noise = 0.02e-3;
   sensors.noise_colour = c.colour;
   sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
-  return hide(truth.model, truth.p, rig, drive, options, sensors);
+  return simulate_recording(truth.model, truth.p, rig, drive, options, sensors);
 }
 
 }  // namespace
@@ -383,7 +383,7 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
       const std::uint64_t seed = hash(fmt::format("{}:{}", group, i), options.seed);
       Random random(seed);
       Case c = draw(group, i, kind, setting, seed, random);
-      hide(c, random);
+      simulate_recording(c, random);
       cases.push_back(std::move(c));
     }
   };
@@ -446,7 +446,7 @@ Simulated simulate_case(const Case& c, const Experiment& more) {
   double squares = 0;
   Simulated out{truth.model, truth.p, {}, 0, measured_by_hand(c, more.measured)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    Hidden hidden = hide_in(c, runs[i], truth, i);
+    SimulatedRecording hidden = hide_in(c, runs[i], truth, i);
     squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());
     hidden.recording.trace.path = fmt::format("{}{}", c.name, runs.size() > 1 ? fmt::format("/{}", i) : "");
     out.traces.push_back(std::make_shared<const Trace>(std::move(hidden.recording.trace)));

@@ -121,7 +121,7 @@ double true_error(const Simulated& simulated, const DiagnosedTraces& diagnosed) 
   }
   double squares = 0, counts = 0;
   for (const Identification& trace : diagnosed.traces) {
-    const Fit frozen = frozen_on(truth, trace.motion, trace.segmentation);
+    const Fit frozen = evaluate_frozen(truth, trace.motion, trace.segmentation);
     for (const double s : frozen.cycle_squares) squares += s;
     for (const double n : frozen.cycle_counts) counts += n;
   }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/oscillator/hide.hpp"
 #include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/twin.hpp"
 
@@ -51,7 +51,7 @@ TraceInput record_with(const Hiding& hiding) {
   sensors.velocity_noise = 0.02e-3;
   sensors.noise_colour = hiding.colour;
   sensors.seed = hiding.seed + 5000;
-  Hidden hidden = hide(model, p, test.rig, drive, options, sensors);
+  SimulatedRecording hidden = simulate_recording(model, p, test.rig, drive, options, sensors);
   TraceInput input;
   input.path = "simulated";
   hidden.recording.trace.conditions.load = {test.load, "command line"};

@@ -21,7 +21,8 @@ struct PooledValue {
   double statistical = 0;           ///< standard error that the runs' own errors would leave
   double between = 0;               ///< standard deviation between runs beyond their own errors; NaN with one run
   double systematic = 0;            ///< from the declared instruments, shared by all runs; 0 where none is declared
-  double mean = 0, mean_error = 0;  ///< plain mean and its standard error, as [D] Fig 5 and 9; the error NaN of one run
+  double mean = 0, standard_error_of_mean =
+                       0;  ///< plain mean and its standard error, as [D] Fig 5 and 9; the error NaN of one run
 };
 
 /// Runs made under the same conditions.

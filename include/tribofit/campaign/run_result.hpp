@@ -117,7 +117,8 @@ inline constexpr const char* campaign_name = "campaign.json";
 /// missing or damaged. Never throws.
 std::optional<std::string> folder_of_campaign(const std::string& results);
 
-/// Reads the record of one result file; nothing where the file is missing, damaged or of another make. Never throws.
+/// AddsToReading the record of one result file; nothing where the file is missing, damaged or of another make. Never
+/// throws.
 std::optional<RunRecord> read_record(const std::string& path);
 
 /// The results of a campaign one after the other, so that memory does not grow with what they hold.
@@ -146,10 +147,9 @@ class ResultReader {
   std::vector<Listed> runs_;
 };
 
-/// Reads all results of a campaign; `order` comes from the first further condition that is called order, run order,
-/// sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text, which
-/// puts ISO dates in order).
-/// Throws InputError where the folder holds no campaign. Cost: linear in runs.
+/// AddsToReading all results of a campaign; `order` comes from the first further condition that is called order, run
+/// order, sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text,
+/// which puts ISO dates in order). Throws InputError where the folder holds no campaign. Cost: linear in runs.
 CampaignResults read_campaign(const std::string& folder);
 
 /// The runs of read_campaign().

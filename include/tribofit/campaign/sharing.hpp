@@ -19,7 +19,7 @@ struct Sharing {
   std::vector<Common> common;
 };
 
-/// Reads "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
+/// AddsToReading "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
 Sharing::Common share_from(const std::string& text);
 Sharing::Common vary_from(const std::string& text);
 

@@ -127,10 +127,10 @@ struct Record {
 /// Fits a model to the observations of a trace.
 ///
 /// Statistical errors come from the cycles: the influence of each cycle on each parameter (jackknife, one Newton step)
-/// is a series in time whose mean_error() is the standard error. So neither coloured noise nor a break-away level that
-/// wanders breaks them. Errors on held-out cycles: contiguous blocks of cycles are left out in turn and the rest
-/// refitted, by one Gauss-Newton step from the fit of all. `motion` serves the error figures on every sample. Cost:
-/// linear in samples.
+/// is a series in time whose standard_error_of_mean() is the standard error. So neither coloured noise nor a break-away
+/// level that wanders breaks them. Errors on held-out cycles: contiguous blocks of cycles are left out in turn and the
+/// rest refitted, by one Gauss-Newton step from the fit of all. `motion` serves the error figures on every sample.
+/// Cost: linear in samples.
 Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentation& segmentation,
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
@@ -147,7 +147,7 @@ Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 void set_floor(const Floor& floor, Fit& fit);
 
 /// A fit tried on another record with every parameter frozen: its errors there, all of them held out.
-Fit frozen_on(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
+Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
 
 /// Standard error of the held-out RMSE, from cycle to cycle [1 or N].
 double held_out_std_error(const Fit& fit);

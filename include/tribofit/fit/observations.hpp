@@ -23,9 +23,9 @@ namespace tribofit {
 /// bare laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move
 /// by less than 1e-5.
 struct Observations {
-  struct Range {
+  struct SlipObservation {
     std::size_t begin = 0, end = 0;  ///< values of this slip
-    Span samples;                    ///< the same in samples of the Motion
+    SampleRange samples;             ///< the same in samples of the Motion
     std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
     std::size_t segment = 0;         ///< index in Segmentation::cycles
     std::size_t record = 0;          ///< which of several records
@@ -62,7 +62,7 @@ struct Observations {
   std::vector<double> weight, root_weight;       ///< samples behind each value, and its square root
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
-  std::vector<Range> slips;
+  std::vector<SlipObservation> slips;
   std::vector<StickCreep> sticks;       ///< creep as evidence; empty unless add_stick_evidence() filled it
   std::vector<StickNoise> stick_noise;  ///< of each record
   double stick_unit = 0;                ///< residual that stands for one standard deviation of v_r in stick [1 or N]
@@ -76,7 +76,7 @@ struct Observations {
 
   std::size_t size() const { return time.size(); }
   /// A slip as the friction room sees it.
-  Slip slip(const Range& range) const;
+  Slip slip(const SlipObservation& range) const;
 };
 
 /// Builds the observations of a trace with the channels `needs` names.
@@ -102,6 +102,6 @@ std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t
 
 /// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, over 1 ms, 5 to 21
 /// samples) whose window stops at re-stick, where the acceleration jumps.
-std::vector<double> slip_acceleration(const Motion& motion, const Span& samples);
+std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples);
 
 }  // namespace tribofit

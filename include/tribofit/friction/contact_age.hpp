@@ -37,7 +37,7 @@ template <class E, class T>
 T age_at_rest(const E& effect, const T* q, const Slip& slip) {
   const std::size_t n = slip.earlier_time.size();
   if (n == 0) return T(0.0 * q[0]);
-  const auto rate = [&](std::size_t i) { return effect.renewal(q, std::abs(slip.earlier_velocity[i])); };
+  const auto rate = [&](std::size_t i) { return effect.contact_renewal_rate(q, std::abs(slip.earlier_velocity[i])); };
   const auto interval = [&](std::size_t i) { return slip.earlier_time[i] - slip.earlier_time[i - 1]; };
   constexpr double kForgotten = 20;  // renewals, after which exp(-20) of an age is left
   std::size_t first = n - 1;
@@ -67,10 +67,10 @@ T age_at_break_away(const E& effect, const T* q, const Slip& slip) {
 /// Speed at which the law is taken at every sample of a slip [m/s]. Contacts that did not rest before it begin in
 /// steady sliding.
 template <class E, class T>
-void aged_speeds(const E& effect, const T* q, const Slip& slip, std::span<const T> velocity, std::span<T> speed) {
+void equivalent_speeds(const E& effect, const T* q, const Slip& slip, std::span<const T> velocity, std::span<T> speed) {
   if (slip.size() == 0) return;
   constexpr double kSlowest = 1e-3;  // 1/s, for a slip that begins at v_r = 0 without a stick
-  T before = effect.renewal(q, slip.speed(velocity[0])), theta;
+  T before = effect.contact_renewal_rate(q, slip.speed(velocity[0])), theta;
   double previous = slip.time[0];
   if (slip.from_stick) {
     before = T(0.0 * before);
@@ -80,12 +80,12 @@ void aged_speeds(const E& effect, const T* q, const Slip& slip, std::span<const 
     theta = 1.0 / (scalar_part(before) > kSlowest ? before : T(kSlowest + 0.0 * before));
   }
   for (std::size_t i = 0; i < slip.size(); ++i) {
-    const T now = effect.renewal(q, slip.speed(velocity[i]));
+    const T now = effect.contact_renewal_rate(q, slip.speed(velocity[i]));
     const double interval = slip.time[i] - previous;
     if (interval > 0) theta = aged_over(theta, interval, before, now);
     previous = slip.time[i];
     before = now;
-    speed[i] = effect.aged_speed(q, theta);
+    speed[i] = effect.equivalent_speed(q, theta);
   }
 }
 

@@ -27,7 +27,7 @@ T speed_for(const FrictionModel& model, const T* p, const Slip& slip, double dis
   std::vector<double> q(model.parameters().size());
   for (std::size_t k = 0; k < q.size(); ++k) q[k] = scalar_part(p[k]);
   const LawParameters<double> law = law_for(model, q.data(), slip);
-  Instant<double> at;
+  SlidingState<double> at;
   at.disc_speed = disc_speed;
   const auto excess = [&](double v) {
     at.velocity = v;
@@ -64,7 +64,7 @@ T speed_for(const FrictionModel& model, const T* p, const Slip& slip, double dis
     slope = slope_at(v);
     if (!(slope > 0)) return T(v + 0.0 * p[0]);
   }
-  Instant<T> there;
+  SlidingState<T> there;
   there.velocity = T(v + 0.0 * p[0]);
   there.disc_speed = disc_speed;
   return v - (steady_friction(model, p, law_for(model, p, slip), there) - friction) / slope;
@@ -102,7 +102,7 @@ T creep_in_stick(const FrictionModel& model, const T* p, const Slip& slip, const
     if constexpr (requires { effect.creep(q, law.mu_s, 0.0, 0.0); }) {
       const double friction = std::min(moment.friction, kNearest * scalar_part(law.mu_s));
       creep += effect.creep(q, law.mu_s, friction, moment.friction_rate);
-    } else if constexpr (hooks::Spreads<E, T>) {
+    } else if constexpr (hooks::AveragesOverContact<E, T>) {
       // Constant friction in the contact gives a first value; that it falls with speed moves it by a little.
       const T first = effect.creep(q, law.mu_s, moment.friction, moment.friction_rate, moment.disc_speed);
       creep += moment.friction <= 0

@@ -31,24 +31,25 @@ class FrictionDynamics {
   void begin_slip(double stick_time, double direction, double offset = 0);
 
   /// |mu| at which this slip breaks away, at rest, at the instant `at` (its velocity is ignored) [1].
-  double break_away_friction(const Instant<double>& at) const;
+  double break_away_friction(const SlidingState<double>& at) const;
 
   /// Memory states at break-away of a rigid stick.
   void states_at_break_away(std::span<double> state) const;
 
   /// Memory states in steady sliding, where none of them changes any more, at the speed and conditions of `at`.
   /// Newton's method from the states at break-away; throws InputError where it finds none.
-  void steady_states(const Instant<double>& at, std::span<double> state) const;
+  void steady_states(const SlidingState<double>& at, std::span<double> state) const;
 
   /// Signed mu at an instant [1].
-  double friction(const Instant<double>& at, std::span<const double> state) const;
+  double friction(const SlidingState<double>& at, std::span<const double> state) const;
 
   /// d state/dt [1/s each].
-  void rates(const Instant<double>& at, std::span<const double> state, std::span<double> rate) const;
+  void rates(const SlidingState<double>& at, std::span<const double> state, std::span<double> rate) const;
 
  private:
   double friction_at_rest() const;
-  double run(const Instant<double>& now, std::span<const double> state, std::span<double> rate, bool want_rates) const;
+  double run(const SlidingState<double>& now, std::span<const double> state, std::span<double> rate,
+             bool want_rates) const;
 
   FrictionModel model_;
   std::vector<double> p_;

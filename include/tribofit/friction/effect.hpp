@@ -22,25 +22,28 @@ namespace tribofit {
 /// parameters p in SI and is left out where it has nothing to say:
 ///
 ///   void adjust(p, const Slip&, LawParameters<T>&)        levels of the base law for a whole slip
-///   T    reduce(p, const T& x)                            reduced speed x = decay v of the base law
-///   LocalSliding<T> spread(p, const Instant<T>&)                local speeds within the contact: f is taken at
-///   `speed`, and
+///   T    transform_speed(p, const T& x)                            reduced speed x = decay v of the base law
+///   LocalSliding<T> average_over_contact(p, const SlidingState<T>&)                local speeds within the contact: f
+///   is taken at `speed`, and
 ///        `share` of it acts along v_r
-///   T    renewal(p, const V& v), aged_speed(p, const T& theta)   contacts with an age, d theta/dt = 1 - renewal theta:
-///        the base law is taken at aged_speed instead of v (see contact_age.hpp)
-///   T    steady(p, const Instant<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
-///   Relaxation<T> relaxation(p, const Instant<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
-///   T    output(p, const Instant<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
+///   T    contact_renewal_rate(p, const V& v), equivalent_speed(p, const T& theta)   contacts with an age, d theta/dt =
+///   1 - contact_renewal_rate theta:
+///        the base law is taken at equivalent_speed instead of v (see contact_age.hpp)
+///   T    steady(p, const SlidingState<T>&, const T& mu)        steady friction f(v) >= 0, before any memory
+///   Relaxation<T> relaxation(p, const SlidingState<T>&, const T& steady)   memory: d phi/dt = rate (target - phi)
+///   T    output(p, const SlidingState<T>&, const T& steady, const T& phi)  friction of that memory (default: phi)
 ///        (phi starts at mu_s at break-away; where the memory acts in stick, at the friction measured a little before
 ///        it)
 ///   T    creep(p, const T& mu_s, double mu, double slope)  v_r in stick, where the memory acts in stick; without it,
-///        `spread` says at which speed the block creeps
-///   T    modulate(p, const Instant<T>&, const T& mu)      signed friction, after any memory
+///        `average_over_contact` says at which speed the block creeps
+///   T    modulate(p, const SlidingState<T>&, const T& mu)      signed friction, after any memory
 ///   void modulate_all(p, const Slip&, std::span<const T> velocity, std::span<T> mu)   the same, a whole slip at a time
-///   T    read(p, const Instant<T>&, const T& mu)          what the sensor adds to it
-///   void sense(p, const Slip&, const T& level, std::span<T> mu)   what the sensor makes of a whole slip; `level`:
+///   T    add_to_reading(p, const SlidingState<T>&, const T& mu)          what the sensor adds to it
+///   void filter_reading(p, const Slip&, const T& level, std::span<T> mu)   what the sensor makes of a whole slip;
+///   `level`:
 ///        signed friction at break-away, up to which the spring pulled at slip.stick_slope
-///   T    sense_break_away(p, const Slip&, const T& level)  and of that level (default: what `read` makes of it)
+///   T    filter_break_away_reading(p, const Slip&, const T& level)  and of that level (default: what `read` makes of
+///   it)
 ///
 /// All memories of the catalogue are linear in their state, which makes a step over any interval exact and stable.
 
@@ -84,7 +87,7 @@ struct EffectInfo {
   std::vector<Parameter> parameters;
   Channels needs = {};
   EffectGroup group = EffectGroup::friction;
-  bool of_motion = false;             ///< see is_of_motion(); filled in by describe()
+  bool kinematic_effect = false;      ///< see is_kinematic(); filled in by describe()
   std::vector<LookAlike> pairs = {};  ///< filled in by describe(), see effect_pairs.hpp
   std::string option = {};            ///< of an effect that is a form of another: the name of that form
   std::vector<EffectForm> forms = {};

@@ -20,31 +20,31 @@ concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T
   e.adjust(p, s, l);
 };
 template <class E, class T>
-concept Reduces = requires(const E e, const T* p, const T& x) {
-  e.reduce(p, x);
+concept TransformsSpeed = requires(const E e, const T* p, const T& x) {
+  e.transform_speed(p, x);
 };
 template <class E, class T>
-concept Spreads = requires(const E e, const T* p, const Instant<T>& x) {
-  e.spread(p, x);
+concept AveragesOverContact = requires(const E e, const T* p, const SlidingState<T>& x) {
+  e.average_over_contact(p, x);
 };
 template <class E, class T>
-concept Steadies = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+concept Steadies = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {
   e.steady(p, x, mu);
 };
 template <class E, class T>
-concept Ages = requires(const E e, const T* p, const T& theta) {
-  e.aged_speed(p, theta);
+concept HasContactAge = requires(const E e, const T* p, const T& theta) {
+  e.equivalent_speed(p, theta);
 };
 template <class E, class T>
-concept Remembers = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+concept Remembers = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {
   e.relaxation(p, x, mu);
 };
 template <class E, class T>
-concept Outputs = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+concept Outputs = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {
   e.output(p, x, mu, mu);
 };
 template <class E, class T>
-concept Modulates = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
+concept Modulates = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {
   e.modulate(p, x, mu);
 };
 template <class E, class T>
@@ -52,23 +52,23 @@ concept ModulatesAll = requires(const E e, const T* p, const Slip& s, std::span<
   e.modulate_all(p, s, v, mu);
 };
 template <class E, class T>
-concept Reads = requires(const E e, const T* p, const Instant<T>& x, const T& mu) {
-  e.read(p, x, mu);
+concept AddsToReading = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {
+  e.add_to_reading(p, x, mu);
 };
 template <class E, class T>
-concept Senses = requires(const E e, const T* p, const Slip& s, const T& level, std::span<T> mu) {
-  e.sense(p, s, level, mu);
+concept FiltersReading = requires(const E e, const T* p, const Slip& s, const T& level, std::span<T> mu) {
+  e.filter_reading(p, s, level, mu);
 };
 template <class E, class T>
-concept SensesBreakAway = requires(const E e, const T* p, const Slip& s, const T& level) {
-  e.sense_break_away(p, s, level);
+concept FiltersBreakAwayReading = requires(const E e, const T* p, const Slip& s, const T& level) {
+  e.filter_break_away_reading(p, s, level);
 };
 /// Only the sensor sees it: the interface does not feel it.
 template <class E>
-concept OfSensor = Reads<E, double> || Senses<E, double>;
+concept SensorEffect = AddsToReading<E, double> || FiltersReading<E, double>;
 template <class E>
-concept OfMotion = requires {
-  requires E::of_motion;
+concept KinematicEffect = requires {
+  requires E::kinematic_effect;
 };
 template <class E>
 concept ActsInStick = requires {
@@ -97,22 +97,22 @@ LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& sli
 }
 
 /// Steady friction f(v) [1] at one instant, >= 0, before any memory.
-/// aged_speed: where contacts have an age, the speed at which the base law is taken instead of v [m/s].
+/// equivalent_speed: where contacts have an age, the speed at which the base law is taken instead of v [m/s].
 template <class T>
-T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at,
-                  const T* aged_speed = nullptr) {
+T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, SlidingState<T> at,
+                  const T* equivalent_speed = nullptr) {
   using std::abs;
   T share = T(1.0);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Spreads<E, T>) {
-      const LocalSliding<T> local = effect.spread(q, at);
+    if constexpr (hooks::AveragesOverContact<E, T>) {
+      const LocalSliding<T> local = effect.average_over_contact(q, at);
       share = local.share;
       at.velocity = at.direction * local.speed;
     }
   });
-  T x = law.decay * (aged_speed != nullptr ? *aged_speed : T(abs(at.velocity)));
+  T x = law.decay * (equivalent_speed != nullptr ? *equivalent_speed : T(abs(at.velocity)));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Reduces<E, T>) x = effect.reduce(q, x);
+    if constexpr (hooks::TransformsSpeed<E, T>) x = effect.transform_speed(q, x);
   });
   T mu = law.mu_k + (law.mu_s - law.mu_k) * stribeck_shape(model.law(), x);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
@@ -125,9 +125,9 @@ namespace detail {
 
 /// A reading of a slip as a contact that slides at several speeds takes it; `spreads`: whether the model has one.
 template <class T>
-Instant<T> as_read(const FrictionModel& model, const T* p, Instant<T> at, bool& spreads) {
+SlidingState<T> as_read(const FrictionModel& model, const T* p, SlidingState<T> at, bool& spreads) {
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Spreads<E, T>) {
+    if constexpr (hooks::AveragesOverContact<E, T>) {
       spreads = true;
       const T slowest = effect.slowest_reading(q, at);
       if (std::abs(scalar_part(at.velocity)) < scalar_part(slowest)) at.velocity = at.direction * slowest;
@@ -138,10 +138,10 @@ Instant<T> as_read(const FrictionModel& model, const T* p, Instant<T> at, bool& 
 
 /// The highest steady friction from rest on [1]: mu_s, or less where a contact never sticks as a whole.
 template <class T>
-T peak_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, Instant<T> at) {
+T peak_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, SlidingState<T> at) {
   T scale = T(0.0);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Spreads<E, T>) scale = effect.spread(q, at).speed;
+    if constexpr (hooks::AveragesOverContact<E, T>) scale = effect.average_over_contact(q, at).speed;
   });
   if (!(scalar_part(scale) > 0)) return law.mu_s;
   T peak = T(0.0);
@@ -186,7 +186,7 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, c
     before = now;
   };
   if (in_stick && !slip.lead_time.empty()) {
-    Instant<T> at = slip.at(0, T(0.0 * velocity[0]));
+    SlidingState<T> at = slip.at(0, T(0.0 * velocity[0]));
     for (std::size_t i = 0; i < slip.lead_time.size(); ++i) {
       at.velocity = T(slip.lead_velocity[i] + 0.0 * velocity[0]);
       at.direction = slip.lead_velocity[i] < 0 ? -1 : 1;
@@ -200,7 +200,7 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, c
     }
   }
   for (std::size_t i = 0; i < slip.size(); ++i) {
-    const Instant<T> at = slip.at(i, velocity[i]);
+    const SlidingState<T> at = slip.at(i, velocity[i]);
     advance(slip.time[i], effect.relaxation(q, at, steady[i]));
     if constexpr (hooks::Outputs<E, T>) {
       steady[i] = effect.output(q, at, steady[i], phi);
@@ -220,19 +220,19 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
   const std::size_t n = slip.size();
   bool spreads = false;
   for (std::size_t i = 0; i < n && (i == 0 || spreads); ++i) {
-    const Instant<T> at = detail::as_read(model, p, slip.at(i, velocity[i]), spreads);
+    const SlidingState<T> at = detail::as_read(model, p, slip.at(i, velocity[i]), spreads);
     if (spreads) mu[i] = steady_friction(model, p, law, at);
   }
   if (spreads) return;
   for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Ages<E, T>) detail::aged_speeds(effect, q, slip, velocity, mu);
+    if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect, q, slip, velocity, mu);
   });
   for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * mu[i];
   bool bent = false;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Reduces<E, T>) {
-      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.reduce(q, mu[i]);
+    if constexpr (hooks::TransformsSpeed<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.transform_speed(q, mu[i]);
       bent = true;
     }
   });
@@ -260,10 +260,10 @@ template <class T>
 T friction_at_rest(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip) {
   T level = law.mu_s;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Ages<E, T>) {
-      Instant<T> at;
+    if constexpr (hooks::HasContactAge<E, T>) {
+      SlidingState<T> at;
       at.velocity = T(0.0 * law.mu_s);
-      const T speed = effect.aged_speed(q, age_at_break_away(effect, q, slip));
+      const T speed = effect.equivalent_speed(q, age_at_break_away(effect, q, slip));
       level = steady_friction(model, p, law, at, &speed);
     }
   });
@@ -279,7 +279,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
     if (!channel->empty()) *channel = channel->first(1);
   }
   first.time = {&slip.break_away_time, 1};
-  Instant<T> at = first.at(0, T(0.0 * p[0]));
+  SlidingState<T> at = first.at(0, T(0.0 * p[0]));
   at.acceleration = 0;
   LawParameters<T> law = law_for(model, p, slip);
   law.mu_s = friction_at_rest(model, p, law, slip);
@@ -292,10 +292,10 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
     if (!sensed) return;
     // The line through the stick before break-away knows nothing of what break-away strikes.
     at.since_break_away = std::numeric_limits<double>::quiet_NaN();
-    if constexpr (hooks::SensesBreakAway<E, T>) {
-      mu = effect.sense_break_away(q, slip, mu);
-    } else if constexpr (hooks::Reads<E, T>) {
-      mu = effect.read(q, at, mu);
+    if constexpr (hooks::FiltersBreakAwayReading<E, T>) {
+      mu = effect.filter_break_away_reading(q, slip, mu);
+    } else if constexpr (hooks::AddsToReading<E, T>) {
+      mu = effect.add_to_reading(q, at, mu);
     }
   });
   return mu;
@@ -324,7 +324,7 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
     const T at_rest = detail::friction_at_rest(model, p, law, slip);
     for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
       if constexpr (hooks::Remembers<E, T>) {
-        const auto steady_at = [&](const Instant<T>& at) { return steady_friction(model, p, law, at); };
+        const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
         detail::remember(effect, q, slip, at_rest, steady_at, velocity, mu);
         is_signed = hooks::ActsInStick<E>;
       }
@@ -338,11 +338,11 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.modulate(q, slip.at(i, velocity[i]), mu[i]);
     }
     if constexpr (hooks::ModulatesAll<E, T>) effect.modulate_all(q, slip, velocity, mu);
-    if constexpr (hooks::Reads<E, T>) {
-      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.read(q, slip.at(i, velocity[i]), mu[i]);
+    if constexpr (hooks::AddsToReading<E, T>) {
+      for (std::size_t i = 0; i < n; ++i) mu[i] = effect.add_to_reading(q, slip.at(i, velocity[i]), mu[i]);
     }
-    if constexpr (hooks::Senses<E, T>) {
-      effect.sense(q, slip, slip.from_stick ? detail::break_away(model, p, slip, false) : T(0.0 * p[0]), mu);
+    if constexpr (hooks::FiltersReading<E, T>) {
+      effect.filter_reading(q, slip, slip.from_stick ? detail::break_away(model, p, slip, false) : T(0.0 * p[0]), mu);
     }
   });
 }

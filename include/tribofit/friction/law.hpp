@@ -42,8 +42,9 @@ T stribeck_shape(BaseLaw law, const T& x) {
   return T(0.0);
 }
 
-/// Mean of stribeck_shape over speeds spread about x with a small variance s2 of the reduced speed: shape + s2
-/// shape''/2. For samples that are means over a few neighbours; the next term is of fourth order in the spread.
+/// Mean of stribeck_shape over speeds average_over_contact about x with a small variance s2 of the reduced speed: shape
+/// + s2 shape''/2. For samples that are means over a few neighbours; the next term is of fourth order in the
+/// average_over_contact.
 template <class T>
 T stribeck_shape_mean(BaseLaw law, const T& x, const T& s2) {
   const T shape = stribeck_shape(law, x);

@@ -6,10 +6,10 @@
 namespace tribofit {
 
 /// For parameters that are never neutral by themselves.
-inline constexpr double kUnused = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNoNeutralValue = std::numeric_limits<double>::quiet_NaN();
 
 /// What the bounds of a parameter grow with, on machines larger and slower than the tribometers they are stated for.
-enum class Grows {
+enum class BoundScaling {
   never,
   with_slip_time,   ///< beyond slips of 0.1 s
   with_slip_length  ///< beyond slips of 5 mm
@@ -25,10 +25,10 @@ struct Parameter {
   double start = 0;             ///< where a search begins when the data say nothing better [unit]
   /// Where the effect says nothing, or as little as its bounds allow [unit]; NaN: at `start`.
   double neutral = std::numeric_limits<double>::quiet_NaN();
-  bool of_friction = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
-  bool of_force = false;     ///< its bounds grow with the force where friction is one, its unit does not
-  int grid = 1;              ///< values over its bounds from which a search must begin so that it ends at the best one
-  Grows grows = Grows::never;
+  bool friction_effects = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
+  bool of_force = false;          ///< its bounds grow with the force where friction is one, its unit does not
+  int grid = 1;  ///< values over its bounds from which a search must begin so that it ends at the best one
+  BoundScaling grows = BoundScaling::never;
 };
 
 }  // namespace tribofit

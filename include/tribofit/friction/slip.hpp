@@ -20,7 +20,7 @@ double scalar_part(const T& x) {
 
 /// One instant as a friction law may see it. SI.
 template <class T>
-struct Instant {
+struct SlidingState {
   T velocity;                                                          ///< v_r [m/s], signed
   double direction = 1;                                                ///< of sliding: the sign of v_r, also at rest
   double acceleration = 0;                                             ///< of the block [m/s^2]
@@ -71,7 +71,7 @@ struct Slip {
   }
 
   template <class T>
-  Instant<T> at(std::size_t i, const T& v) const {
+  SlidingState<T> at(std::size_t i, const T& v) const {
     const auto value = [i](std::span<const double> channel, double otherwise) {
       return channel.empty() ? otherwise : channel[i];
     };

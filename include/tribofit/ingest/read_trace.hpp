@@ -27,7 +27,7 @@ struct ReadOptions {
   int threads = 0;  ///< 0: as many as there are; the result does not depend on it
 };
 
-/// Reads one run from CSV.
+/// AddsToReading one run from CSV.
 ///
 /// Understands comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the
 /// header or in a row of their own; Latin-1 and GBK headers; trailing separators; text rows between data; a clock that

@@ -87,8 +87,8 @@ struct SimulatedMotion {
 /// a tenth of the static deflection N mu_s/k between two reversals; without a memory (contact-spin) it begins and ends
 /// where |v_r| crosses half the speed of the disc.
 ///
-/// Effects of the motion that the model holds are imposed on the drive (see hide.hpp): the block then feels a disc that
-/// is not the one stated.
+/// Effects of the motion that the model holds are imposed on the drive (see simulate_recording.hpp): the block then
+/// feels a disc that is not the one stated.
 ///
 /// Validity: one degree of freedom, no loss of contact; the load does not depend on the motion.
 /// p: parameters in SI in the order of model.parameters().

@@ -10,16 +10,17 @@
 namespace tribofit {
 
 /// A stretch of samples [begin, end).
-struct Span {
+struct SampleRange {
   std::size_t begin = 0, end = 0;
   std::size_t size() const { return end - begin; }
 };
 
 /// One slip with the stick before it. Quantities that the record does not show are NaN.
 struct Cycle {
-  Span stick;  ///< samples of the stick; empty where the record begins in slip or the motion only reverses
-  Span slip;   ///< samples of the slip: first sample after break_away_time to the last before restick_time. A sample
-               ///< within half an interval of restick_time, where friction jumps, belongs to neither phase.
+  SampleRange stick;  ///< samples of the stick; empty where the record begins in slip or the motion only reverses
+  SampleRange
+      slip;  ///< samples of the slip: first sample after break_away_time to the last before restick_time. A sample
+             ///< within half an interval of restick_time, where friction jumps, belongs to neither phase.
   bool stick_complete = false;  ///< the stick's beginning (a re-stick) is in the record
   bool slip_complete = false;   ///< the slip ends in stick within the record
   int direction = 1;            ///< sign of v_r in the slip
@@ -50,8 +51,8 @@ enum class MotionKind {
 };
 
 /// Mean of a per-cycle measure with its standard error over cycles.
-struct Measure {
-  double value = 0, std_error = 0;  ///< see mean_error.hpp
+struct Estimate {
+  double value = 0, std_error = 0;  ///< see standard_error_of_mean.hpp
   double degrees_of_freedom = 1;    ///< of the t distribution of its error
 };
 
@@ -62,20 +63,20 @@ struct Segmentation {
   double slip_threshold = 0;   ///< |v_r| above which slip begins [m/s]
   double stick_threshold = 0;  ///< |v_r| below which stick begins [m/s]
 
-  Measure frequency;              ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
-  Measure amplitude;              ///< of v_r: peak |v_r| over cycles [m/s]
-  Measure stick_time, slip_time;  ///< [s]
+  Estimate frequency;              ///< stick-slip frequency from the periods [Hz]; NaN where there are fewer than two
+  Estimate amplitude;              ///< of v_r: peak |v_r| over cycles [m/s]
+  Estimate stick_time, slip_time;  ///< [s]
   /// Friction while speeding up less friction while slowing down, at the same speeds between a quarter and three
   /// quarters of the peak [1 or N]: zero for a law of speed alone.
-  Measure branch_difference;
-  double rms_velocity = 0;         ///< of the block velocity [m/s]
-  std::vector<std::string> notes;  ///< what a person should know ("never sticks", "the first slip is cut off")
-  std::vector<Span> left_out;      ///< samples that take no part in fits, see leave_out()
+  Estimate branch_difference;
+  double rms_velocity = 0;            ///< of the block velocity [m/s]
+  std::vector<std::string> notes;     ///< what a person should know ("never sticks", "the first slip is cut off")
+  std::vector<SampleRange> left_out;  ///< samples that take no part in fits, see exclude()
 
   /// Whether none of these samples is left out.
-  bool takes_part(const Span& samples) const;
+  bool is_selected(const SampleRange& samples) const;
   /// The same for stick and slip of a cycle: it takes part as a whole or not at all.
-  bool takes_part(const Cycle& cycle) const;
+  bool is_selected(const Cycle& cycle) const;
 };
 
 /// What part of a record is fitted.
@@ -97,7 +98,7 @@ struct Selection {
 /// Leaves out what `selection` does not take: cycles keep their numbers, and measures of the motion are those of the
 /// whole record; fits, diagnoses and the floor do not see what is left out. A note says how much is left. Where
 /// nothing sticks there are no cycles to be chosen, which a note says, too.
-void leave_out(const Selection& selection, const Motion& motion, Segmentation& segmentation);
+void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation);
 
 /// Finds stick and slip by hysteresis on |v_r| with thresholds from the trace's own noise.
 ///

@@ -11,7 +11,7 @@ namespace tribofit {
 /// Slope of the load over friction within each cycle (stick and slip), where a load that changes slowly for another
 /// reason stands still; its mean over cycles and the error of that. Where friction is a force the slope is kappa
 /// itself. NaN where there is no load channel or fewer than 12 cycles. Cost: one pass over the samples.
-Measure load_coupling(const Motion& motion, const Segmentation& segmentation);
+Estimate load_coupling(const Motion& motion, const Segmentation& segmentation);
 
 /// Takes a coupling out of the load channel: what is left is N0, the load without friction.
 void uncouple_load(double kappa, Motion& motion);

@@ -78,7 +78,7 @@ struct WorkbenchOptions {
 /// samples; FitDetail::full is what the command line does, to the last bit.
 class WorkbenchSession {
  public:
-  /// Reads the trace. Throws InputError, also where the trace cannot carry an analysis.
+  /// AddsToReading the trace. Throws InputError, also where the trace cannot carry an analysis.
   explicit WorkbenchSession(WorkbenchOptions options);
   ~WorkbenchSession();  ///< cancels a diagnosis
   WorkbenchSession(const WorkbenchSession&) = delete;

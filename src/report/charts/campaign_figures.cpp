@@ -25,7 +25,7 @@ std::optional<RunFigures> figures_of_group(const DrawnCampaign& of, std::size_t 
 
 Maybe mean_of(const PooledValue* value) {
   if (value == nullptr) return std::nullopt;
-  return ResultMeasure{value->mean, value->mean_error};
+  return ResultMeasure{value->mean, value->standard_error_of_mean};
 }
 
 Chart over_conditions(const OverConditions& over, const std::string& id, const std::string& title) {

@@ -45,12 +45,12 @@ std::vector<Piece> pieces_of(const Identification& trace) {
   for (const Cycle& c : s.cycles) {
     const std::size_t end = std::min(c.slip.end, v.size());
     if (c.slip.begin >= end) continue;
-    if (s.kind == MotionKind::stick_slip && !s.takes_part(c)) continue;
+    if (s.kind == MotionKind::stick_slip && !s.is_selected(c)) continue;
     if (s.kind == MotionKind::always_slipping) {
       const std::size_t n = end - c.slip.begin, count = std::min(n, kFewestPieces);
       for (std::size_t k = 0; k < count; ++k) {
-        const Span part{c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count};
-        if (s.takes_part(part)) pieces.push_back({Branch::both, part.begin, part.end, c.direction});
+        const SampleRange part{c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count};
+        if (s.is_selected(part)) pieces.push_back({Branch::both, part.begin, part.end, c.direction});
       }
       continue;
     }
@@ -131,7 +131,7 @@ void add_residuals(const DrawnTrace& d, const std::vector<Piece>& pieces, double
 void add_break_aways(const DrawnTrace& d, Chart& chart) {
   std::vector<double> levels;
   for (const Cycle& c : d.trace.segmentation.cycles) {
-    if (std::isfinite(c.break_away_friction) && d.trace.segmentation.takes_part(c))
+    if (std::isfinite(c.break_away_friction) && d.trace.segmentation.is_selected(c))
       levels.push_back(c.break_away_friction);
   }
   if (levels.empty()) return;
@@ -243,7 +243,7 @@ HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
   auto count = map.z;
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     const Cycle& cycle = cycles[c];
-    if (!cycle.slip_complete || !d.trace.segmentation.takes_part(cycle)) continue;
+    if (!cycle.slip_complete || !d.trace.segmentation.is_selected(cycle)) continue;
     const std::size_t row = c * rows / cycles.size();
     for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, prediction.size()); ++i) {
       const double phase = static_cast<double>(i - cycle.slip.begin) / static_cast<double>(cycle.slip.size());

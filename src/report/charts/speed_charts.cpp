@@ -67,10 +67,10 @@ void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t
 void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
   if (!of.record) return;
   const Segmentation& s = of.record->segmentation;
-  const Measure* value = measure.name == "frequency"    ? &s.frequency
-                         : measure.name == "stick-time" ? &s.stick_time
-                         : measure.name == "peak-speed" ? &s.amplitude
-                                                        : nullptr;
+  const Estimate* value = measure.name == "frequency"    ? &s.frequency
+                          : measure.name == "stick-time" ? &s.stick_time
+                          : measure.name == "peak-speed" ? &s.amplitude
+                                                         : nullptr;
   if (value == nullptr || !std::isfinite(value->value)) return;
   const double y = value->value / measure.si;
   const double error = std::isfinite(value->std_error) ? 1.96 * value->std_error / measure.si : 0;

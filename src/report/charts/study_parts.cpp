@@ -131,7 +131,7 @@ std::vector<double> in_unit(std::span<const double> values, double unit) {
 
 std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels,
                                       std::span<const std::uint8_t> sticks, std::size_t bins) {
-  std::vector<Span> phases;
+  std::vector<SampleRange> phases;
   for (std::size_t i = 0; i < sticks.size(); i = phases.back().end) {
     std::size_t end = i;
     while (end < sticks.size() && sticks[end] == sticks[i]) ++end;
@@ -140,7 +140,7 @@ std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const doub
   if (phases.size() > bins / 4) phases = {{0, sticks.size()}};  // too many to be told apart
   const std::size_t of_phase = std::max<std::size_t>(2, 2 * bins / std::max<std::size_t>(1, phases.size()));
   std::set<std::size_t> kept;
-  for (const Span& phase : phases) {
+  for (const SampleRange& phase : phases) {
     const bool stick = sticks[phase.begin] != 0 && phases.size() > 1;
     const std::size_t here = phases.size() == 1 ? bins : stick ? of_phase / 4 : of_phase - of_phase / 4;
     for (const std::span<const double> channel : channels) {

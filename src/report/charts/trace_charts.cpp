@@ -97,7 +97,7 @@ std::size_t first_shown(const Segmentation& segmentation) {
   const auto complete = [&](std::size_t k) {
     return std::all_of(
         cycles.begin() + static_cast<std::ptrdiff_t>(k), cycles.begin() + static_cast<std::ptrdiff_t>(k + kShownCycles),
-        [&](const Cycle& c) { return c.stick_complete && c.slip_complete && segmentation.takes_part(c); });
+        [&](const Cycle& c) { return c.stick_complete && c.slip_complete && segmentation.is_selected(c); });
   };
   const std::size_t middle = last / 2;
   for (std::size_t off = 0; off <= last; ++off) {
@@ -120,7 +120,7 @@ void shade_phases(const Motion& motion, const Cycle& c, Chart& chart) {
 /// What takes no part in fits.
 void shade_left_out(const DrawnTrace& d, Chart& chart) {
   const std::vector<double>& time = d.trace.motion.time;
-  for (const Span& span : d.trace.segmentation.left_out) {
+  for (const SampleRange& span : d.trace.segmentation.left_out) {
     if (span.begin >= time.size()) continue;
     chart.stretches.push_back({time[span.begin], time[std::min(span.end, time.size() - 1)], Shade::left_out});
   }

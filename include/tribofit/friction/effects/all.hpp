@@ -50,7 +50,7 @@ std::span<const Effect> effect_catalogue();
 EffectInfo describe(const Effect& effect);
 
 /// It changes v_r and not mu: found and undone by kinematics/, without a term in a friction model.
-bool is_of_motion(const Effect& effect);
+bool is_kinematic(const Effect& effect);
 
 /// Throws InputError when two of the effects are the same: one key twice, two formulas that say the same, or a formula
 /// that has the name of an effect of the catalogue.

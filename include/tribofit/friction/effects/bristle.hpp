@@ -27,14 +27,14 @@ struct Bristle {
   }
 
   template <class T>
-  Relaxation<T> relaxation(const T* p, const Instant<T>& x, const T& steady) const {
+  Relaxation<T> relaxation(const T* p, const SlidingState<T>& x, const T& steady) const {
     using std::abs;
     return {p[0] * abs(x.velocity) / steady, T(x.direction * steady)};
   }
 
   /// sigma1 dz/dt = sigma1 v (1 - F/(f sign v)), written with F = sigma0 z.
   template <class T>
-  T output(const T* p, const Instant<T>& x, const T& steady, const T& force) const {
+  T output(const T* p, const SlidingState<T>& x, const T& steady, const T& force) const {
     return force + p[1] * x.velocity * (1.0 - x.direction * force / steady);
   }
 

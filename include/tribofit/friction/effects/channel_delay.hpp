@@ -24,7 +24,7 @@ struct ChannelDelay {
 
   /// Before break-away friction is the spring's straight line; after re-stick it is what was read there.
   template <class T>
-  void sense(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
+  void filter_reading(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
     const std::size_t n = mu.size();
     if (n < 2) return;
     const std::vector<T> true_mu(mu.begin(), mu.end());
@@ -66,7 +66,7 @@ struct ChannelDelay {
   }
 
   template <class T>
-  T sense_break_away(const T* p, const Slip& slip, const T& level) const {
+  T filter_break_away_reading(const T* p, const Slip& slip, const T& level) const {
     return scalar_part(p[0]) > 0 ? T(level - p[0] * slip.stick_slope) : level;
   }
 };

@@ -44,7 +44,7 @@ struct ContactSpin {
   /// would lose all its friction in them. Five least rim speeds where nothing spins, which leaves 99.5 % of friction,
   /// and soon nothing where the spin itself can be read.
   template <class T>
-  T slowest_reading(const T* p, const Instant<T>& x) const {
+  T slowest_reading(const T* p, const SlidingState<T>& x) const {
     const T rim = rim_speed(p, x.disc_speed);
     return 5 * least_rim_speed * least_rim_speed * least_rim_speed / (rim * rim);
   }
@@ -53,20 +53,20 @@ struct ContactSpin {
   /// both sides of u = 1, with its tail gathered in two terms that give value 8/(3 pi) and slope at u = 1 (error below
   /// 2e-4).
   template <class T>
-  static T fullness(const T& x) {
+  static T spin_factor(const T& x) {
     const T x2 = x * x, x4 = x2 * x2;
     return 1.0 - x / 8.0 - x2 / 64.0 - 5.0 / 1024.0 * x * x2 - 0.0019368 * x4 - 0.0037290 * x * x4 * x4;
   }
 
   template <class T>
-  LocalSliding<T> spread(const T* p, const Instant<T>& x) const {
+  LocalSliding<T> average_over_contact(const T* p, const SlidingState<T>& x) const {
     using std::abs;
     const T v = abs(x.velocity), rim = rim_speed(p, x.disc_speed);
     if (scalar_part(v) < scalar_part(rim)) {
-      const T u = v / rim, h = fullness(T(u * u));
+      const T u = v / rim, h = spin_factor(T(u * u));
       return {T(u * h), T(rim / h)};
     }
-    const T u = rim / v, h = fullness(T(u * u));
+    const T u = rim / v, h = spin_factor(T(u * u));
     return {h, T(v / h)};
   }
 
@@ -78,7 +78,7 @@ struct ContactSpin {
     if (scalar_part(share) >= 0.84) return rim_speed(p, disc_speed);
     T u = share;
     for (int i = 0; i < 4; ++i) {
-      const T g = u * fullness(T(u * u));
+      const T g = u * spin_factor(T(u * u));
       const T slope = 1.0 - 0.375 * u * u - 5.0 / 64.0 * u * u * u * u - 0.034 * u * u * u * u * u * u;
       u += (share - g) / slope;
     }

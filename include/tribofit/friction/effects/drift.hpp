@@ -16,7 +16,7 @@ struct Drift {
   }
 
   template <class T>
-  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+  T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     return mu * (1.0 + p[0] * x.time);
   }
 };

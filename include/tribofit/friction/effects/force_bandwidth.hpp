@@ -23,7 +23,7 @@ struct ForceBandwidth {
   /// Exact for straight lines between samples: what is left of the ramp response of the filter, its state (y, y'/w),
   /// turns and shrinks by e^(-zeta w dt) over every interval.
   template <class T>
-  void sense(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
+  void filter_reading(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
     using std::cos;
     using std::exp;
     using std::sin;
@@ -69,7 +69,7 @@ struct ForceBandwidth {
 
   /// A ramp comes out 2 zeta/w late.
   template <class T>
-  T sense_break_away(const T* p, const Slip& slip, const T& level) const {
+  T filter_break_away_reading(const T* p, const Slip& slip, const T& level) const {
     return level - 2.0 * p[1] / (2 * std::numbers::pi * p[0]) * slip.stick_slope;
   }
 };

@@ -16,11 +16,11 @@ struct FrictionalLag {
                 "doi:10.1016/0005-1098(94)90209-7",
             .experiment =
                 "1, 2, 4 and 8 rpm: the loop stays constant in ms; a delay of the channels also shows at re-stick",
-            .parameters = {{"tau", "ms", 1e-3, 0.1, 10, 1, 0.1, false, false, 3, Grows::with_slip_time}}};
+            .parameters = {{"tau", "ms", 1e-3, 0.1, 10, 1, 0.1, false, false, 3, BoundScaling::with_slip_time}}};
   }
 
   template <class T>
-  Relaxation<T> relaxation(const T* p, const Instant<T>& /*x*/, const T& steady) const {
+  Relaxation<T> relaxation(const T* p, const SlidingState<T>& /*x*/, const T& steady) const {
     return {1.0 / p[0], steady};
   }
 };

@@ -17,12 +17,12 @@ struct Interference {
             .experiment = "record with the disc at rest: the line stays",
             .parameters = {{"A", "1", 1, 0, 0.03, 0.003, 0, true},
                            {"f", "Hz", 1, 2, 10000, 50},
-                           {"phase", "rad", 1, -6.3, 6.3, 0, kUnused, false, false, 4}},
+                           {"phase", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
             .group = EffectGroup::measurement};
   }
 
   template <class T>
-  T read(const T* p, const Instant<T>& x, const T& mu) const {
+  T add_to_reading(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::cos;
     return mu + p[0] * cos(2 * std::numbers::pi * p[1] * x.time + p[2]);
   }
@@ -30,7 +30,7 @@ struct Interference {
   /// The level comes from a straight line through the second half of the stick, over which a line of high frequency
   /// averages out: the response of a least-squares line, at its end, to a cosine.
   template <class T>
-  T sense_break_away(const T* p, const Slip& slip, const T& level) const {
+  T filter_break_away_reading(const T* p, const Slip& slip, const T& level) const {
     using std::cos;
     using std::sin;
     const T w = 2 * std::numbers::pi * p[1];

@@ -20,7 +20,7 @@ struct LoadDependence {
   }
 
   template <class T>
-  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+  T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::exp;
     return x.load > 0 ? T(mu * exp(-p[0] * std::log(x.load / x.mean_load))) : mu;
   }

@@ -9,7 +9,7 @@ namespace tribofit {
 
 /// The disc does not turn at one speed: omega (1 + A cos(n theta + phase)).
 struct SpeedRipple {
-  static constexpr bool of_motion = true;
+  static constexpr bool kinematic_effect = true;
 
   static EffectInfo info() {
     return {.key = "speed-ripple",
@@ -19,7 +19,7 @@ struct SpeedRipple {
             .experiment = "laser on the unloaded disc",
             .parameters = {{"A", "1", 1, 0, 0.15, 0.01, 0},
                            {"n", "1", 1, 1, 6, 1},
-                           {"phase", "rad", 1, -6.3, 6.3, 0, kUnused, false, false, 4}},
+                           {"phase", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
             .needs = {.angle = true, .plateau = true},
             .group = EffectGroup::rig};
   }
@@ -27,7 +27,7 @@ struct SpeedRipple {
 
 /// The true omega r is not the stated one.
 struct RadiusOffset {
-  static constexpr bool of_motion = true;
+  static constexpr bool kinematic_effect = true;
 
   static EffectInfo info() {
     return {.key = "radius-offset",
@@ -43,7 +43,7 @@ struct RadiusOffset {
 
 /// The vibrometer reads g times the velocity.
 struct VelocityGain {
-  static constexpr bool of_motion = true;
+  static constexpr bool kinematic_effect = true;
 
   static EffectInfo info() {
     return {.key = "velocity-gain",
@@ -59,7 +59,7 @@ struct VelocityGain {
 
 /// The vibrometer does not see slow motion: dv_m/dt + 2 pi f_c v_m = dv_b/dt.
 struct VelocityHighPass {
-  static constexpr bool of_motion = true;
+  static constexpr bool kinematic_effect = true;
 
   static EffectInfo info() {
     return {.key = "velocity-highpass",

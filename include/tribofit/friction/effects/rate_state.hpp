@@ -19,21 +19,21 @@ struct RateState {
                 "J. R. Rice, N. Lapusta, K. Ranjith, J. Mech. Phys. Solids 49 (2001) 1865, "
                 "doi:10.1016/S0022-5096(01)00042-4",
             .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
-            .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, Grows::with_slip_length},
+            .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, BoundScaling::with_slip_length},
                            {"a", "1", 1, 0, 0.02, 0, 0, true}},
             .forms = {
                 {"healing", "contacts also grow older at rest (Dieterich), so break-away grows with the stick time"}}};
   }
 
   template <class T>
-  Relaxation<T> relaxation(const T* p, const Instant<T>& x, const T& steady) const {
+  Relaxation<T> relaxation(const T* p, const SlidingState<T>& x, const T& steady) const {
     using std::abs;
     return {abs(x.velocity) / p[0], steady};
   }
 
   /// a asinh(|v|/(2 v0)): what friction does at once.
   template <class T>
-  static T direct(const T* p, const Instant<T>& x) {
+  static T direct(const T* p, const SlidingState<T>& x) {
     using std::abs;
     using std::log;
     using std::sqrt;
@@ -42,7 +42,7 @@ struct RateState {
   }
 
   template <class T>
-  T output(const T* p, const Instant<T>& x, const T& /*steady*/, const T& phi) const {
+  T output(const T* p, const SlidingState<T>& x, const T& /*steady*/, const T& phi) const {
     return phi + direct(p, x);
   }
 };

@@ -28,19 +28,19 @@ struct RateStateHealing {
 
   /// Renewals of the contacts in unit time at the speed `v` [1/s].
   template <class T, class V>
-  T renewal(const T* p, const V& v) const {
+  T contact_renewal_rate(const T* p, const V& v) const {
     return v / p[0];
   }
 
   /// Speed of steady sliding that makes contacts of the age `theta` [m/s].
   template <class T>
-  T aged_speed(const T* p, const T& theta) const {
+  T equivalent_speed(const T* p, const T& theta) const {
     constexpr double kYoungest = 1e-12;  // s
     return scalar_part(theta) > kYoungest ? T(p[0] / theta) : T(p[0] / kYoungest);
   }
 
   template <class T>
-  T steady(const T* p, const Instant<T>& x, const T& mu) const {
+  T steady(const T* p, const SlidingState<T>& x, const T& mu) const {
     return mu + RateState::direct(p, x);
   }
 };

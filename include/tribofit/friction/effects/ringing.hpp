@@ -17,13 +17,13 @@ struct Ringing {
             .experiment = "tap the rig: the mode answers at the same frequency without sliding",
             .parameters = {{"A", "1", 1, 0, 0.05, 0.003, 0, true},
                            {"f", "Hz", 1, 30, 2000, 200},
-                           {"zeta", "1", 1, 0.002, 0.1, 0.02, kUnused, false, false, 3},
-                           {"phase", "rad", 1, -6.3, 6.3, 0, kUnused, false, false, 4}},
+                           {"zeta", "1", 1, 0.002, 0.1, 0.02, kNoNeutralValue, false, false, 3},
+                           {"phase", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
             .group = EffectGroup::rig};
   }
 
   template <class T>
-  T read(const T* p, const Instant<T>& x, const T& mu) const {
+  T add_to_reading(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::cos;
     using std::exp;
     if (!(x.since_break_away >= 0)) return mu;

@@ -19,7 +19,7 @@ struct SensorInertia {
   }
 
   template <class T>
-  T read(const T* p, const Instant<T>& x, const T& mu) const {
+  T add_to_reading(const T* p, const SlidingState<T>& x, const T& mu) const {
     return mu - p[0] * x.acceleration / x.load;
   }
 };

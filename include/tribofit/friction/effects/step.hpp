@@ -15,12 +15,12 @@ struct StepChange {
             .source = "change point, cf. E. S. Page, Biometrika 41 (1954) 100, doi:10.1093/biomet/41.1-2.100",
             .experiment = "repeat the run on fresh surfaces: a step does not come back at the same time",
             .parameters = {{"delta", "1", 1, -0.1, 0.1, 0.01, 0, true},
-                           {"t_c", "s", 1, 0, 1e4, 10, kUnused, false, false}}};
+                           {"t_c", "s", 1, 0, 1e4, 10, kNoNeutralValue, false, false}}};
   }
 
   /// The change takes 20 ms, shorter than a cycle, so that its time has a derivative.
   template <class T>
-  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+  T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::tanh;
     return mu + x.direction * p[0] * (0.5 + 0.5 * tanh((x.time - p[1]) / 0.01));
   }

@@ -22,7 +22,7 @@ struct StribeckExponent {
   }
 
   template <class T>
-  T reduce(const T* p, const T& x) const {
+  T transform_speed(const T* p, const T& x) const {
     using std::exp;
     using std::log;
     // x^delta through the logarithm; at rest there is nothing to bend, and log(0) has no derivative.

@@ -19,7 +19,7 @@ struct TemperatureDependence {
   }
 
   template <class T>
-  T modulate(const T* p, const Instant<T>& x, const T& mu) const {
+  T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     return mu * (1.0 + p[0] * (x.temperature - x.mean_temperature));
   }
 };

@@ -18,7 +18,7 @@ struct Viscous {
   }
 
   template <class T>
-  T steady(const T* p, const Instant<T>& x, const T& mu) const {
+  T steady(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::abs;
     return mu + p[0] * abs(x.velocity);
   }

@@ -1,4 +1,4 @@
-#include "survey.hpp"
+#include "plateau_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +73,8 @@ Disc disc_of(const Trace& trace) {
   return disc;
 }
 
-Survey survey(const Trace& trace, const Disc& disc, double step) {
-  Survey s;
+PlateauSearch survey(const Trace& trace, const Disc& disc, double step) {
+  PlateauSearch s;
   const std::span<const double> velocity(trace.velocity);
   const std::size_t length = block_length(velocity);
   s.blocks = block_means(velocity, length, step);
@@ -123,10 +123,10 @@ Survey survey(const Trace& trace, const Disc& disc, double step) {
   return s;
 }
 
-std::vector<double> disc_slopes(const Survey& s) {
+std::vector<double> disc_slopes(const PlateauSearch& s) {
   std::vector<double> slopes;
   if (s.disc.mean.empty()) return slopes;
-  for (const Rest& run : s.rests.runs) {
+  for (const StickPlateau& run : s.rests.runs) {
     const auto part =
         std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
     slopes.push_back(fit_line(part).slope / s.blocks.step);
@@ -140,7 +140,7 @@ double final_level(const Rests& rests) {
   return median(std::move(levels));
 }
 
-std::size_t run_up_blocks(const Survey& s) {
+std::size_t run_up_blocks(const PlateauSearch& s) {
   if (s.rests.runs.size() < 3) return 0;
   const double level = final_level(s.rests);
   const std::span<const double> v(s.blocks.mean);
@@ -149,7 +149,7 @@ std::size_t run_up_blocks(const Survey& s) {
     double level;
   };
   std::vector<Piece> pieces;
-  for (const Rest& run : s.rests.runs) {
+  for (const StickPlateau& run : s.rests.runs) {
     // The first rest may be the run-up itself: it is looked at from end to end, and more finely.
     const bool first = run.begin == 0;
     const std::size_t begin = first ? 0 : run.inner_begin(), end = first ? run.end - run.size() / 32 : run.inner_end();
@@ -176,7 +176,7 @@ std::size_t run_up_blocks(const Survey& s) {
     if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
     // Ringing after a re-stick at the very beginning is no run-up either.
     std::vector<double> durations;
-    for (const Rest& run : s.rests.runs) durations.push_back(static_cast<double>(run.size()));
+    for (const StickPlateau& run : s.rests.runs) durations.push_back(static_cast<double>(run.size()));
     const double least = 0.25 * median(std::move(durations));
     return k < pieces.size() && static_cast<double>(pieces[k].begin) > least ? pieces[k].begin : 0;
   }

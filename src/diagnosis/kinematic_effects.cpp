@@ -1,4 +1,4 @@
-#include "of_motion.hpp"
+#include "kinematic_effects.hpp"
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "declared.hpp"
+#include "instrument_limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 
 namespace tribofit::diagnosis {
 namespace {
 
 /// What was found in the motion and in the load channel, and undone, as effects.
-std::vector<EffectFinding> motion_findings(const Motion& motion, const Measure& load_coupling,
+std::vector<EffectFinding> motion_findings(const Motion& motion, const Estimate& load_coupling,
                                            const Instruments& instruments) {
   std::vector<EffectFinding> out;
   const auto add = [&](const char* key, const std::vector<std::pair<double, double>>& values) {
@@ -131,7 +131,7 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
          motion.plateau_ratio < 1.15;
 }
 
-void add_motion(std::span<const Record> records, const Measure& load_coupling, const Instruments& instruments,
+void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,
                 const std::optional<Fit>& uncorrected, Diagnosis& diagnosis) {
   const std::vector<EffectFinding> found = motion_findings(*records[0].motion, load_coupling, instruments);
   std::vector<EffectFinding> findings;
@@ -142,7 +142,7 @@ void add_motion(std::span<const Record> records, const Measure& load_coupling, c
     const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(), named);
     if (before != found.end()) {
       findings.push_back(*before);
-    } else if (is_of_motion(effect)) {
+    } else if (is_kinematic(effect)) {
       findings.push_back(not_found(effect, records));
     } else if (at != diagnosis.effects.end()) {
       findings.push_back(*at);

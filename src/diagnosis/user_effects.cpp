@@ -1,4 +1,4 @@
-#include "own_effects.hpp"
+#include "user_effects.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tribofit/ingest/own_files.hpp"
+#include "tribofit/ingest/output_tables.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,8 +9,8 @@ namespace tribofit {
 bool is_own_file(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   const auto known =
-      std::find_if(own_files.begin(), own_files.end(), [&](const OwnFile& file) { return file.name == name; });
-  if (known == own_files.end()) return false;
+      std::find_if(output_tables.begin(), output_tables.end(), [&](const OwnFile& file) { return file.name == name; });
+  if (known == output_tables.end()) return false;
   std::ifstream in(path, std::ios::binary);
   std::string header(known->header.size(), '\0');
   in.read(header.data(), static_cast<std::streamsize>(header.size()));

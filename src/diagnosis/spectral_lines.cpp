@@ -1,4 +1,4 @@
-#include "lines.hpp"
+#include "spectral_lines.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -84,7 +84,7 @@ double lowest_ringing(const Observations& observations) {
 namespace {
 
 /// Adds to `series`, sampled at `rate` from time 0, what is left of a stick about a parabola.
-void add_stick(const Motion& motion, const Span& stick, double rate, std::vector<double>& series) {
+void add_stick(const Motion& motion, const SampleRange& stick, double rate, std::vector<double>& series) {
   const auto n = static_cast<Eigen::Index>(stick.size());
   if (n < 20) return;
   Eigen::MatrixXd design(n, 3);

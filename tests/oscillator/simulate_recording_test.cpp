@@ -8,17 +8,18 @@
 
 #include "rigs.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 namespace {
 
 /// The published 15 mm test with one effect; p of the effect in SI.
-Hidden hidden_with(const std::string& key, const std::vector<double>& effect, const SimulationOptions& options) {
+SimulatedRecording hidden_with(const std::string& key, const std::vector<double>& effect,
+                               const SimulationOptions& options) {
   const Case c = published_case(0.015, BaseLaw::exponential);
   std::vector<double> p = c.p;
   p.insert(p.end(), effect.begin(), effect.end());
-  return hide(FrictionModel(BaseLaw::exponential, {make_effect(key)}), p, c.rig, c.drive, options);
+  return simulate_recording(FrictionModel(BaseLaw::exponential, {make_effect(key)}), p, c.rig, c.drive, options);
 }
 
 TEST(Ripple, SpeedIsTheRateOfTheAngleAndFollowsIt) {
@@ -34,7 +35,8 @@ TEST(Ripple, SpeedIsTheRateOfTheAngleAndFollowsIt) {
 }
 
 TEST(Hide, SpeedRippleMovesThePlateauWhileTheRecordStatesOneSpeed) {
-  const Hidden hidden = hidden_with("speed-ripple", {0.08, 2, 0.5}, {.duration = 16, .rate = 2000, .settle = 3});
+  const SimulatedRecording hidden =
+      hidden_with("speed-ripple", {0.08, 2, 0.5}, {.duration = 16, .rate = 2000, .settle = 3});
   const Trace& trace = hidden.recording.trace;
   EXPECT_TRUE(trace.disc_speed.empty());
   const double stated = trace.conditions.speed.value;
@@ -51,8 +53,8 @@ TEST(Hide, SpeedRippleMovesThePlateauWhileTheRecordStatesOneSpeed) {
 
 TEST(Hide, RadiusAndGainShowInThePlateau) {
   const double stated = 4 * 2 * std::numbers::pi / 60 * 0.015;
-  const Hidden radius = hidden_with("radius-offset", {1.05}, {.duration = 2, .rate = 2000, .settle = 3});
-  const Hidden gain = hidden_with("velocity-gain", {0.92}, {.duration = 2, .rate = 2000, .settle = 3});
+  const SimulatedRecording radius = hidden_with("radius-offset", {1.05}, {.duration = 2, .rate = 2000, .settle = 3});
+  const SimulatedRecording gain = hidden_with("velocity-gain", {0.92}, {.duration = 2, .rate = 2000, .settle = 3});
   EXPECT_NEAR(radius.recording.trace.conditions.radius.value, 0.015, 1e-15);
   for (std::size_t i = 0; i < 4000; ++i) {
     if (radius.motion.sticks[i] != 0) {
@@ -64,7 +66,7 @@ TEST(Hide, RadiusAndGainShowInThePlateau) {
 
 TEST(Hide, LoadCouplingShowsInTheLoadChannelAndInTheForce) {
   const double kappa = 0.2;
-  const Hidden hidden = hidden_with("load-coupling", {kappa}, {.duration = 2, .rate = 2000, .settle = 3});
+  const SimulatedRecording hidden = hidden_with("load-coupling", {kappa}, {.duration = 2, .rate = 2000, .settle = 3});
   const Trace& trace = hidden.recording.trace;
   ASSERT_EQ(trace.load.size(), trace.size());
   for (std::size_t i = 0; i < trace.size(); ++i) {
@@ -77,7 +79,7 @@ TEST(Hide, LoadCouplingShowsInTheLoadChannelAndInTheForce) {
 
 TEST(Hide, ContactSpinCreepsInStickByTheSpeedOfItsRim) {
   const double pad = 4e-3;
-  const Hidden hidden = hidden_with("contact-spin", {pad}, {.duration = 2, .rate = 2000, .settle = 3});
+  const SimulatedRecording hidden = hidden_with("contact-spin", {pad}, {.duration = 2, .rate = 2000, .settle = 3});
   const double omega = 4 * 2 * std::numbers::pi / 60;
   std::size_t checked = 0;
   for (std::size_t i = 0; i < hidden.motion.size(); ++i) {

@@ -18,7 +18,7 @@ Drive true_drive(const Drive& stated, const FrictionModel& model, std::span<cons
 Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::span<const double> p);
 
 /// A record in which effects are hidden, with the truth.
-struct Hidden {
+struct SimulatedRecording {
   SimulatedMotion motion;
   Recording recording;
   double floor_rmse = 0;  ///< what the true law leaves over slip [1], see floor_rmse()
@@ -27,7 +27,8 @@ struct Hidden {
 /// Simulates and records a rig whose friction is `model` with any effects of the catalogue. Effects of friction and rig
 /// act in the motion, those of the instruments on the record only, and the record states radius and speed as `drive`
 /// does, not as they are. Throws as simulate() and record() do; costs what they cost.
-Hidden hide(const FrictionModel& model, std::span<const double> p, const Rig& rig, const Drive& drive,
-            const SimulationOptions& options = {}, const Sensors& sensors = {});
+SimulatedRecording simulate_recording(const FrictionModel& model, std::span<const double> p, const Rig& rig,
+                                      const Drive& drive, const SimulationOptions& options = {},
+                                      const Sensors& sensors = {});
 
 }  // namespace tribofit

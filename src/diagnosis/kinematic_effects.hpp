@@ -20,7 +20,7 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments);
 /// below all others, a finding each, and the test that tells radius and gain apart; for effects of the motion that were
 /// not found, why. load_coupling: taken out of the load channel, 0: none. uncorrected: the base law where nothing was
 /// undone.
-void add_motion(std::span<const Record> records, const Measure& load_coupling, const Instruments& instruments,
+void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,
                 const std::optional<Fit>& uncorrected, Diagnosis& diagnosis);
 
 }  // namespace tribofit::diagnosis

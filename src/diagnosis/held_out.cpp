@@ -1,11 +1,11 @@
-#include "evidence.hpp"
+#include "held_out.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -155,7 +155,7 @@ double design_effect(const Linearised& model, std::size_t k, double noise) {
     influences.push_back(static_cast<double>(model.rows.size()) *
                          (direction * (jacobian.transpose() * rows.col(rows.cols() - 1)))(0));
   }
-  const double error = mean_error(influences).std_error;
+  const double error = standard_error_of_mean(influences).std_error;
   return std::max(1.0, error * error / independent);
 }
 

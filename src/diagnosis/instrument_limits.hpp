@@ -9,7 +9,7 @@
 namespace tribofit::diagnosis {
 
 /// Values of the first parameter of an effect that are still possible [SI; of friction: 1 or N].
-struct Possible {
+struct AllowedRange {
   double lower = 0, upper = 0;
   bool holds(double value) const { return value >= lower && value <= upper; }
 };
@@ -19,8 +19,8 @@ struct Possible {
 /// force_sensor.crosstalk (crosstalk), force_sensor.mass_below (sensor-inertia) and vibrometer.delay (channel-delay) no
 /// more than the uncertainty is left. A filter (force-bandwidth) is not slower than force_sensor.bandwidth.
 /// kind, load: of the record; a zero in N is taken over the load.
-std::optional<Possible> possible_beside_declared(const Instruments& instruments, std::string_view key,
-                                                 FrictionKind kind, const Condition& load);
+std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, std::string_view key,
+                                                    FrictionKind kind, const Condition& load);
 
 /// What the instruments file says of a plateau that is `ratio` of the stated omega r.
 struct PlateauSays {

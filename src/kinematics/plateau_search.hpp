@@ -27,7 +27,7 @@ struct Disc {
 Disc disc_of(const Trace& trace);
 
 /// The velocity in blocks, where it rests, and what its noise is.
-struct Survey {
+struct PlateauSearch {
   BlockMeans blocks;  ///< of v_b, or of v_r where that was measured
   BlockMeans disc;    ///< of omega r, where it varies
   Rests rests;        ///< of blocks minus disc where that varies, else of blocks
@@ -35,15 +35,15 @@ struct Survey {
   bool sticks = false;
 };
 
-Survey survey(const Trace& trace, const Disc& disc, double step);
+PlateauSearch survey(const Trace& trace, const Disc& disc, double step);
 
 /// d(omega r)/dt of every rest [m/s^2]; empty where omega r is constant.
-std::vector<double> disc_slopes(const Survey& s);
+std::vector<double> disc_slopes(const PlateauSearch& s);
 
 /// The level towards which the plateaus tend: median over the second half of the record [m/s].
 double final_level(const Rests& rests);
 
 /// Blocks before the plateau comes within 2 % of its final value and stays there.
-std::size_t run_up_blocks(const Survey& s);
+std::size_t run_up_blocks(const PlateauSearch& s);
 
 }  // namespace tribofit::kinematics

@@ -1,6 +1,6 @@
 /// The statistics of the diagnosis on problems whose answers are known: linear ones, refitted by brute force, and noise
 /// with nothing in it.
-#include "diagnosis/evidence.hpp"
+#include "diagnosis/held_out.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tribofit/oscillator/hide.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -25,9 +25,9 @@ Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::spa
   return sensors;
 }
 
-Hidden hide(const FrictionModel& model, std::span<const double> p, const Rig& rig, const Drive& drive,
-            const SimulationOptions& options, const Sensors& sensors) {
-  Hidden hidden;
+SimulatedRecording simulate_recording(const FrictionModel& model, std::span<const double> p, const Rig& rig,
+                                      const Drive& drive, const SimulationOptions& options, const Sensors& sensors) {
+  SimulatedRecording hidden;
   hidden.motion = simulate(rig, drive, model, p, options);
   hidden.recording = record(hidden.motion, model, p, sensors);
   hidden.floor_rmse = floor_rmse(hidden.motion, hidden.recording, model, p);

@@ -1,4 +1,4 @@
-#include "tribofit/segmentation/mean_error.hpp"
+#include "tribofit/segmentation/standard_error_of_mean.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
@@ -26,7 +26,7 @@ double first_autocorrelation(const std::vector<double>& d) {
 
 }  // namespace
 
-MeanError mean_error(std::span<const double> series) {
+MeanError standard_error_of_mean(std::span<const double> series) {
   const std::size_t n = series.size();
   if (n < 3) return {std::numeric_limits<double>::quiet_NaN(), 1};
   const auto count = static_cast<double>(n);

@@ -20,7 +20,7 @@ struct MeanError {
 /// bias (M. G. Kendall, Biometrika 41 (1954) 403) and taken as zero when negative. The mean over std_error follows t
 /// with nu degrees of freedom. series: deviations or values, one per cycle, in order of time; at least 3, otherwise the
 /// error is NaN.
-MeanError mean_error(std::span<const double> series);
+MeanError standard_error_of_mean(std::span<const double> series);
 
 /// Half-width factor of a two-sided 95 % interval: the 0.975 quantile of t.
 double t_quantile_95(double degrees_of_freedom);

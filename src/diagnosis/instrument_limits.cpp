@@ -1,4 +1,4 @@
-#include "declared.hpp"
+#include "instrument_limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ bool is_used(const Condition& used, const std::optional<Declared>& declared) {
 
 }  // namespace
 
-std::optional<Possible> possible_beside_declared(const Instruments& instruments, std::string_view key,
-                                                 FrictionKind kind, const Condition& load) {
+std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, std::string_view key,
+                                                    FrictionKind kind, const Condition& load) {
   const auto& sensor = instruments.force_sensor;
   if (key == "force-bandwidth" && sensor.bandwidth) {
-    return Possible{sensor.bandwidth->value - kSigmas * sensor.bandwidth->uncertainty, HUGE_VAL};
+    return AllowedRange{sensor.bandwidth->value - kSigmas * sensor.bandwidth->uncertainty, HUGE_VAL};
   }
   std::optional<Declared> declared;
   if (key == "sensor-offset" && sensor.zero) declared = zero_of_friction(sensor, kind, load);
@@ -30,7 +30,7 @@ std::optional<Possible> possible_beside_declared(const Instruments& instruments,
   if (key == "sensor-inertia") declared = sensor.mass_below;
   if (key == "channel-delay") declared = instruments.vibrometer.delay;
   if (!declared) return std::nullopt;
-  return Possible{-kSigmas * declared->uncertainty, kSigmas * declared->uncertainty};
+  return AllowedRange{-kSigmas * declared->uncertainty, kSigmas * declared->uncertainty};
 }
 
 PlateauSays plateau_says(const Instruments& instruments, const Conditions& used, double ratio) {

@@ -1,4 +1,4 @@
-#include "chosen.hpp"
+#include "parameter_options.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -10,7 +10,7 @@ namespace tribofit {
 struct OwnFile {
   std::string_view name, header;
 };
-inline constexpr std::array<OwnFile, 4> own_files = {
+inline constexpr std::array<OwnFile, 4> output_tables = {
     {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold"},
      {"cycles.csv", "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,"},
      {"curves.csv", "law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data"},
