@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 #include <system_error>
 #include <utility>
 
 #include "options.hpp"
+#include "tribofit/ingest/units.hpp"
 
 using namespace tribofit;
 
@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest";  // the source of what it says (see read_manifest)
-constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 /// Whether one of two runs repeats the other. Runs of which too little is stated may differ in what is not.
 bool repeats(const ManifestRow& a, const ManifestRow& b) {

@@ -10,6 +10,7 @@
 #include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 using namespace tribofit;
@@ -18,18 +19,6 @@ namespace {
 
 const std::vector<std::string> kChannels = {"time", "mu",    "v_b",   "v_r",         "force", "torque",
                                             "load", "speed", "angle", "temperature", "step"};
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
 
 double positive(const std::string& text, Quantity quantity, const std::string& option,
                 const std::string& bare_unit = "") {

@@ -11,7 +11,6 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -64,7 +63,6 @@ struct Plan {
   double preset_radius = 0;   ///< of the published test the defaults come from [m]
 };
 
-constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 double number(const std::string& text, const char* option) {
   return parse_quantity(text, Quantity::dimensionless, option);

@@ -15,6 +15,7 @@
 #include "results.hpp"
 #include "studied_machine.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/report/study.hpp"
 #include "tribofit/report/whole_file.hpp"
@@ -56,17 +57,6 @@ SettleOptions settle_options(const Request& r) {
     }
   }
   return options;
-}
-
-std::vector<std::string> split(const std::string& text, const std::string& separator) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t at = text.find(separator); at != std::string::npos; at = text.find(separator, begin)) {
-    parts.push_back(text.substr(begin, at - begin));
-    begin = at + separator.size();
-  }
-  parts.push_back(text.substr(begin));
-  return parts;
 }
 
 /// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".

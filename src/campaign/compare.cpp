@@ -1,17 +1,16 @@
 #include "tribofit/campaign/compare.hpp"
+#include "tribofit/ingest/units.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 namespace tribofit {
 namespace {
 
-constexpr double kMillimetre = 1e-3, kRpm = 2 * std::numbers::pi / 60;
 
 /// Whether what a row states fits; what it does not state does.
 bool fits(const Condition& stated, const Condition& own) {

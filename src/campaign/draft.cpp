@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "find_runs.hpp"
-#include "ingest/spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"

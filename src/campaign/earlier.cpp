@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "earlier_columns.hpp"
-#include "ingest/dialect.hpp"
-#include "ingest/encoding.hpp"
+#include "ingest/csv/dialect.hpp"
+#include "ingest/csv/encoding.hpp"
 #include "ingest/input_file.hpp"
-#include "ingest/spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "ingest/table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"

@@ -8,7 +8,7 @@
 
 #include "ingest/column_names.hpp"
 #include "ingest/manifest_roles.hpp"
-#include "ingest/spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/earlier.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"

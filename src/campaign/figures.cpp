@@ -9,11 +9,11 @@
 
 #include "fit/errors.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kBins = 40;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

@@ -7,23 +7,22 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <system_error>
 #include <utility>
 
-#include "ingest/encoding.hpp"
-#include "ingest/spelling.hpp"
+#include "ingest/csv/encoding.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 bool is_trace_name(const fs::path& path) {
   std::string extension = path.extension().string();

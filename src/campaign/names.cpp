@@ -9,12 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "ingest/dialect.hpp"
-#include "ingest/encoding.hpp"
-#include "ingest/input_file.hpp"
 #include "ingest/manifest_roles.hpp"
-#include "ingest/spelling.hpp"
+#include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -84,17 +82,12 @@ Condition condition_from(const std::string& text, const Measured& what, const st
   return {value, source};
 }
 
-/// "# Radius [mm]: 15" as a radius of 15mm.
-void take_header_line(std::string_view text, StatedFields& stated) {
-  std::string line(trimmed(text));
-  line.erase(0, line.find_first_not_of("#%/!\"' \t"));
-  const std::size_t split = line.find_first_of(":=;,\t");
-  if (split == std::string::npos) return;
-  const ColumnName name = parse_column_name(trimmed(replaced(line.substr(0, split), "\"", "")));
+/// "Radius [mm]: 15" as a radius of 15mm.
+void take_fact(const RawFact& fact, StatedFields& stated) {
+  const ColumnName name = parse_column_name(fact.name);
   const Role role = role_of(name);
   if (role != Role::radius && role != Role::speed && role != Role::load) return;
-  std::string value = replaced(replaced(line.substr(split + 1), "\"", ""), ";", " ");
-  value = std::string(trimmed(replaced(std::move(value), ",", ".")));
+  std::string value = replaced(fact.value, ",", ".");
   if (value.find_first_of("0123456789") == std::string::npos) return;
   if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
   const Measured& what = kMeasured[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
@@ -189,18 +182,9 @@ StatedFields usual_fields(const std::string& file_name) {
 }
 
 StatedFields header_fields(const std::string& path) {
-  constexpr std::uint64_t kLongest = 1 << 16;
   StatedFields stated;
   try {
-    const InputFile file(path);
-    std::string bytes(static_cast<std::size_t>(std::min(find_dialect(file).data_begin, kLongest)), '\0');
-    bytes.resize(file.read(0, bytes));
-    const std::string head = to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
-    for (std::size_t at = 0; at < head.size();) {
-      const std::size_t end = std::min(head.find('\n', at), head.size());
-      take_header_line(std::string_view(head).substr(at, end - at), stated);
-      at = end + 1;
-    }
+    for (const RawFact& fact : read_table(path).facts) take_fact(fact, stated);
   } catch (const InputError&) {  // the batch will say what is wrong with the file
   }
   return stated;

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "ingest/spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 

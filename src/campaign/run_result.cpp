@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
 #include <utility>
 
@@ -14,13 +13,13 @@
 #include "order.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMillimetre = 1e-3, kRpm = 2 * std::numbers::pi / 60;
 constexpr std::string_view kFigures = "\n  \"figures\": {";
 constexpr std::string_view kEnd = "\n}\n", kSeal = ",\n  \"checksum\": \"";
 

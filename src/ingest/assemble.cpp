@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
@@ -21,7 +23,6 @@ class Assembler {
     trace_.checksum = run_.checksum;
     trace_.notes = std::move(run_.notes);
     trace_.warnings = std::move(run_.warnings);
-    trace_.conditions = options_.conditions;
     set_steps();
     set_load();
     set_friction();
@@ -44,33 +45,50 @@ class Assembler {
   void set_steps() {
     trace_.steps = std::move(run_.steps);
     const auto& radii = options_.step_radii;
-    if (!radii.empty() && radii.size() != run_.recipe_size()) {
-      std::string labels;
-      for (const Step& step : trace_.steps) labels += (labels.empty() ? "" : ", ") + step.label;
-      throw InputError(fmt::format("the file has {} step{} ({}) but {} radii were given", run_.recipe_size(),
-                                   run_.recipe_size() == 1 ? "" : "s", labels, radii.size()),
-                       "give one radius for each step, in their order", file());
-    }
-    const auto refuse_radius = [&](double radius) {
-      if (radius > 1e-9 && std::isfinite(radius)) return;
-      throw InputError(fmt::format("a friction radius of {:g} mm is not possible", 1e3 * radius),
-                       "give a radius above zero", file());
-    };
-    if (trace_.conditions.radius.known()) refuse_radius(trace_.conditions.radius.value);
+    refuse_other_count(radii.size());
+    if (options_.conditions.radius.known()) refuse_radius(options_.conditions.radius.value);
     for (std::size_t i = 0; i < trace_.steps.size(); ++i) {
-      trace_.steps[i].conditions = options_.conditions;
-      if (radii.empty()) continue;
-      const double radius = radii[run_.recipe_steps[i]];
-      refuse_radius(radius);
-      trace_.steps[i].conditions.radius = {radius, "command line"};
+      Conditions& conditions = trace_.steps[i].conditions;
+      conditions = first_known(options_.conditions, conditions);
+      if (!radii.empty()) conditions.radius = {radii[run_.recipe_steps[i]], "command line"};
+      if (conditions.radius.known()) refuse_radius(conditions.radius.value);
     }
-    if (!radii.empty()) {
-      const bool same = std::all_of(radii.begin(), radii.end(), [&](double r) { return r == radii.front(); });
-      trace_.conditions.radius = same ? trace_.steps.front().conditions.radius : Condition{};
-    } else if (run_.recipe_size() > 1 && trace_.conditions.radius.known()) {
+    for (const auto condition : {&Conditions::radius, &Conditions::speed, &Conditions::load}) {
+      trace_.conditions.*condition = common(condition);
+    }
+    if (radii.empty() && run_.recipe_size() > 1 && options_.conditions.radius.known()) {
       trace_.notes.push_back(fmt::format("the radius of {:g} mm was taken for all {} steps",
                                          1e3 * trace_.conditions.radius.value, run_.recipe_size()));
     }
+  }
+
+  void refuse_other_count(std::size_t radii) const {
+    if (radii == 0 || radii == run_.recipe_size()) return;
+    std::vector<std::string> labels;
+    for (const Step& step : trace_.steps) labels.push_back(step.label);
+    throw InputError(fmt::format("the file has {} step{} ({}) but {} radii were given", run_.recipe_size(),
+                                 run_.recipe_size() == 1 ? "" : "s", listed(labels), radii),
+                     "give one radius for each step, in their order", file());
+  }
+
+  void refuse_radius(double radius) const {
+    if (radius > 1e-9 && std::isfinite(radius)) return;
+    throw InputError(fmt::format("a friction radius of {:g} mm is not possible", 1e3 * radius),
+                     "give a radius above zero", file());
+  }
+
+  static Conditions first_known(const Conditions& by_user, const Conditions& by_file) {
+    const auto first = [](const Condition& a, const Condition& b) { return a.known() ? a : b; };
+    return {first(by_user.radius, by_file.radius), first(by_user.speed, by_file.speed),
+            first(by_user.load, by_file.load)};
+  }
+
+  /// The condition that all steps share; not known where they differ.
+  Condition common(Condition Conditions::*condition) const {
+    const Condition& first = trace_.steps.front().conditions.*condition;
+    const bool same = std::all_of(trace_.steps.begin(), trace_.steps.end(),
+                                  [&](const Step& step) { return (step.conditions.*condition).value == first.value; });
+    return same ? first : Condition{};
   }
 
   double radius_of(const Step& step, const char* why) const {
@@ -96,7 +114,9 @@ class Assembler {
     const double mean = sum / static_cast<double>(load.size());
     if (!trace_.conditions.load.known()) {
       trace_.conditions.load = {mean, "file"};
-      for (Step& step : trace_.steps) step.conditions.load = mean_load(load, step);
+      for (Step& step : trace_.steps) {
+        if (!step.conditions.load.known()) step.conditions.load = mean_load(load, step);
+      }
     } else if (std::abs(mean / trace_.conditions.load.value - 1) > 0.1) {
       trace_.warnings.push_back(
           fmt::format("the stated load of {:g} N contradicts the mean of the load channel, {:.4g} N",
@@ -128,29 +148,41 @@ class Assembler {
   }
 
   void divide_by_load(const std::string& force) {
-    const auto& load = run_[Channel::load];
-    if (!load.empty()) {
-      for (std::size_t i = 0; i < load.size(); ++i) {
-        constexpr double least = 1e-12;  // [N]
-        if (!(load[i] > least)) {
-          throw InputError(
-              fmt::format("the load is {:g} N, and friction is {} over load", load[i], force),
-              "remove the rows without load, or leave the channel out with --columns load=none and state --load",
-              run_.location(i, Channel::load));
-        }
-        trace_.friction[i] /= load[i];
-      }
-      trace_.notes.push_back("mu is " + force + " over the measured load");
-    } else if (options_.conditions.load.known()) {
-      const double nominal = options_.conditions.load.value;
-      if (!(nominal > 0)) throw InputError("the load must be above zero", "give it as --load 50N", file());
-      for (double& value : trace_.friction) value /= nominal;
-      trace_.notes.push_back(fmt::format("mu is {} over the nominal load of {:g} N", force, nominal));
-    } else {
+    if (!run_[Channel::load].empty()) {
+      divide_by_measured_load(force);
+      return;
+    }
+    const bool stated = std::all_of(trace_.steps.begin(), trace_.steps.end(),
+                                    [](const Step& step) { return step.conditions.load.known(); });
+    if (!stated) {
       trace_.friction_kind = FrictionKind::force;
       trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
                              (force == "torque/radius" ? "" : " as measured") + " (state --load for a coefficient)");
+      return;
     }
+    for (const Step& step : trace_.steps) {
+      const double nominal = step.conditions.load.value;
+      if (!(nominal > 0)) throw InputError("the load must be above zero", "give it as --load 50N", file());
+      for (std::size_t i = step.begin; i < step.end; ++i) trace_.friction[i] /= nominal;
+    }
+    const Condition& load = trace_.conditions.load;
+    trace_.notes.push_back("mu is " + force + " over the nominal load of " +
+                           (load.known() ? fmt::format("{:g} N", load.value) : std::string("each step")));
+  }
+
+  void divide_by_measured_load(const std::string& force) {
+    const auto& load = run_[Channel::load];
+    constexpr double least = 1e-12;  // [N]
+    for (std::size_t i = 0; i < load.size(); ++i) {
+      if (!(load[i] > least)) {
+        throw InputError(
+            fmt::format("the load is {:g} N, and friction is {} over load", load[i], force),
+            "remove the rows without load, or leave the channel out with --columns load=none and state --load",
+            run_.location(i, Channel::load));
+      }
+      trace_.friction[i] /= load[i];
+    }
+    trace_.notes.push_back("mu is " + force + " over the measured load");
   }
 
   void warn_of_large_coefficient() {
@@ -170,12 +202,12 @@ class Assembler {
     std::vector<double> sorted = column;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
-    constexpr double agreement = 0.02, rpm = 30 / std::numbers::pi;
+    constexpr double agreement = 0.02;
     if (std::abs(*middle - stated.value) <= agreement * std::abs(stated.value)) return;
     trace_.warnings.push_back(
         fmt::format("the stated speed of {:.4g} rpm ({}) contradicts the median of the speed column, {:.4g} rpm; the "
                     "stated speed is used and the column is not",
-                    rpm * stated.value, stated.source.empty() ? "stated" : stated.source, rpm * *middle));
+                    stated.value / kRpm, stated.source.empty() ? "stated" : stated.source, *middle / kRpm));
     column.clear();
   }
 

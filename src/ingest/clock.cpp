@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
-#include "spelling.hpp"
+#include "column_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -32,29 +34,22 @@ class Clock {
     double shift = -time_.front(), last = time_.front();
     double step_start = last;
     time_.front() = 0;
-    std::vector<std::size_t> restarts;
     for (std::size_t i = 1; i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
-      const bool step_changes = !step_.empty() && step_[i] != step_[i - 1];
+      const bool step_changes = begins_step(i);
       if (interval > 0 && interval <= gap_limit * interval_ && !step_changes) [[likely]] {
         time_[i] = now + shift;
       } else {
         if (!(interval > 0)) {
-          const bool back_to_start = now <= step_start + gap_limit * interval_;
-          const bool restarts_here =
-              back_to_start && i - recording_.steps.back().begin >= shortest_step && goes_on_from(i, last);
-          if (!step_changes && !restarts_here) refuse(i, last);
+          if (!step_changes && !restarts_at(i, step_start, last)) refuse(i, last);
           shift = time_[i - 1] + interval_ - now;
-          step_start = now;
-          restarts.push_back(i);
-          begin_step(i, true);
-        } else if (step_changes) {
-          step_start = now;
-          begin_step(i, true);
-        } else {
+          restarts_.push_back(i);
+        } else if (!step_changes) {
           gaps_.push_back(i);
-          begin_step(i, false);
         }
+        const bool is_gap = interval > 0 && !step_changes;
+        if (!is_gap) step_start = now;
+        begin_step(i, !is_gap);
         time_[i] = now + shift;
       }
       if (!(time_[i] > time_[i - 1])) refuse_rounding(i);
@@ -62,10 +57,25 @@ class Clock {
     }
     recording_.steps.back().end = time_.size();
     refuse_irregular();
-    tell(restarts);
+    warn_of_gaps();
+    note_restarts();
   }
 
  private:
+  /// Whether the file says that a step begins here.
+  bool begins_step(std::size_t row) {
+    const auto& stated = recording_.stated_steps;
+    if (stated.empty()) return !step_.empty() && step_[row] != step_[row - 1];
+    if (stated_ + 1 >= stated.size() || stated[stated_ + 1].begin != row) return false;
+    ++stated_;
+    return true;
+  }
+
+  bool restarts_at(std::size_t row, double step_start, double last) const {
+    const bool back_to_start = time_[row] <= step_start + gap_limit * interval_;
+    return back_to_start && row - recording_.steps.back().begin >= shortest_step && goes_on_from(row, last);
+  }
+
   /// A lone time stamp that is wrong is followed by the old clock; a restarted clock counts on from its start.
   bool goes_on_from(std::size_t row, double old_clock) const {
     if (row + least_after > time_.size()) return false;
@@ -89,7 +99,11 @@ class Clock {
     if (!recording_.steps.empty()) recording_.steps.back().end = row;
     Step step;
     step.begin = row;
-    if (!in_recipe) {
+    const auto& stated = recording_.stated_steps;
+    if (!stated.empty()) {
+      step.label = stated[stated_].label;
+      step.conditions = stated[stated_].conditions;
+    } else if (!in_recipe) {
       step.label = recording_.steps.back().label;
     } else if (!step_.empty()) {
       step.label = fmt::format("{:g}", step_[row]);
@@ -123,30 +137,36 @@ class Clock {
         recording_.location(gaps_.front(), Channel::time));
   }
 
-  void tell(const std::vector<std::size_t>& restarts) {
-    if (!gaps_.empty()) {
-      const std::size_t first = gaps_.front();
-      recording_.warnings.push_back(fmt::format(
-          "{} gap{} in time, the first of {:.6g} s before line {} (interval {:.6g} s); the data after a gap "
-          "are a step of their own",
-          gaps_.size(), gaps_.size() == 1 ? "" : "s", time_[first] - time_[first - 1], recording_.lines.line_of(first),
-          interval_));
+  void warn_of_gaps() {
+    if (gaps_.empty()) return;
+    const std::size_t first = gaps_.front();
+    recording_.warnings.push_back(fmt::format(
+        "{} gap{} in time, the first of {:.6g} s before {} (interval {:.6g} s); the data after a gap are a step of "
+        "their own",
+        gaps_.size(), gaps_.size() == 1 ? "" : "s", time_[first] - time_[first - 1], recording_.place_of(first),
+        interval_));
+  }
+
+  void note_restarts() {
+    if (restarts_.empty()) return;
+    const bool has_lines = recording_.location(0, Channel::time).line > 0;
+    std::vector<std::string> places;
+    for (const std::size_t row : restarts_) {
+      places.push_back(std::to_string(has_lines ? recording_.lines.line_of(row) : row + 1));
     }
-    std::vector<std::string> lines;
-    for (const std::size_t row : restarts) lines.push_back(std::to_string(recording_.lines.line_of(row)));
-    if (lines.size() > 8) lines = {lines.front(), "...", lines.back()};
-    if (!restarts.empty()) {
-      recording_.notes.push_back(fmt::format(
-          "the clock restarts {} time{} (line{} {}); the steps follow one another without a pause", restarts.size(),
-          restarts.size() == 1 ? "" : "s", restarts.size() == 1 ? "" : "s", listed(lines)));
-    }
+    if (places.size() > 8) places = {places.front(), "...", places.back()};
+    const char* plural = restarts_.size() == 1 ? "" : "s";
+    recording_.notes.push_back(
+        fmt::format("the clock restarts {} time{} ({}{} {}); the steps follow one another without a pause",
+                    restarts_.size(), plural, has_lines ? "line" : "value", plural, listed(places)));
   }
 
   FileRecord& recording_;
   std::vector<double>& time_;
   std::vector<double>& step_;
   double interval_;
-  std::vector<std::size_t> gaps_;
+  std::size_t stated_ = 0;  // the stated step that a row belongs to
+  std::vector<std::size_t> gaps_, restarts_;
 };
 
 std::size_t rows_of(const FileRecord& recording) {
@@ -155,22 +175,66 @@ std::size_t rows_of(const FileRecord& recording) {
   return rows;
 }
 
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// A fact that states the sampling, as a rate or as an interval.
+std::optional<Sampling> sampling_from(const RawFact& fact) {
+  const std::string base = parse_column_name(fact.name).base;
+  Sampling sampling;
+  if (is_one_of(base, {"fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "abtastrate",
+                       "abtastfrequenz", "\u91c7\u6837\u9891\u7387", "\u91c7\u6837\u7387"})) {
+    sampling.rate = value_of(fact, Quantity::frequency, "Hz").value_or(0);
+  } else if (is_one_of(base, {"dt", "interval", "sampleinterval", "samplinginterval", "samplingtimeinterval",
+                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "abtastintervall",
+                              "\u91c7\u6837\u95f4\u9694"})) {
+    sampling.interval = value_of(fact, Quantity::time, "s").value_or(0);
+  }
+  const double size = sampling.rate + sampling.interval;
+  if (!(size > 0) || !std::isfinite(size)) return std::nullopt;
+  const std::string place = fact.line > 0 ? fmt::format(" in line {}", fact.line) : "";
+  sampling.source = fmt::format("'{}: {}'{} of the file", fact.name, fact.value, place);
+  return sampling;
+}
+
+void set_time(FileRecord& recording, const Sampling& sampling) {
+  const double size = sampling.rate + sampling.interval;
+  if (!(size > 0) || !std::isfinite(size) || !std::isfinite(sampling.start)) {
+    throw InputError(sampling.by_user ? "the sampling rate must be positive" : "the stated sampling is not possible",
+                     "give the sampling rate as --rate 20kHz", {recording.path, 0, ""});
+  }
+  auto& time = recording[Channel::time];
+  time.resize(rows_of(recording));
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double row = static_cast<double>(i);
+    time[i] = sampling.start + (sampling.rate > 0 ? row / sampling.rate : row * sampling.interval);
+  }
+  recording.notes.push_back("time from " + sampling.source);
+}
+
 }  // namespace
 
-void set_clock(FileRecord& recording, std::optional<double> rate) {
+std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate) {
+  if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {:g} Hz", *rate)};
+  if (const auto interval = table.rows[rows].interval) {
+    return Sampling{table.rows[rows].start, 0, *interval, false,
+                    fmt::format("the interval of {:g} s in the file", *interval)};
+  }
+  for (const RawFact& fact : table.facts) {
+    if (auto sampling = sampling_from(fact)) return sampling;
+  }
+  return std::nullopt;
+}
+
+void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
   if (!recording.has(Channel::time)) {
-    if (!(*rate > 0) || !std::isfinite(*rate)) {
-      throw InputError("the sampling rate must be positive", "give it as --rate 20kHz", {recording.path, 0, ""});
-    }
-    auto& time = recording[Channel::time];
-    time.resize(rows_of(recording));
-    for (std::size_t i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / *rate;
-    recording.notes.push_back(fmt::format("time from the sampling rate of {:g} Hz", *rate));
-  } else if (rate) {
+    set_time(recording, *sampling);
+  } else if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
-    if (std::abs(found / *rate - 1) > 0.01) {
+    if (std::abs(found / sampling->rate - 1) > 0.01) {
       recording.warnings.push_back(
-          fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", *rate, found));
+          fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", sampling->rate, found));
     }
   }
   Clock(recording).run();

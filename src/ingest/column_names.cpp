@@ -5,7 +5,7 @@
 #include <charconv>
 #include <vector>
 
-#include "spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {

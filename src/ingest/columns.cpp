@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <set>
 
 #include "column_names.hpp"
-#include "spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, channel_count> channel_names = {
     "time", "mu", "v_b", "v_r", "force", "torque", "load", "speed", "angle", "temperature", "step"};
 
-/// What one user asks of one channel.
+/// What the user asks of one channel.
 struct Request {
   std::string column;  // empty: find it; "none": leave it out
   std::string unit;    // empty: from the file
@@ -26,8 +27,8 @@ using Requests = std::array<std::optional<Request>, channel_count>;
 
 class Finder {
  public:
-  Finder(const Dialect& dialect, const ReadOptions& options, const std::string& path)
-      : dialect_(dialect), path_(path), two_files_(!options.second_file.empty()), has_rate_(options.rate.has_value()) {
+  Finder(const RawTable& table, const ReadOptions& options)
+      : table_(table), two_files_(!options.second_file.empty()), has_rate_(options.rate.has_value()) {
     read_requests(options);
   }
 
@@ -44,9 +45,11 @@ class Finder {
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
     choose_one({Channel::mu, Channel::force, Channel::torque});
     choose_one({Channel::v_b, Channel::v_r});
+    settle_clocks();
     for (std::size_t i = 0; i < channel_count; ++i) {
       if (taken_[i]) convert(static_cast<Channel>(i), *taken_[i]);
     }
+    for (const std::size_t time : other_times_) convert(Channel::time, time);
     std::sort(result_.used.begin(), result_.used.end(),
               [](const Column& a, const Column& b) { return a.index < b.index; });
     note_unused();
@@ -54,7 +57,10 @@ class Finder {
   }
 
  private:
-  InputLocation header(const std::string& column = {}) const { return {path_, dialect_.header_line, column}; }
+  const RawColumn& column(std::size_t index) const { return table_.columns[index]; }
+
+  /// Where the columns are named.
+  InputLocation heading() const { return {table_.path, table_.columns.empty() ? 0 : table_.columns.front().line, ""}; }
 
   void read_requests(const ReadOptions& options) {
     const std::vector<std::string> known(channel_names.begin(), channel_names.end());
@@ -81,30 +87,33 @@ class Finder {
   }
 
   bool exists(const std::string& name) const {
-    return std::find(dialect_.names.begin(), dialect_.names.end(), name) != dialect_.names.end();
+    return std::any_of(table_.columns.begin(), table_.columns.end(),
+                       [&](const RawColumn& c) { return c.name == name; });
   }
 
   std::size_t column_index(const std::string& wanted, Channel channel) const {
-    const auto& names = dialect_.names;
-    const auto exact = std::find(names.begin(), names.end(), wanted);
-    if (exact != names.end()) return static_cast<std::size_t>(exact - names.begin());
+    const auto& columns = table_.columns;
+    const auto exact =
+        std::find_if(columns.begin(), columns.end(), [&](const RawColumn& c) { return c.named && c.name == wanted; });
+    if (exact != columns.end()) return static_cast<std::size_t>(exact - columns.begin());
     if (wanted.size() > 1 && wanted[0] == '#') {
       std::size_t number = 0;
       const char* end = wanted.data() + wanted.size();
       const auto [last, error] = std::from_chars(wanted.data() + 1, end, number);
-      if (error == std::errc{} && last == end && number >= 1 && number <= dialect_.columns) return number - 1;
+      if (error == std::errc{} && last == end && number >= 1 && number <= columns.size()) return number - 1;
       throw InputError(fmt::format("there is no column {} for {}", wanted, to_string(channel)),
-                       fmt::format("the file has {} columns, #1 to #{}", dialect_.columns, dialect_.columns), header());
+                       fmt::format("the file has {} columns, #1 to #{}", columns.size(), columns.size()), heading());
     }
     std::vector<std::size_t> similar;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const bool same_name = lower_case(names[i]) == lower_case(wanted);
-      if (same_name || parse_column_name(names[i]).base == parse_column_name(wanted).base) similar.push_back(i);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const bool same_name = lower_case(columns[i].name) == lower_case(wanted);
+      if (same_name || parse_column_name(columns[i].name).base == parse_column_name(wanted).base) similar.push_back(i);
     }
     if (similar.size() == 1) return similar.front();
+    const std::vector<std::string> names = table_.names();
     throw InputError(
         fmt::format("there is no column '{}' for {}{}", wanted, to_string(channel), did_you_mean(wanted, names)),
-        "the columns are: " + listed(names), header());
+        "the columns are: " + listed(names), heading());
   }
 
   bool is_taken(std::size_t column) const {
@@ -116,49 +125,69 @@ class Finder {
     auto& taken = taken_[index_of(channel)];
     const auto& request = requests_[index_of(channel)];
     const bool is_time = channel == Channel::time;
-    if (taken || dialect_.header_line == 0 || (request && request->ignored())) return;
+    if (taken || (request && request->ignored())) return;
     if (request && !request->column.empty() && !is_time) return;  // it is in the other file
     if (is_time && has_rate_ && !two_files_) return;
+    taken = most_usual(channel, std::nullopt);
+  }
+
+  /// The column with the most usual of the channel's names, of all rows or of these.
+  std::optional<std::size_t> most_usual(Channel channel, std::optional<std::size_t> rows) {
+    std::optional<std::size_t> best;
     std::size_t best_rank = no_rank;
     std::vector<std::string> rivals;
-    for (std::size_t i = 0; i < dialect_.names.size(); ++i) {
-      const bool is_label = channel == Channel::step && !starts_with_number(i);  // "run-in"
-      const std::size_t rank = is_taken(i) || is_label ? no_rank : rank_of(i, channel);
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      const bool is_label = channel == Channel::step && column(i).is_text;  // "run-in"
+      const bool elsewhere = rows && column(i).rows != *rows;
+      const std::size_t rank = !column(i).named || is_taken(i) || is_label || elsewhere ? no_rank : rank_of(i, channel);
       if (rank == no_rank) continue;
       if (rank < best_rank) {
         rivals.clear();
         best_rank = rank;
-        taken = i;
-      } else if (rank == best_rank && channel != Channel::step) {
-        rivals.push_back(dialect_.names[i]);
+        best = i;
+      } else if (rank == best_rank && channel != Channel::step &&
+                 (channel != Channel::time || column(i).rows == column(*best).rows)) {
+        rivals.push_back(column(i).shown_name());
       }
     }
     if (!rivals.empty()) {
       result_.warnings.push_back(fmt::format("{} is read from column {}; {} could be it too (choose with --columns)",
-                                             to_string(channel), dialect_.names[*taken], listed(rivals)));
+                                             to_string(channel), column(*best).shown_name(), listed(rivals)));
+    }
+    return best;
+  }
+
+  /// Rows of their own have a clock of their own: each set of rows that holds a channel keeps its time column.
+  void settle_clocks() {
+    if (table_.rows.size() < 2) return;
+    auto& time = taken_[index_of(Channel::time)];
+    std::set<std::size_t> sets;
+    for (std::size_t i = 0; i < channel_count; ++i) {
+      if (taken_[i] && i != index_of(Channel::time)) sets.insert(column(*taken_[i]).rows);
+    }
+    const bool of_no_channel = time && !sets.empty() && !sets.contains(column(*time).rows);
+    if (of_no_channel) time.reset();
+    const auto& request = requests_[index_of(Channel::time)];
+    if ((request && request->ignored()) || (has_rate_ && !two_files_)) return;
+    for (const std::size_t rows : sets) {
+      if (time && column(*time).rows == rows) continue;
+      if (const auto other = most_usual(Channel::time, rows)) other_times_.push_back(*other);
     }
   }
 
-  bool starts_with_number(std::size_t column) const {
-    return column < dialect_.first_row.size() && is_number(dialect_.first_row[column], dialect_.decimal);
-  }
-
-  std::optional<std::string> unit_in_file(std::size_t column) const {
-    const auto in_name = parse_column_name(dialect_.names[column]).unit;
+  std::optional<std::string> unit_in_file(std::size_t index) const {
+    const auto in_name = parse_column_name(column(index).name).unit;
     if (in_name && !in_name->empty()) return in_name;
-    if (column < dialect_.units.size() && !dialect_.units[column].empty()) {
-      return strip_brackets(dialect_.units[column]);
-    }
-    return in_name;
+    return column(index).unit.empty() ? in_name : column(index).unit;
   }
 
-  std::size_t rank_of(std::size_t column, Channel channel) const {
+  std::size_t rank_of(std::size_t index, Channel channel) const {
     std::optional<Quantity> quantity;
-    if (const auto text = unit_in_file(column); text && !text->empty()) {
+    if (const auto text = unit_in_file(index); text && !text->empty()) {
       if (const auto unit = find_unit(*text)) quantity = unit->quantity;
       if (quantity && find_unit(*text, Quantity::angular_velocity)) quantity = Quantity::angular_velocity;
     }
-    return name_rank(parse_column_name(dialect_.names[column]).base, channel, quantity);
+    return name_rank(parse_column_name(column(index).name).base, channel, quantity);
   }
 
   /// Keeps the first present of several descriptions of one thing; what the user names comes before what is found.
@@ -181,43 +210,49 @@ class Finder {
   }
 
   void convert(Channel channel, std::size_t index) {
-    Column column{channel, index, dialect_.names[index]};
+    Column used{channel, index, column(index).shown_name()};
     const auto& request = requests_[index_of(channel)];
     const bool by_user = request && !request->unit.empty();
     const std::string unit = by_user ? request->unit : unit_in_file(index).value_or("");
-    if (!find_conversion(column, unit, by_user)) return;
-    result_.used.push_back(std::move(column));
+    if (!find_conversion(used, unit, by_user)) return;
+    result_.used.push_back(std::move(used));
   }
 
   /// Fills factor, offset and angular. False when the channel can be done without and its unit is not known.
-  bool find_conversion(Column& column, const std::string& text, bool by_user) {
-    const Channel channel = column.channel;
+  bool find_conversion(Column& used, const std::string& text, bool by_user) {
+    const Channel channel = used.channel;
     if (channel == Channel::step) return true;
-    if (text.empty()) return without_unit(column);
+    if (text.empty()) return without_unit(used);
     const auto sensitivity = find_sensitivity(text, channel);
     if (sensitivity) {
-      column.factor = *sensitivity;
+      used.factor = *sensitivity;
       if (!by_user) return true;
-      const auto in_file = unit_in_file(column.index);
-      if (in_file && !in_file->empty()) column.factor *= find_unit(*in_file, Quantity::voltage).value_or(Unit{}).factor;
+      const auto in_file = unit_in_file(used.index);
+      if (in_file && !in_file->empty()) used.factor *= find_unit(*in_file, Quantity::voltage).value_or(Unit{}).factor;
       return true;
     }
     for (const Quantity quantity : quantities(channel)) {
       if (const auto unit = find_unit(text, quantity)) {
-        column.factor = unit->factor;
-        column.offset = unit->offset;
-        column.angular = quantity == Quantity::angular_velocity && channel != Channel::speed;
+        used.factor = unit->factor;
+        used.offset = unit->offset;
+        used.angular = quantity == Quantity::angular_velocity && channel != Channel::speed;
         return true;
       }
     }
-    refuse_unit(column, text);
+    refuse_unit(used, text);
   }
 
-  [[noreturn]] void refuse_unit(const Column& column, const std::string& text) const {
-    const std::size_t line = dialect_.units_line > 0 ? dialect_.units_line : dialect_.header_line;
-    const InputLocation where{path_, line, column.name};
+  /// Where the unit stands: apart from the name, else in it.
+  InputLocation heading_of_unit(const Column& used) const {
+    InputLocation where = table_.heading(used.index);
+    if (column(used.index).unit_line > 0) where.line = column(used.index).unit_line;
+    return where;
+  }
+
+  [[noreturn]] void refuse_unit(const Column& used, const std::string& text) const {
+    const InputLocation where = heading_of_unit(used);
     const std::string advice =
-        fmt::format("say the unit of {0} with --units {0}={1}", to_string(column.channel), usual_unit(column.channel));
+        fmt::format("say the unit of {0} with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
     const auto unit = find_unit(text);
     if (!unit) {
       const std::string nearest = suggest_unit(text);
@@ -226,17 +261,17 @@ class Finder {
     }
     if (unit->quantity == Quantity::voltage) {
       throw InputError("is in volts",
-                       fmt::format("say the sensitivity with --units {0}=\"5 {1}/V\"", to_string(column.channel),
-                                   usual_unit(column.channel)),
+                       fmt::format("say the sensitivity with --units {0}=\"5 {1}/V\"", to_string(used.channel),
+                                   usual_unit(used.channel)),
                        where);
     }
     throw InputError(fmt::format("unit '{}' is {}, not {}", text, with_article(to_string(unit->quantity)),
-                                 with_article(to_string(quantities(column.channel).front()))),
+                                 with_article(to_string(quantities(used.channel).front()))),
                      advice, where);
   }
 
-  bool without_unit(Column& column) {
-    switch (column.channel) {
+  bool without_unit(Column& used) {
+    switch (used.channel) {
       case Channel::mu:
       case Channel::step:
         return true;
@@ -246,21 +281,21 @@ class Finder {
       case Channel::angle:
         break;
       default:
-        result_.notes.push_back(fmt::format("{} in column {} has no unit and was taken in {}",
-                                            to_string(column.channel), column.name, si_unit(column.channel)));
+        result_.notes.push_back(fmt::format("{} in column {} has no unit and was taken in {}", to_string(used.channel),
+                                            used.name, si_unit(used.channel)));
         return true;
     }
-    if (column.channel == Channel::speed && names_rpm(parse_column_name(column.name).base)) {
-      column.factor = find_unit("rpm")->factor;
+    if (used.channel == Channel::speed && names_rpm(parse_column_name(column(used.index).name).base)) {
+      used.factor = find_unit("rpm")->factor;
       return true;
     }
     const std::string advice =
-        fmt::format("say it with --units {0}={1}", to_string(column.channel), usual_unit(column.channel));
-    const bool needed = column.channel != Channel::angle && (column.channel != Channel::speed || !velocity_is_taken());
-    if (needed || requests_[index_of(column.channel)]) {
-      throw InputError("has no unit", advice, header(column.name));
+        fmt::format("say it with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
+    const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity_is_taken());
+    if (needed || requests_[index_of(used.channel)]) {
+      throw InputError("has no unit", advice, table_.heading(used.index));
     }
-    result_.warnings.push_back(fmt::format("column {} has no unit and was not read; {}", column.name, advice));
+    result_.warnings.push_back(fmt::format("column {} has no unit and was not read; {}", used.name, advice));
     return false;
   }
 
@@ -269,22 +304,21 @@ class Finder {
   }
 
   void note_unused() {
-    if (dialect_.header_line == 0) return;
     std::vector<std::string> unused;
-    for (std::size_t i = 0; i < dialect_.names.size(); ++i) {
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
       const bool used =
           std::any_of(result_.used.begin(), result_.used.end(), [&](const Column& c) { return c.index == i; });
-      if (!used && !dialect_.names[i].empty()) unused.push_back(dialect_.names[i]);
+      if (!used && column(i).named) unused.push_back(column(i).shown_name());
     }
     if (!unused.empty()) result_.notes.push_back("columns not used: " + listed(unused));
   }
 
-  const Dialect& dialect_;
-  const std::string& path_;
+  const RawTable& table_;
   const bool two_files_;  // a column may be in the other one
   const bool has_rate_;
   Requests requests_;
   std::array<std::optional<std::size_t>, channel_count> taken_;
+  std::vector<std::size_t> other_times_;
   Columns result_;
 };
 
@@ -299,8 +333,8 @@ const Column* Columns::find(Channel channel) const {
   return at != used.end() ? &*at : nullptr;
 }
 
-Columns find_columns(const Dialect& dialect, const ReadOptions& options, const std::string& path) {
-  return Finder(dialect, options, path).find();
+Columns find_columns(const RawTable& table, const ReadOptions& options) {
+  return Finder(table, options).find();
 }
 
 }  // namespace tribofit

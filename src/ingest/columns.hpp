@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dialect.hpp"
+#include "raw_table.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -24,14 +24,14 @@ std::string_view to_string(Channel channel);
 /// A column that holds a channel, and how its numbers become SI: factor * number + offset.
 struct Column {
   Channel channel{};
-  std::size_t index = 0;  ///< in the file, from 0
-  std::string name;       ///< as the file gives it
+  std::size_t index = 0;  ///< in RawTable::columns
+  std::string name;       ///< as the file gives it, with its place
   double factor = 1, offset = 0;
   bool angular = false;  ///< a velocity given as a rotational speed [rad/s], to be multiplied by the radius
 };
 
 struct Columns {
-  std::vector<Column> used;  ///< in the order of the file
+  std::vector<Column> used;  ///< in the order of the file; a time column for each RawRows that has one
   std::vector<std::string> notes, warnings;
 
   const Column* find(Channel channel) const;
@@ -40,10 +40,10 @@ struct Columns {
 /// Which columns hold which channels: those the user names, then those whose names the field uses (COF, Ft, Fn, v_b,
 /// rpm, ...). Of several descriptions of one quantity one is chosen: mu before force before torque, v_b before v_r;
 /// a disc speed without a velocity means that the block is fixed.
-/// Units come from the user, else the header, else the row of units; forces, times and temperatures without a unit
-/// are taken in SI (noted), velocities are not guessed.
-/// Throws InputError for columns that do not exist, unknown units and units of another kind.
-Columns find_columns(const Dialect& dialect, const ReadOptions& options, const std::string& path);
+/// Units come from the user, else the name, else what the file states apart from it; forces, times and temperatures
+/// without a unit are taken in SI (noted), velocities are not guessed. Throws InputError for columns that do not exist,
+/// unknown units and units of another kind.
+Columns find_columns(const RawTable& table, const ReadOptions& options);
 
 /// A column's name taken apart: "DAQ.Fx (N)" is {"fx", "N"}, "v_b_mm_s" is {"vb", "mm/s"}.
 struct ColumnName {

@@ -9,7 +9,9 @@ std::string sentence(const std::string& problem, const std::string& advice, cons
   std::string text = where.file;
   if (where.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(where.line);
   if (!text.empty()) text += ": ";
-  if (!where.column.empty()) text += "column " + where.column + ": ";
+  if (!where.column.empty()) text += "column " + where.column;
+  if (where.value > 0) text += (where.column.empty() ? "value " : ", value ") + std::to_string(where.value);
+  if (!where.column.empty() || where.value > 0) text += ": ";
   text += problem;
   if (!advice.empty()) text += "; " + advice;
   return text;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "input_file.hpp"
-#include "spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
 

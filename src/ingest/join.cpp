@@ -8,16 +8,10 @@
 
 #include "clock.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
-
-bool has_friction(const FileRecord& r) {
-  return r.has(Channel::mu) || r.has(Channel::force) || r.has(Channel::torque);
-}
-bool has_velocity(const FileRecord& r) {
-  return r.has(Channel::v_b) || r.has(Channel::v_r);
-}
 
 const std::vector<double>& friction_of(const FileRecord& r) {
   return r.has(Channel::mu) ? r[Channel::mu] : r.has(Channel::force) ? r[Channel::force] : r[Channel::torque];
@@ -71,9 +65,9 @@ double find_offset(FileRecord& run, const FileRecord& other) {
   const double as_written = other.clock_start - run.clock_start;
   const bool overlap = std::abs(as_written) < run[Channel::time].back();
   ClockOffset found;
-  if (has_friction(run) && has_velocity(other)) {
+  if (run.has_friction() && other.has_velocity()) {
     found = estimate_clock_offset(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
-  } else if (has_velocity(run) && has_friction(other)) {
+  } else if (run.has_velocity() && other.has_friction()) {
     found = estimate_clock_offset(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
     found.offset = -found.offset;
   }
@@ -92,10 +86,43 @@ double find_offset(FileRecord& run, const FileRecord& other) {
   return found.offset;
 }
 
+/// Cuts `run` to the time that both share and interpolates the channels of `other` on it.
+void add_channels(FileRecord& run, const FileRecord& other, double offset) {
+  const auto& base = run[Channel::time];
+  const auto& time = other[Channel::time];
+  const auto begin = std::lower_bound(base.begin(), base.end(), time.front() + offset) - base.begin();
+  const auto end = std::upper_bound(base.begin(), base.end(), time.back() + offset) - base.begin();
+  const bool one_file = run.path == other.path;
+  if (end - begin < 2) {
+    throw InputError(one_file ? "the channels do not overlap in time" : "the two files do not overlap in time",
+                     "check that they are of the same run", {other.path, 0, ""});
+  }
+  const double start = base[static_cast<std::size_t>(begin)];
+  const auto dropped = static_cast<std::ptrdiff_t>(base.size()) - (end - begin);
+  crop(run, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+  if (dropped > 0) {
+    run.notes.push_back(fmt::format("{} rows outside the common time of the two {} were cut off", dropped,
+                                    one_file ? "sets of channels" : "files"));
+  }
+  run.second_path = other.path;
+  std::vector<std::string> names;
+  for (const Column& column : other.columns.used) {
+    const Channel channel = column.channel;
+    if (channel == Channel::time || channel == Channel::step || run.has(channel)) continue;
+    run[channel] = interpolate(run[Channel::time], offset - start, time, other[channel]);
+    run.columns.used.push_back(column);
+    run.second_channels.push_back(channel);
+    names.push_back(column.name);
+  }
+  run.notes.push_back(fmt::format("the channels {} ({:.6g} Hz) were interpolated linearly at {:.6g} Hz",
+                                  one_file ? listed(names) : "of " + other.path, 1 / typical_interval(time),
+                                  1 / typical_interval(run[Channel::time])));
+}
+
 }  // namespace
 
 void join(FileRecord& run, FileRecord other) {
-  if (!has_friction(run) && has_friction(other)) {
+  if (!run.has_friction() && other.has_friction()) {
     std::swap(run, other);
     run.notes.push_back("the friction is in the second file, whose time was kept");
   }
@@ -107,33 +134,14 @@ void join(FileRecord& run, FileRecord other) {
   }
   for (const std::string& note : other.notes) run.notes.push_back("second file: " + note);
   for (const std::string& warning : other.warnings) run.warnings.push_back("second file: " + warning);
-  const double offset = find_offset(run, other);
-
-  const auto& base = run[Channel::time];
-  const auto& time = other[Channel::time];
-  const auto begin = std::lower_bound(base.begin(), base.end(), time.front() + offset) - base.begin();
-  const auto end = std::upper_bound(base.begin(), base.end(), time.back() + offset) - base.begin();
-  if (end - begin < 2) {
-    throw InputError("the two files do not overlap in time", "check that they are of the same run",
-                     {other.path, 0, ""});
-  }
-  const double start = base[static_cast<std::size_t>(begin)];
-  const auto dropped = static_cast<std::ptrdiff_t>(base.size()) - (end - begin);
-  crop(run, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-  if (dropped > 0)
-    run.notes.push_back(fmt::format("{} rows outside the common time of the two files were cut off", dropped));
-
-  run.second_path = other.path;
-  for (const Column& column : other.columns.used) {
-    const Channel channel = column.channel;
-    if (channel == Channel::time || channel == Channel::step || run.has(channel)) continue;
-    run[channel] = interpolate(run[Channel::time], offset - start, time, other[channel]);
-    run.columns.used.push_back(column);
-    run.second_channels.push_back(channel);
-  }
-  run.notes.push_back(fmt::format("the channels of {} ({:.6g} Hz) were interpolated linearly at {:.6g} Hz", other.path,
-                                  1 / typical_interval(time), 1 / typical_interval(run[Channel::time])));
+  add_channels(run, other, find_offset(run, other));
   run.checksum = hash_bytes(reinterpret_cast<const char*>(&other.checksum), sizeof other.checksum, run.checksum);
+}
+
+void join_on_one_clock(FileRecord& run, FileRecord other) {
+  run.notes.insert(run.notes.end(), other.notes.begin(), other.notes.end());
+  run.warnings.insert(run.warnings.end(), other.warnings.begin(), other.warnings.end());
+  add_channels(run, other, other.clock_start - run.clock_start);
 }
 
 }  // namespace tribofit

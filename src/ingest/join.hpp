@@ -10,9 +10,13 @@ namespace tribofit {
 /// what only one of them recorded is cut off. The offset between the clocks is estimated where one file holds friction
 /// and the other velocity: first from the most frequent difference between break-aways (steep falls of friction) and
 /// jumps of the velocity, then refined so that friction scatters least about a function of the velocity in
-/// slip. A lag or delay of friction behind velocity cannot be told from an offset and is absorbed in it.
+/// slip. A lag or delay of friction behind velocity is not distinguishable from an offset and is absorbed
+/// in it.
 /// Throws InputError when both files hold the same channels, or when no offset can be found.
 void join(FileRecord& run, FileRecord other);
+
+/// Adds the channels of other rows of the same file: as above, but their clock is the same, and no offset is estimated.
+void join_on_one_clock(FileRecord& run, FileRecord other);
 
 /// How far the clock of `velocity` lags: its event at t happened at t + offset on the clock of friction [s].
 struct ClockOffset {

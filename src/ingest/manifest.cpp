@@ -13,11 +13,11 @@
 #include <utility>
 
 #include "column_names.hpp"
-#include "dialect.hpp"
-#include "encoding.hpp"
+#include "csv/dialect.hpp"
+#include "csv/encoding.hpp"
 #include "input_file.hpp"
 #include "manifest_roles.hpp"
-#include "spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"

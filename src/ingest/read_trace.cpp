@@ -6,9 +6,10 @@
 
 #include "assemble.hpp"
 #include "join.hpp"
+#include "reader.hpp"
 #include "recording.hpp"
-#include "spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -34,19 +35,23 @@ void refuse_twice(const std::string& path, const std::string& next) {
 
 }  // namespace
 
-Trace read_trace(const std::string& path, const ReadOptions& options) {
-  FileRecord run = read_recording(path, options);
+Trace read_trace(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
+  FileRecord run = read_recording(path, options, readers);
   for (std::size_t i = 0; i < options.continued_in.size(); ++i) {
     refuse_twice(path, options.continued_in[i]);
     for (std::size_t k = 0; k < i; ++k) refuse_twice(options.continued_in[k], options.continued_in[i]);
-    continue_recording(run, read_recording(options.continued_in[i], options), i + 2);
+    continue_recording(run, read_recording(options.continued_in[i], options, readers), i + 2);
   }
   if (!options.second_file.empty()) {
-    FileRecord other = read_recording(options.second_file, options);
+    FileRecord other = read_recording(options.second_file, options, readers);
     check_requests(run, other, options);
     join(run, std::move(other));
   }
   return assemble(std::move(run), options);
+}
+
+Trace read_trace(const std::string& path, const ReadOptions& options) {
+  return read_trace(path, options, all_readers());
 }
 
 }  // namespace tribofit

@@ -3,20 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "clock.hpp"
+#include "join.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
-
-void note_text_rows(const Rows& rows, FileRecord& recording) {
-  if (rows.text_rows == 0) return;
-  std::string note = fmt::format("{} line{} of text or comment dropped, the first is line {}", rows.text_rows,
-                                 rows.text_rows == 1 ? "" : "s", rows.first_text_line);
-  (rows.text_rows * 100 > rows.size() ? recording.warnings : recording.notes).push_back(std::move(note));
-}
 
 void add_all(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
@@ -26,44 +23,144 @@ std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
 
-}  // namespace
+/// Notes and warnings of the table so far; each is taken once.
+void take_messages(RawTable& table, FileRecord& recording) {
+  add_all(recording.notes, std::exchange(table.notes, {}));
+  add_all(recording.warnings, std::exchange(table.warnings, {}));
+}
 
-FileRecord read_recording(const std::string& path, const ReadOptions& options) {
-  const InputFile file(path);
-  const Dialect dialect = find_dialect(file);
+/// The sets of rows that hold a channel.
+std::vector<std::size_t> rows_used(const RawTable& table, const std::vector<Column>& used) {
+  std::vector<std::size_t> sets;
+  for (const Column& column : used) {
+    const std::size_t rows = table.columns[column.index].rows;
+    if (std::find(sets.begin(), sets.end(), rows) == sets.end()) sets.push_back(rows);
+  }
+  return sets;
+}
+
+/// Of a set of rows: its columns, and how their time is known.
+struct RowsPlan {
+  std::size_t rows = 0;
+  Columns columns;
+  std::optional<Sampling> sampling;
+};
+
+/// Throws InputError where nothing says when the rows were recorded.
+std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, const ReadOptions& options) {
+  std::vector<RowsPlan> plans;
+  for (const std::size_t rows : rows_used(table, file.columns.used)) {
+    RowsPlan plan{rows, {}, stated_sampling(table, rows, options.rate)};
+    for (const Column& column : file.columns.used) {
+      if (table.columns[column.index].rows == rows) plan.columns.used.push_back(column);
+    }
+    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling) refuse_columns(file, "no time column");
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+void load_columns(RawTable& table, const std::vector<Column>& used, int threads) {
+  std::vector<std::size_t> wanted;
+  for (const Column& column : used) wanted.push_back(column.index);
+  if (table.load) table.load(table, wanted, threads);
+}
+
+std::uint64_t checksum_of(const RawTable& table, const std::vector<Column>& used) {
+  if (table.checksum != 0) return table.checksum;
+  std::uint64_t hash = hash_bytes(nullptr, 0);
+  for (const Column& column : used) {
+    const auto& values = table.columns[column.index].numbers;
+    hash = hash_bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double), hash);
+  }
+  return hash;
+}
+
+void refuse_unusable(const RawTable& table, const Column& column, std::size_t rows, const FileRecord& recording) {
+  const RawColumn& raw = table.columns[column.index];
+  if (raw.numbers.empty() && !raw.texts.empty()) {
+    throw InputError("holds text, not numbers", "name another column with --columns", table.heading(column.index));
+  }
+  if (raw.numbers.size() != rows) {
+    throw InputError(fmt::format("holds {} values where the columns beside it hold {}", raw.numbers.size(), rows),
+                     "export the trace again, or leave the column out with --columns", table.heading(column.index));
+  }
+  if (table.is_finite) return;
+  const auto wrong =
+      std::find_if_not(raw.numbers.begin(), raw.numbers.end(), [](double v) { return std::abs(v) < largest_value; });
+  if (wrong == raw.numbers.end()) return;
+  throw InputError(fmt::format("'{:g}' is not a finite number of a usable size", *wrong),
+                   "fill it in or remove the row",
+                   recording.location(static_cast<std::size_t>(wrong - raw.numbers.begin()), column.channel));
+}
+
+void to_si(const Column& column, std::vector<double>& values) {
+  if (column.factor == 1 && column.offset == 0) return;
+  for (double& value : values) value = column.factor * value + column.offset;
+}
+
+/// The channels of one set of rows, in SI, on a clock that starts at 0.
+FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   FileRecord recording;
-  recording.path = path;
-  recording.column_names = dialect.names;
-  recording.columns = find_columns(dialect, options, path);
-  recording.notes = dialect.notes;
-  add_all(recording.notes, recording.columns.notes);
-  add_all(recording.warnings, recording.columns.warnings);
-  if (recording.columns.used.empty()) refuse_columns(recording, "no recognisable columns");
-  if (recording.columns.find(Channel::time) == nullptr && !options.rate) {
-    refuse_columns(recording, "no time column");
+  recording.path = file.path;
+  recording.checksum = file.checksum;
+  recording.column_names = file.column_names;
+  recording.has_names = file.has_names;
+  recording.columns = std::move(plan.columns);
+  recording.lines = std::move(table.rows[plan.rows].lines);
+  recording.stated_steps = std::move(table.rows[plan.rows].steps);
+  const std::vector<Column>& used = recording.columns.used;
+  const std::size_t rows = table.columns[used.front().index].numbers.size();
+  for (const Column& column : used) refuse_unusable(table, column, rows, recording);
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    auto& values = table.columns[used[k].index].numbers;
+    const bool again = std::any_of(used.begin() + static_cast<std::ptrdiff_t>(k) + 1, used.end(),
+                                   [&](const Column& c) { return c.index == used[k].index; });
+    recording[used[k].channel] = again ? values : std::move(values);
+    to_si(used[k], recording[used[k].channel]);
   }
-
-  Rows rows = read_rows(file, dialect, recording.columns.used, options.threads);
-  if (rows.size() == 0) throw InputError("has no rows of numbers", "check that the export was complete", {path, 0, ""});
-  note_text_rows(rows, recording);
-  recording.checksum = rows.checksum;
-  recording.lines = std::move(rows.lines);
-  for (std::size_t k = 0; k < rows.values.size(); ++k) {
-    recording[recording.columns.used[k].channel] = std::move(rows.values[k]);
-  }
-  set_clock(recording, options.rate);
+  if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
+  set_clock(recording, plan.sampling);
   return recording;
 }
 
+}  // namespace
+
+FileRecord read_recording(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
+  RawTable table = read_table(path, readers);
+  FileRecord file;
+  file.path = path;
+  file.column_names = table.names();
+  file.has_names = table.has_names();
+  take_messages(table, file);
+  file.columns = find_columns(table, options);
+  add_all(file.notes, file.columns.notes);
+  add_all(file.warnings, file.columns.warnings);
+  if (file.columns.used.empty()) refuse_columns(file, "no recognisable columns");
+  std::vector<RowsPlan> plans = plan_rows(table, file, options);
+
+  load_columns(table, file.columns.used, options.threads);
+  take_messages(table, file);
+  file.checksum = checksum_of(table, file.columns.used);
+  std::vector<FileRecord> parts;
+  for (RowsPlan& plan : plans) parts.push_back(take_rows(table, std::move(plan), file));
+  const auto with_friction =
+      std::find_if(parts.begin(), parts.end(), [](const FileRecord& part) { return part.has_friction(); });
+  if (with_friction != parts.end()) std::iter_swap(parts.begin(), with_friction);
+  FileRecord run = std::move(parts.front());
+  run.notes.insert(run.notes.begin(), file.notes.begin(), file.notes.end());
+  run.warnings.insert(run.warnings.begin(), file.warnings.begin(), file.warnings.end());
+  for (std::size_t i = 1; i < parts.size(); ++i) join_on_one_clock(run, std::move(parts[i]));
+  return run;
+}
+
 void refuse_columns(const FileRecord& recording, const std::string& problem) {
-  const bool no_header = !recording.column_names.empty() && recording.column_names.front() == "#1";
-  std::string found;
-  for (const std::string& name : recording.column_names) found += (found.empty() ? "" : ", ") + name;
+  const bool names = recording.has_names;
   const std::string text =
-      no_header ? problem + fmt::format("; the file has no header and {} columns", recording.column_names.size())
-                : problem + " among: " + found;
-  std::string advice = no_header ? "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s"
-                                 : "name the columns: --columns time=NAME,mu=NAME,v_b=NAME";
+      names ? problem + " among: " + listed(recording.column_names)
+            : problem + fmt::format("; the file has no header and {} columns", recording.column_names.size());
+  std::string advice = names ? "name the columns: --columns time=NAME,mu=NAME,v_b=NAME"
+                             : "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s";
   if (problem == "no time column") advice += ", or give the sampling rate: --rate 20kHz";
   throw InputError(text, advice, {recording.path, 0, ""});
 }
@@ -111,10 +208,19 @@ InputLocation FileRecord::location(std::size_t row, Channel channel) const {
   const bool is_second = std::find(second_channels.begin(), second_channels.end(), channel) != second_channels.end();
   if (is_second) return {second_path, 0, name};
   row += cut_rows;
+  const auto in = [&](const std::string& file, const LineMap& map, std::size_t at) -> InputLocation {
+    const std::size_t line = map.line_of(at);
+    return {file, line, name, line > 0 ? 0 : at + 1};
+  };
   for (std::size_t i = parts.size(); i-- > 0;) {
-    if (row >= parts[i].begin) return {parts[i].path, parts[i].lines.line_of(row - parts[i].begin), name};
+    if (row >= parts[i].begin) return in(parts[i].path, parts[i].lines, row - parts[i].begin);
   }
-  return {path, lines.line_of(row), name};
+  return in(path, lines, row);
+}
+
+std::string FileRecord::place_of(std::size_t row) const {
+  const InputLocation where = location(row, Channel::time);
+  return where.line > 0 ? fmt::format("line {}", where.line) : fmt::format("value {}", where.value);
 }
 
 }  // namespace tribofit

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "columns.hpp"
-#include "rows.hpp"
+#include "raw_table.hpp"
+#include "reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 
@@ -18,6 +20,7 @@ struct FileRecord {
   std::uint64_t checksum = 0;
   Columns columns;
   std::vector<std::string> column_names;
+  bool has_names = true;                                    ///< the file names its columns
   std::array<std::vector<double>, channel_count> channels;  ///< empty when absent
   LineMap lines;
   struct Part {
@@ -30,21 +33,27 @@ struct FileRecord {
   std::string second_path;                ///< of the other instrument's file
   std::vector<Channel> second_channels;   ///< that came from it
   double clock_start = 0, clock_end = 0;  ///< first and last time as written [s]
-  std::vector<Step> steps;                ///< without conditions
+  std::vector<RawStep> stated_steps;      ///< as the file divides itself
+  std::vector<Step> steps;                ///< with the conditions that the file states
   std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
   std::vector<std::string> notes, warnings;
 
   std::vector<double>& operator[](Channel channel) { return channels[index_of(channel)]; }
   const std::vector<double>& operator[](Channel channel) const { return channels[index_of(channel)]; }
   bool has(Channel channel) const { return !channels[index_of(channel)].empty(); }
+  bool has_friction() const { return has(Channel::mu) || has(Channel::force) || has(Channel::torque); }
+  bool has_velocity() const { return has(Channel::v_b) || has(Channel::v_r); }
   std::size_t size() const { return channels[index_of(Channel::time)].size(); }
   /// Where a row came from, for messages.
   InputLocation location(std::size_t row, Channel channel) const;
+  /// "line 22", or "value 21" where the file has no lines.
+  std::string place_of(std::size_t row) const;
   std::size_t recipe_size() const { return recipe_steps.empty() ? 0 : recipe_steps.back() + 1; }
 };
 
-/// AddsToReading one file; its time is made to start at 0 and to increase, its steps are found (clock.hpp).
-FileRecord read_recording(const std::string& path, const ReadOptions& options);
+/// Reads one file with the reader that recognises it; its time is made to start at 0 and to increase, its steps are
+/// found (clock.hpp). Channels with rows of their own are brought together on the clock of the file (join.hpp).
+FileRecord read_recording(const std::string& path, const ReadOptions& options, std::span<const Reader> readers);
 
 /// Throws the InputError for columns that are missing; says which there are.
 [[noreturn]] void refuse_columns(const FileRecord& recording, const std::string& problem);

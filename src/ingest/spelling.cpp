@@ -1,4 +1,4 @@
-#include "spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 #include <algorithm>
 
@@ -41,6 +41,21 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
     text.replace(at, from.size(), to);
   }
   return text;
+}
+
+std::vector<std::string> split(std::string_view text, std::string_view separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t at = text.find(separator); at != std::string_view::npos; at = text.find(separator, begin)) {
+    parts.emplace_back(text.substr(begin, at - begin));
+    begin = at + separator.size();
+  }
+  parts.emplace_back(text.substr(begin));
+  return parts;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  return split(text, std::string_view(&separator, 1));
 }
 
 std::string listed(const std::vector<std::string>& names) {

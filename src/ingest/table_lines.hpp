@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "spelling.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {

@@ -1,3 +1,4 @@
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 
 #include <algorithm>
@@ -75,7 +76,6 @@ const std::vector<Sketch>& sketches() {
   return all;
 }
 
-constexpr double kRpm = 2 * std::numbers::pi / 60;
 const FingerprintAxis kMu = {"mu", "", 1}, kLeft = {"mu minus bare law", "", 1}, kSpeed = {"v_r", "mm/s", 1e-3},
                       kTime = {"time", "s", 1};
 

@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit {
-
-/// SI value of one of the units people read.
-inline constexpr double kMillimetre = 1e-3;
-inline constexpr double kMillisecond = 1e-3;
-inline constexpr double kRpm = 2 * 3.14159265358979323846 / 60;
 
 /// `value` with `digits` significant digits: plain ("0.0521", "83.9") between 1e-4 and 1e6, else "1.2e-05". "-" for
 /// NaN.

@@ -1,3 +1,4 @@
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/study/vary.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace tribofit {
 
 namespace {
 
-constexpr double kRpm = 0.10471975511965977;  // 2 pi/60 rad/s
 
 /// A parameter of the model as studies call it: mu_s, alpha, viscous.sigma.
 std::string called(const FrictionModel::Slot& slot) {

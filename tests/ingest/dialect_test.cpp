@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "encoding.hpp"
+#include "csv/encoding.hpp"
 #include "temp_files.hpp"
 
 namespace tribofit {

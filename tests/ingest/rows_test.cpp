@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "decimal.hpp"
-#include "rows.hpp"
+#include "csv/decimal.hpp"
+#include "csv/rows.hpp"
 #include "temp_files.hpp"
 
 namespace tribofit {

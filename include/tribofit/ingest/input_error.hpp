@@ -9,14 +9,15 @@ namespace tribofit {
 /// Where in the input something is wrong. Empty or zero means "does not apply".
 struct InputLocation {
   std::string file;
-  std::size_t line = 0;  ///< 1-based line of the file
-  std::string column;    ///< name of the column as the file gives it
+  std::size_t line = 0;   ///< 1-based line of the file
+  std::string column;     ///< name of the column as the file gives it
+  std::size_t value = 0;  ///< 1-based value of the column, where the file has no lines
 };
 
 /// The one exception of the library: the input cannot be used.
 ///
-/// what() reads "FILE:LINE: column NAME: PROBLEM; ADVICE". A fit that fails is not an exception
-/// but a result with a reason (see fit/fit.hpp).
+/// what() reads "FILE:LINE: column NAME: PROBLEM; ADVICE", or "FILE: column NAME, value 12: ..." without lines. A fit
+/// that fails is not an exception but a result with a reason (see fit/fit.hpp).
 class InputError : public std::runtime_error {
  public:
   /// problem: what is wrong, as a sentence without a full stop; advice: what the user can do.

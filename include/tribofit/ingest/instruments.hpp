@@ -44,7 +44,7 @@ struct Instruments {
   } rig;
 };
 
-/// AddsToReading an instruments file (JSON; values as "0.5 Hz", ["0.5 Hz", "0.05 Hz"], or
+/// Reads an instruments file (JSON; values as "0.5 Hz", ["0.5 Hz", "0.05 Hz"], or
 /// {"value": "0.5 Hz", "uncertainty": "0.05 Hz"}). Throws InputError naming the key for unknown keys (nearest known
 /// one offered), wrong units, values that cannot be.
 Instruments read_instruments(const std::string& path);

@@ -41,7 +41,7 @@ enum class ManifestErrors {
 /// Name of the manifest in a folder of runs.
 inline constexpr const char* manifest_name = "manifest.csv";
 
-/// AddsToReading folder/manifest.csv: a header, then one run a row.
+/// Reads folder/manifest.csv: a header, then one run a row.
 ///
 /// Columns: file (a name relative to the folder, or a pattern with * and ? in its last part), radius, speed, load,
 /// repeat; any further column is kept as text. Units stand in the cell ("15mm") or in the header ("radius [mm]",

@@ -27,9 +27,10 @@ struct ReadOptions {
   int threads = 0;  ///< 0: as many as there are; the result does not depend on it
 };
 
-/// AddsToReading one run from CSV.
+/// Reads one run from the file of an instrument, of any format that src/ingest/reader.hpp lists; the content tells
+/// which.
 ///
-/// Understands comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the
+/// CSV: comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the
 /// header or in a row of their own; Latin-1 and GBK headers; trailing separators; text rows between data; a clock that
 /// restarts at each step. Friction as mu, as tangential force with a load channel or a nominal load, or as torque with
 /// a radius. Throws InputError with file, line, column, what is wrong and what to do. Cost: linear in bytes.

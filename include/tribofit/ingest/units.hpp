@@ -1,12 +1,13 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace tribofit {
 
-/// Kinds of quantity that the doors (command line, CSV, JSON of the instruments) understand.
+/// Kinds of quantity that users state and files hold.
 enum class Quantity {
   dimensionless,
   time,                 // s
@@ -28,6 +29,10 @@ enum class Quantity {
   inverse_time,         // 1/s
   inverse_temperature,  // 1/K
 };
+
+/// SI values of the units people read and write.
+inline constexpr double kMillimetre = 1e-3, kMillisecond = 1e-3;
+inline constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 /// A unit: SI value = factor * number + offset.
 struct Unit {

@@ -1,9 +1,11 @@
 #include "encoding.hpp"
 
+#include <fmt/format.h>
 #include <iconv.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "tribofit/ingest/input_error.hpp"
 
@@ -93,30 +95,42 @@ constexpr std::array signatures = {
     Signature{"%PDF", "a PDF document", "export the data as CSV"},
 };
 
-}  // namespace
+/// What a file is that is not text, and what to do with it.
+struct Foreign {
+  std::string problem, advice;
+};
 
-void refuse_unless_text(std::string_view head, const std::string& path) {
-  const InputLocation where{path, 0, ""};
-  const auto starts_with = [&](std::string_view bytes) { return head.substr(0, bytes.size()) == bytes; };
+std::optional<Foreign> find_foreign(std::string_view head) {
   for (const Signature& signature : signatures) {
-    if (starts_with(signature.bytes)) {
-      throw InputError("is " + std::string(signature.name) + ", not a CSV file", std::string(signature.advice), where);
-    }
+    if (!head.starts_with(signature.bytes)) continue;
+    return Foreign{fmt::format("is {}, not a CSV file", signature.name), std::string(signature.advice)};
   }
   const std::string_view start = head.substr(0, 4096);
   const auto zeros = std::count(start.begin(), start.end(), '\0');
-  const bool utf16_mark = starts_with("\xFF\xFE") || starts_with("\xFE\xFF");
+  const bool utf16_mark = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
   if (utf16_mark || (start.size() >= 4 && (start[0] == '\0') != (start[1] == '\0') &&
                      zeros > static_cast<std::ptrdiff_t>(start.size()) * 2 / 5)) {
-    throw InputError("is UTF-16 text (\"Unicode\" in Windows programs)",
-                     "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8", where);
+    return Foreign{"is UTF-16 text (\"Unicode\" in Windows programs)",
+                   "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8"};
   }
   const auto control = std::count_if(start.begin(), start.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\x1A';
   });
   if (zeros > 0 || control * 20 > static_cast<std::ptrdiff_t>(start.size())) {
-    throw InputError("is a binary file, not a CSV file", "export the channels as text with one row per sample", where);
+    return Foreign{"is a binary file, not a CSV file", "export the channels as text with one row per sample"};
   }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_text(std::string_view head) {
+  return !find_foreign(head);
+}
+
+void refuse_unless_text(std::string_view head, const std::string& path) {
+  const auto foreign = find_foreign(head);
+  if (foreign) throw InputError(foreign->problem, foreign->advice, {path, 0, ""});
 }
 
 Encoding guess_encoding(std::string_view head) {

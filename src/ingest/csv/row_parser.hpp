@@ -4,11 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "columns.hpp"
-
 namespace tribofit {
 
-/// Turns one line into the numbers of the wanted columns.
+/// A cell that is asked for in each row.
+struct WantedCell {
+  std::size_t index = 0;  ///< in the row, from 0
+  std::string column;     ///< for messages
+};
+
+/// Turns one line into the numbers of the wanted cells.
 class RowParser {
  public:
   enum class Outcome { numbers, blank, text, wrong };
@@ -18,11 +22,11 @@ class RowParser {
     std::string problem, advice, column;
   };
 
-  /// `columns` in the order of the file; `cells` is how many a row has.
-  RowParser(const std::vector<Column>& columns, std::size_t cells, char separator, char decimal);
+  /// `wanted` in the order of the row; `cells` is how many a row has.
+  RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal);
 
-  /// Parses `line` (ended by NUL; may be changed) into `out`, one number per column, as written (not yet in SI).
-  /// After Outcome::wrong, defect() tells what is wrong.
+  /// Parses `line` (ended by NUL; may be changed) into `out`, one number for each wanted cell, as written.
+  /// After Outcome::wrong, defect() says what is wrong.
   Outcome parse(char* line, double* out);
 
   const Defect& defect() const { return defect_; }
@@ -36,8 +40,8 @@ class RowParser {
   Outcome refuse(std::string problem, std::string advice, std::string column = {});
   bool to_number(char* cell, double& value) const;
 
-  const std::vector<Column>& columns_;
-  std::vector<std::size_t> skips_;  // cells between one wanted column and the next
+  const std::vector<WantedCell>& wanted_;
+  std::vector<std::size_t> skips_;  // cells between one that is wanted and the next
   std::size_t cells_;
   char separator_, decimal_;
   std::vector<char*> split_;

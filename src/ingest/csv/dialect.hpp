@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "input_file.hpp"
+#include "ingest/input_file.hpp"
+#include "ingest/raw_table.hpp"
 
 namespace tribofit {
 
@@ -15,7 +16,7 @@ struct Dialect {
   char separator = ',';
   char decimal = '.';
   std::size_t columns = 0;             ///< cells in a row, without empty ones after a trailing separator
-  std::vector<std::string> names;      ///< of the columns, in UTF-8; "#1", "#2", ... where there is no header
+  std::vector<std::string> names;      ///< of the columns, in UTF-8; empty where there is no header
   std::vector<std::string> units;      ///< from a row of units below the header; empty where there is none
   std::size_t header_line = 0;         ///< 1-based; 0: no header
   std::size_t units_line = 0;          ///< 1-based; 0: no row of units
@@ -24,6 +25,7 @@ struct Dialect {
   std::uint64_t data_end = 0;          ///< bytes; before the end of the file where the last row is cut off
   double row_bytes = 0;                ///< mean length of the first rows
   std::vector<std::string> first_row;  ///< its cells
+  std::vector<RawFact> facts;          ///< "name: value" of the preamble
   std::vector<std::string> notes;
 };
 

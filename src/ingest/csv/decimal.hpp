@@ -4,7 +4,7 @@
 
 namespace tribofit {
 
-/// AddsToReading a decimal number at `text` exactly rounded, or says that it cannot.
+/// Reads a decimal number at `text` exactly rounded, or says that it cannot.
 ///
 /// Covers what traces are made of: digits with a decimal mark and perhaps an exponent, at most 19 digits with a value
 /// up to 2^53, and a power of ten up to 10^22. Integer and power are then exact doubles, and their one product or

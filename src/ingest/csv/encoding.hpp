@@ -7,8 +7,11 @@ namespace tribofit {
 
 enum class Encoding { utf8, latin1, gbk };
 
-/// Refuses what is not lines of 8-bit text (UTF-16, spreadsheets, archives, other binary files) with an InputError
-/// that names what it is. `head` is the beginning of the file.
+/// Whether `head`, the beginning of a file, is lines of 8-bit text: no UTF-16, spreadsheet, archive or other binary
+/// file.
+bool is_text(std::string_view head);
+
+/// Throws an InputError that says what the file is, unless it is text.
 void refuse_unless_text(std::string_view head, const std::string& path);
 
 /// The encoding of the letters outside ASCII in `head`.

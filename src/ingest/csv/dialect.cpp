@@ -8,10 +8,10 @@
 #include <map>
 #include <optional>
 
-#include "column_names.hpp"
 #include "encoding.hpp"
-#include "spelling.hpp"
+#include "ingest/column_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -187,6 +187,32 @@ void find_heading(const std::vector<Line>& lines, std::size_t first, Encoding en
   }
 }
 
+/// "# Radius [mm]: 15", "Speed = 4 rpm", "\"Normal load [N]\";50", "Interval,0.0005,..." as a name and its value.
+std::optional<RawFact> find_fact(std::string_view line, std::size_t number) {
+  std::string text = replaced(std::string(line), "\"", "");
+  text.erase(0, text.find_first_not_of("#%/!' \t"));
+  const std::size_t mark = text.find_first_of(":=;,\t");
+  if (mark == std::string::npos || mark == 0) return std::nullopt;
+  const std::string separators = text[mark] == ',' ? ",;\t" : ";\t";
+  const std::size_t begin = text.find_first_not_of(separators + " ", mark + 1);
+  if (begin == std::string::npos) return std::nullopt;
+  const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+  RawFact fact{std::string(trimmed(std::string_view(text).substr(0, mark))),
+               std::string(trimmed(std::string_view(text).substr(begin, end - begin))), number};
+  const std::string next = end < text.size() ? split(std::string_view(text).substr(end + 1), text[end]).front() : "";
+  if (!trimmed(next).empty() && find_unit(next)) fact.value += " " + std::string(trimmed(next));
+  return fact;
+}
+
+std::vector<RawFact> find_facts(const std::vector<Line>& lines, Encoding encoding, const Dialect& dialect) {
+  std::vector<RawFact> facts;
+  for (std::size_t number = 1; number < dialect.data_line; ++number) {
+    if (number == dialect.header_line || number == dialect.units_line) continue;
+    if (auto fact = find_fact(to_utf8(lines[number - 1].text, encoding), number)) facts.push_back(std::move(*fact));
+  }
+  return facts;
+}
+
 [[noreturn]] void refuse_without_rows(const std::vector<Line>& lines, std::string_view head, Encoding encoding,
                                       const std::string& path) {
   std::size_t last = lines.size();
@@ -275,7 +301,6 @@ Dialect find_dialect(const InputFile& file) {
   if (file.size() == 0) throw InputError("is empty", "export the trace again", {file.path(), 0, ""});
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), InputFile::longest_line + 1)), '\0');
   head.resize(file.read(0, head));
-  refuse_unless_text(head, file.path());
   if (head.size() > InputFile::longest_line && head.find('\n') == std::string::npos) file.refuse_long_line(1);
 
   std::string_view text(head);
@@ -305,9 +330,7 @@ Dialect find_dialect(const InputFile& file) {
                       static_cast<double>(std::max<std::ptrdiff_t>(
                           1, std::count(text.begin() + std::ptrdiff_t(lines[first].begin), text.end(), '\n')));
   find_heading(lines, first, encoding, dialect);
-  if (dialect.names.empty()) {
-    for (std::size_t i = 0; i < dialect.columns; ++i) dialect.names.push_back(fmt::format("#{}", i + 1));
-  }
+  dialect.facts = find_facts(lines, encoding, dialect);
   dialect.columns = std::max(dialect.columns, dialect.names.size());
   if (dialect.header_line > 1 || (dialect.header_line == 0 && first > 0)) {
     const std::size_t above = dialect.header_line > 0 ? dialect.header_line - 1 : first;

@@ -11,15 +11,16 @@
 #include "fccp.hpp"
 
 #include "decimal.hpp"
+#include "ingest/raw_table.hpp"
 
 namespace tribofit {
 
-RowParser::RowParser(const std::vector<Column>& columns, std::size_t cells, char separator, char decimal)
-    : columns_(columns), cells_(cells), separator_(separator), decimal_(decimal) {
+RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal)
+    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal) {
   std::size_t next = 0;
-  for (const Column& column : columns) {
-    skips_.push_back(column.index - next);
-    next = column.index + 1;
+  for (const WantedCell& cell : wanted) {
+    skips_.push_back(cell.index - next);
+    next = cell.index + 1;
   }
 }
 
@@ -49,7 +50,7 @@ bool RowParser::parse_plain(const char* line, double* out) const {
     at = read_decimal(at, decimal_, *out++);
     if (at == nullptr) return false;
     ++cell;
-    if (*at != separator) return *at == '\0' && cell == cells_ && cell == columns_.back().index + 1;
+    if (*at != separator) return *at == '\0' && cell == cells_ && cell == wanted_.back().index + 1;
     ++at;
   }
   for (; *at != '\0'; ++at) {
@@ -106,17 +107,16 @@ RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out
                               cells.size() == 1 ? "" : "s", cells_),
                   "complete or remove the row");
   }
-  for (const Column& column : columns_) {
-    const std::string cell(cells[column.index]);
+  for (const auto& [index, column] : wanted_) {
+    const std::string cell(cells[index]);
     const std::string shown = fmt::format("'{}'", cell.substr(0, 40));
-    if (cell.empty()) return refuse("the cell is empty", "fill it in or remove the row", column.name);
-    if (!to_number(cells[column.index], *out)) {
+    if (cell.empty()) return refuse("the cell is empty", "fill it in or remove the row", column);
+    if (!to_number(cells[index], *out)) {
       return refuse(shown + " is not a number", "correct it, remove the row, or name another column with --columns",
-                    column.name);
+                    column);
     }
-    constexpr double largest = 1e100;  // stays finite when it is turned into SI and divided by a load
-    if (!(std::abs(*out) < largest)) {
-      return refuse(shown + " is not a finite number of a usable size", "fill it in or remove the row", column.name);
+    if (!(std::abs(*out) < largest_value)) {
+      return refuse(shown + " is not a finite number of a usable size", "fill it in or remove the row", column);
     }
     ++out;
   }

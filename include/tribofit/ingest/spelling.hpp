@@ -21,6 +21,10 @@ std::string lower_case(std::string_view text);
 /// `text` with every `from` replaced.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
 
+/// The parts of `text` between separators; as many as there are separators, and one more.
+std::vector<std::string> split(std::string_view text, std::string_view separator);
+std::vector<std::string> split(std::string_view text, char separator);
+
 /// "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 

@@ -87,16 +87,16 @@ void prefer_huge_pages(std::vector<double>& values) {
   if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 }
 
-class Reader {
+class RowReader {
  public:
-  Reader(const InputFile& file, const Dialect& dialect, const std::vector<Column>& columns)
-      : file_(file), dialect_(dialect), columns_(columns), next_line_(dialect.data_line) {
+  RowReader(const InputFile& file, const Dialect& dialect, const std::vector<WantedCell>& wanted)
+      : file_(file), dialect_(dialect), wanted_(wanted), next_line_(dialect.data_line) {
     const std::uint64_t bytes = dialect.data_end - dialect.data_begin;
     chunks_ = static_cast<std::size_t>((bytes + chunk_bytes - 1) / chunk_bytes);
     // Memory that is reserved and not used costs nothing, growing a vector twice its size does.
     const auto estimate =
         static_cast<std::size_t>(1.2 * static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes)) + 64;
-    rows_.values.resize(columns.size());
+    rows_.values.resize(wanted.size());
     for (auto& values : rows_.values) {
       values.reserve(estimate);
       prefer_huge_pages(values);
@@ -121,7 +121,7 @@ class Reader {
   void work() {
     Chunk chunk;  // reused: its memory is touched once
     for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
-      chunk.clear(columns_.size());
+      chunk.clear(wanted_.size());
       try {
         parse(i, chunk);
       } catch (...) {
@@ -157,7 +157,6 @@ class Reader {
     }
     if (begin >= end) return;
     parse_lines(begin, end, chunk);
-    to_si(chunk);
   }
 
   /// A line too long to be found the end of begins after the last line end of the chunk.
@@ -168,12 +167,12 @@ class Reader {
   }
 
   void parse_lines(std::uint64_t begin, std::uint64_t end, Chunk& chunk) const {
-    RowParser parser(columns_, dialect_.columns, dialect_.separator, dialect_.decimal);
+    RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal);
     const auto estimate =
         static_cast<std::size_t>(1.2 * static_cast<double>(end - begin) / std::max(2.0, dialect_.row_bytes));
     for (auto& values : chunk.values) values.reserve(estimate);
     io::LineReader lines("", std::make_unique<ChunkSource>(file_, begin, end, chunk));
-    std::vector<double> row(columns_.size());
+    std::vector<double> row(wanted_.size());
     bool follows = false;  // the line before gave a row too
     while (char* line = lines.next_line()) {
       ++chunk.lines;
@@ -197,14 +196,6 @@ class Reader {
     }
   }
 
-  void to_si(Chunk& chunk) const {
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      const double factor = columns_[k].factor, offset = columns_[k].offset;
-      if (factor == 1 && offset == 0) continue;
-      for (double& value : chunk.values[k]) value = factor * value + offset;
-    }
-  }
-
   /// Called in the order of the file, one chunk at a time.
   void append(const Chunk& chunk) {
     if (chunk.failure) std::rethrow_exception(chunk.failure);
@@ -214,7 +205,7 @@ class Reader {
                        {file_.path(), next_line_ + chunk.wrong_line - 1, chunk.defect->column});
     }
     for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
+    for (std::size_t k = 0; k < wanted_.size(); ++k) {
       rows_.values[k].insert(rows_.values[k].end(), chunk.values[k].begin(), chunk.values[k].end());
     }
     if (chunk.text_rows > 0 && rows_.text_rows == 0) rows_.first_text_line = next_line_ + chunk.first_text_line - 1;
@@ -225,7 +216,7 @@ class Reader {
 
   const InputFile& file_;
   const Dialect& dialect_;
-  const std::vector<Column>& columns_;
+  const std::vector<WantedCell>& wanted_;
   std::size_t chunks_ = 0;
 
   std::atomic<std::size_t> next_chunk_ = 0;
@@ -239,42 +230,8 @@ class Reader {
 
 }  // namespace
 
-void LineMap::set(std::size_t row, std::size_t line) {
-  if (!starts_.empty() && line_of(row) == line) return;
-  if (!starts_.empty() && starts_.back().first == row) {
-    starts_.back().second = line;
-  } else {
-    starts_.emplace_back(row, line);
-  }
-}
-
-std::size_t LineMap::line_of(std::size_t row) const {
-  if (starts_.empty()) return 0;
-  auto at =
-      std::upper_bound(starts_.begin(), starts_.end(), row, [](std::size_t r, const auto& s) { return r < s.first; });
-  if (at != starts_.begin()) --at;
-  return at->second + (row - at->first);
-}
-
-std::uint64_t hash_bytes(const char* bytes, std::size_t count, std::uint64_t hash) {
-  constexpr std::uint64_t prime = 1099511628211ULL;
-  std::size_t i = 0;
-  if (count >= 32) {
-    std::array<std::uint64_t, 4> lanes = {hash, hash + 1, hash + 2,
-                                          hash + 3};  // a multiplication need not wait for the last
-    for (; i + 32 <= count; i += 32) {
-      std::array<std::uint64_t, 4> words;
-      std::memcpy(words.data(), bytes + i, 32);
-      for (std::size_t k = 0; k < 4; ++k) lanes[k] = (lanes[k] ^ words[k]) * prime;
-    }
-    for (const std::uint64_t lane : lanes) hash = (hash ^ lane) * prime;
-  }
-  for (; i < count; ++i) hash = (hash ^ static_cast<unsigned char>(bytes[i])) * prime;
-  return hash;
-}
-
-Rows read_rows(const InputFile& file, const Dialect& dialect, const std::vector<Column>& columns, int threads) {
-  return Reader(file, dialect, columns).read(threads);
+Rows read_rows(const InputFile& file, const Dialect& dialect, const std::vector<WantedCell>& wanted, int threads) {
+  return RowReader(file, dialect, wanted).read(threads);
 }
 
 }  // namespace tribofit

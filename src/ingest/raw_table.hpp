@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tribofit/ingest/conditions.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+
+/// Which line of the file a row came from: rows follow one another line by line except after dropped lines.
+class LineMap {
+ public:
+  /// Row `row` (and those after it, one line each) came from `line`. Rows must not decrease.
+  void set(std::size_t row, std::size_t line);
+  /// The line of a row, from 1; 0 where nothing was set, as in a file without lines.
+  std::size_t line_of(std::size_t row) const;
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> starts_;
+};
+
+/// What a file states beside its columns: a line of a preamble, a scalar variable, a property of a channel.
+struct RawFact {
+  std::string name;      ///< as the file gives it; may hold a unit ("Radius [mm]")
+  std::string value;     ///< as written ("15", "20 kHz"); may hold a unit
+  std::size_t line = 0;  ///< 0: the file has no lines
+};
+
+/// The value of a fact in SI: its unit stands in the value, else in the name, else it is `bare_unit`. Nothing when the
+/// value is no number of this quantity.
+std::optional<double> value_of(const RawFact& fact, Quantity quantity, std::string_view bare_unit);
+
+/// A stretch of rows which the file itself sets apart (a step of a recipe), with the conditions stated for it.
+struct RawStep {
+  std::size_t begin = 0;  ///< its first row; it ends where the next one begins
+  std::string label;
+  Conditions conditions;  ///< in SI, source "file"; what the file does not state is not known
+};
+
+/// Rows that were recorded together: every column that refers to them has one value in each.
+struct RawRows {
+  LineMap lines;                   ///< empty where the file has no lines
+  std::optional<double> interval;  ///< [s] between rows, where the file states it and no column holds the time
+  double start = 0;                ///< [s] of the first row on the clock of the file, beside `interval`
+  std::vector<RawStep> steps;      ///< in their order, the first from row 0; empty: the file divides nothing
+};
+
+/// A named column of numbers or text.
+struct RawColumn {
+  std::string name;             ///< as the file gives it; "#3" where it gives none
+  bool named = true;            ///< the file gives the name
+  std::string unit;             ///< stated apart from the name, without brackets; empty: none
+  std::string place;            ///< where it stands, if the name does not tell: "block 3", "group Vibrometer"
+  std::size_t line = 0;         ///< that names it; 0: none does
+  std::size_t unit_line = 0;    ///< that states its unit
+  std::size_t rows = 0;         ///< which of RawTable::rows
+  bool is_text = false;         ///< holds text, as far as is known before its values are loaded
+  std::vector<double> numbers;  ///< as written, not yet in SI
+  std::vector<std::string> texts;
+
+  std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
+};
+
+/// What a file holds, before anything is known of what it means: readers make it (reader.hpp); channels, units, clocks,
+/// steps, continued files and joins work on it.
+///
+/// Columns recorded together share rows; a file of several blocks, or of channels with rates of their own, has several
+/// RawRows, whose clocks agree. Values may be loaded later: `load` fills the columns it is asked for, by index.
+struct RawTable {
+  std::string path;
+  std::vector<RawColumn> columns;  ///< in the order of the file
+  std::vector<RawRows> rows = std::vector<RawRows>(1);
+  std::vector<RawFact> facts;
+  std::uint64_t checksum = 0;  ///< of the bytes that hold the values; 0: taken of the values themselves
+  bool is_finite = false;      ///< the reader has refused what is no finite number below largest_value
+  std::vector<std::string> notes, warnings;
+
+  using Load = std::function<void(RawTable& table, std::span<const std::size_t> columns, int threads)>;
+  Load load;  ///< empty: the values are there
+
+  bool has_names() const;
+  std::vector<std::string> names() const;
+  /// Where a column is named, for messages.
+  InputLocation heading(std::size_t column) const;
+};
+
+/// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
+inline constexpr double largest_value = 1e100;
+
+/// FNV-1a of `bytes` continuing from `hash`: over words of eight bytes in four lanes, the rest one by one.
+std::uint64_t hash_bytes(const char* bytes, std::size_t count, std::uint64_t hash = 14695981039346656037ULL);
+
+}  // namespace tribofit
