@@ -1,0 +1,144 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "reader.hpp"
+
+namespace tribofit {
+
+/// A binary format of the tests' own, by which the seam for readers is tried without CSV: a signature, then facts, sets
+/// of rows and columns, each as a count and that many; texts as a length and bytes; numbers in the order of this
+/// machine.
+namespace binary_format {
+
+inline constexpr std::string_view signature = "\x01LABREC";
+
+class Writer {
+ public:
+  template <class Number>
+  Writer& number(Number value) {
+    const auto at = bytes_.size();
+    bytes_.resize(at + sizeof value);
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+    return *this;
+  }
+  Writer& text(std::string_view value) {
+    number(static_cast<std::uint32_t>(value.size()));
+    bytes_ += value;
+    return *this;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_{signature};
+};
+
+/// The bytes of a file with these columns, facts and rows.
+inline std::string bytes_of(const RawTable& table) {
+  Writer out;
+  out.number(static_cast<std::uint32_t>(table.facts.size()));
+  for (const RawFact& fact : table.facts) out.text(fact.name).text(fact.value);
+  out.number(static_cast<std::uint32_t>(table.rows.size()));
+  for (const RawRows& rows : table.rows) {
+    out.number(rows.interval.value_or(0)).number(rows.start).number(static_cast<std::uint32_t>(rows.steps.size()));
+    for (const RawStep& step : rows.steps) {
+      out.number(static_cast<std::uint64_t>(step.begin)).text(step.label).number(step.conditions.radius.value);
+    }
+  }
+  out.number(static_cast<std::uint32_t>(table.columns.size()));
+  for (const RawColumn& column : table.columns) {
+    out.text(column.name).text(column.unit).text(column.place).number(static_cast<std::uint32_t>(column.rows));
+    out.number(static_cast<std::uint8_t>(column.is_text ? 1 : 0));
+    out.number(static_cast<std::uint64_t>(column.is_text ? column.texts.size() : column.numbers.size()));
+    for (const double value : column.numbers) out.number(value);
+    for (const std::string& value : column.texts) out.text(value);
+  }
+  return out.bytes();
+}
+
+class Parser {
+ public:
+  explicit Parser(const InputFile& file) : path_(file.path()), bytes_(static_cast<std::size_t>(file.size()), '\0') {
+    bytes_.resize(file.read(0, bytes_));
+    at_ = signature.size();
+  }
+
+  RawTable parse() {
+    RawTable table;
+    table.path = path_;
+    for (auto n = number<std::uint32_t>(); n > 0; --n) {
+      std::string name = text(), value = text();
+      table.facts.push_back({std::move(name), std::move(value)});
+    }
+    table.rows.clear();
+    for (auto n = number<std::uint32_t>(); n > 0; --n) table.rows.push_back(rows());
+    for (auto n = number<std::uint32_t>(); n > 0; --n) table.columns.push_back(column());
+    return table;
+  }
+
+ private:
+  void need(std::uint64_t count, std::uint64_t size) const {
+    if (count <= (bytes_.size() - at_) / size) return;
+    throw InputError("is cut off at byte " + std::to_string(bytes_.size()), "copy the file again", {path_, 0, ""});
+  }
+  template <class Number>
+  Number number() {
+    need(1, sizeof(Number));
+    Number value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  std::string text() {
+    const auto length = number<std::uint32_t>();
+    need(length, 1);
+    at_ += length;
+    return bytes_.substr(at_ - length, length);
+  }
+  RawRows rows() {
+    RawRows result;
+    const auto interval = number<double>();
+    if (interval != 0) result.interval = interval;
+    result.start = number<double>();
+    for (auto n = number<std::uint32_t>(); n > 0; --n) {
+      RawStep step;
+      step.begin = number<std::uint64_t>();
+      step.label = text();
+      step.conditions.radius = {number<double>(), "file"};
+      result.steps.push_back(std::move(step));
+    }
+    return result;
+  }
+  RawColumn column() {
+    RawColumn result;
+    result.name = text();
+    result.unit = text();
+    result.place = text();
+    result.rows = number<std::uint32_t>();
+    result.is_text = number<std::uint8_t>() != 0;
+    const auto count = number<std::uint64_t>();
+    need(count, result.is_text ? 4 : 8);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      result.is_text ? result.texts.push_back(text()) : result.numbers.push_back(number<double>());
+    }
+    return result;
+  }
+
+  std::string path_, bytes_;
+  std::size_t at_ = 0;
+};
+
+inline const Reader reader = {"LABREC", [](std::string_view head) { return head.starts_with(signature); },
+                              [](std::shared_ptr<const InputFile> file) { return Parser(*file).parse(); }};
+
+}  // namespace binary_format
+}  // namespace tribofit
