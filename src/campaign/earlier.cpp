@@ -15,11 +15,10 @@
 
 #include "earlier_columns.hpp"
 #include "ingest/csv/dialect.hpp"
-#include "ingest/csv/encoding.hpp"
-#include "ingest/input_file.hpp"
-#include "tribofit/ingest/spelling.hpp"
-#include "ingest/table_lines.hpp"
+#include "ingest/csv/text_table.hpp"
+#include "ingest/manifest_roles.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -27,16 +26,23 @@ namespace {
 
 constexpr const char* kExample = "as in radius_mm,mu_s,mu_k,alpha_s_per_mm";
 
-class Reader {
+class EarlierReader {
  public:
-  Reader(const std::string& path, std::span<const PooledGroup> groups) : columns_(path, groups) { table_.path = path; }
+  EarlierReader(const std::string& path, std::span<const PooledGroup> groups) : columns_(path, groups) {
+    table_.path = path;
+  }
 
   EarlierTable read() {
-    const std::string text = text_of(InputFile(table_.path));
-    for_each_table_line(text, [this](std::string_view line, std::size_t number) {
-      columns_.empty() ? read_header(line, number) : read_row(line, number);
-    });
-    if (columns_.empty()) refuse("has no header", std::string("begin it with the names of the columns, ") + kExample);
+    const std::string advice = std::string("begin it with the names of the columns, ") + kExample;
+    text_ = read_text_table(
+        table_.path, {1 << 26, "is too large for a table of values", "one row for each condition is meant", advice});
+    std::vector<std::string> titles;
+    for (const RawColumn& column : text_.table.columns) {
+      if (column.named) titles.push_back(column.name);
+    }
+    columns_.read(titles, text_.header_line());
+    table_.notes = columns_.notes();
+    for (std::size_t row = 0; row < text_.rows(); ++row) read_row(row);
     if (table_.values.empty()) refuse("holds no values", "fill in a row for each of the conditions");
     return std::move(table_);
   }
@@ -47,35 +53,10 @@ class Reader {
     throw InputError(std::move(problem), std::move(advice), {table_.path, line, std::move(column)});
   }
 
-  std::string text_of(const InputFile& file) const {
-    constexpr std::uint64_t kLargest = 1 << 26;
-    if (file.size() > kLargest) refuse("is too large for a table of values", "one row for each condition is meant");
-    std::string bytes(static_cast<std::size_t>(file.size()), '\0');
-    bytes.resize(file.read(0, bytes));
-    if (bytes.empty()) refuse("is empty", std::string("begin it with the names of the columns, ") + kExample);
-    refuse_unless_text(bytes, table_.path);
-    return to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
-  }
-
-  void read_header(std::string_view line, std::size_t number) {
-    for (const char candidate : {',', ';', '\t'}) {
-      if (std::count(line.begin(), line.end(), candidate) > std::count(line.begin(), line.end(), separator_)) {
-        separator_ = candidate;
-      }
-    }
-    columns_.read(split_cells(line, separator_), number);
-    table_.notes = columns_.notes();
-  }
-
-  void read_row(std::string_view line, std::size_t number) {
-    std::vector<std::string> cells = split_cells(line, separator_);
-    if (cells.size() > columns_.size()) {
-      refuse(fmt::format("the row has {} cells where the header has {} columns", cells.size(), columns_.size()),
-             "remove the extra cells", number);
-    }
-    cells.resize(columns_.size());
+  void read_row(std::size_t at) {
+    const std::vector<std::string> cells = text_.cells_of(at);
     EarlierValue row;
-    row.line = number;
+    row.line = text_.line_of(at);
     read_conditions(cells, row);
     const std::size_t before = table_.values.size();
     if (columns_.is_long()) {
@@ -84,7 +65,7 @@ class Reader {
       read_wide(cells, row);
     }
     if (table_.values.size() > before && !states_conditions(row)) {
-      refuse("the row states no conditions", "fill in the radius, the speed or another condition", number);
+      refuse("the row states no conditions", "fill in the radius, the speed or another condition", row.line);
     }
   }
 
@@ -99,37 +80,25 @@ class Reader {
       if (cells[k].empty()) continue;
       const std::string& text = cells[k];
       using Kind = EarlierColumn::Kind;
-      if (column.kind == Kind::radius) row.conditions.radius = condition(text, column, Quantity::length, row.line);
-      if (column.kind == Kind::speed) {
-        row.conditions.speed = condition(text, column, Quantity::angular_velocity, row.line);
-      }
-      if (column.kind == Kind::load) row.conditions.load = condition(text, column, Quantity::force, row.line);
+      if (column.kind == Kind::radius) row.conditions.radius = condition(text, column, Role::radius, row.line);
+      if (column.kind == Kind::speed) row.conditions.speed = condition(text, column, Role::speed, row.line);
+      if (column.kind == Kind::load) row.conditions.load = condition(text, column, Role::load, row.line);
       if (column.kind == Kind::other) row.others.push_back({column.name, text});
       if (column.kind == Kind::law) row.law = text;
       if (column.kind == Kind::protocol) row.protocol = text;
     }
   }
 
-  Condition condition(const std::string& text, const EarlierColumn& column, Quantity quantity, std::size_t line) const {
-    const std::string plain = separator_ == ',' ? text : replaced(text, ",", ".");
-    const bool bare = plain.find_first_not_of("+-.0123456789eE ") == std::string::npos;
-    if (bare && column.unit.empty() && quantity != Quantity::force) {
-      refuse(fmt::format("'{}' has no unit", text),
-             fmt::format("write it as {}, or the unit into the name of the column", example_of(quantity)), line,
-             column.title);
-    }
-    double value = 0;
+  Condition condition(const std::string& text, const EarlierColumn& column, Role role, std::size_t line) const {
     try {
-      value = parse_quantity(plain, quantity, column.title, column.unit);
+      return {condition_in_cell(text_.with_decimal_point(text), role, column.title, column.unit), "table"};
     } catch (const InputError& error) {
-      refuse(error.problem().substr(column.title.size() + 2), error.advice(), line, column.title);
+      refuse(error.problem(), error.advice(), line, column.title);
     }
-    if (!(value > 0)) refuse(fmt::format("'{}' is not greater than zero", text), "correct it", line, column.title);
-    return {value, "table"};
   }
 
   double number(const std::string& text, std::size_t line, const std::string& column) const {
-    const std::string plain = separator_ == ',' ? text : replaced(text, ",", ".");
+    const std::string plain = text_.with_decimal_point(text);
     const std::size_t begin = plain.starts_with('+') ? 1 : 0;
     double value = 0;
     const auto [end, error] = std::from_chars(plain.data() + begin, plain.data() + plain.size(), value);
@@ -189,7 +158,7 @@ class Reader {
 
   EarlierTable table_;
   EarlierColumns columns_;
-  char separator_ = ',';
+  TextTable text_;
   std::set<std::string> unknown_;  // names in rows
 };
 
@@ -200,7 +169,7 @@ std::string full_name(const PooledValue& value) {
 }
 
 EarlierTable read_earlier(const std::string& path, std::span<const PooledGroup> groups) {
-  return Reader(path, groups).read();
+  return EarlierReader(path, groups).read();
 }
 
 }  // namespace tribofit

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "input_file.hpp"
-#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -23,14 +23,28 @@ class InstrumentsReader {
   explicit InstrumentsReader(const std::string& path) : path_(path) {}
 
   Instruments read() {
+    const Json root = parse();
+    Instruments result;
+    section(
+        root, "",
+        {{"vibrometer", [&](const Json& json, const std::string&) { read_vibrometer(json, result.vibrometer); }},
+         {"force_sensor", [&](const Json& json, const std::string&) { read_force_sensor(json, result.force_sensor); }},
+         {"rig", [&](const Json& json, const std::string&) { read_rig(json, result.rig); }}});
+    return result;
+  }
+
+ private:
+  using Handler = std::function<void(const Json&, const std::string&)>;
+  using Handlers = std::vector<std::pair<std::string, Handler>>;
+
+  Json parse() {
     const InputFile file(path_);
     if (file.size() > InputFile::longest_line)
       fail("", "is larger than 1 MB", "name the JSON file that describes the instruments");
     std::string text(static_cast<std::size_t>(file.size()), '\0');
     text.resize(file.read(0, text));
-    Json root;
     try {
-      root = Json::parse(
+      return Json::parse(
           text, [this](int, Json::parse_event_t event, Json& parsed) { return follow(event, parsed); }, true,
           true);  // comments are allowed
     } catch (const Json::out_of_range&) {
@@ -41,54 +55,44 @@ class InstrumentsReader {
       throw InputError("is not valid JSON", "check commas, quotes and brackets at this line",
                        {path_, static_cast<std::size_t>(line), ""});
     }
-    Instruments result;
-    const auto vibrometer = [&](const Json& json) {
-      auto& v = result.vibrometer;
-      section(json, "vibrometer",
-              {{"range", positive(v.range, Quantity::velocity)},
-               {"gain", positive(v.gain, Quantity::dimensionless)},
-               {"high_pass", positive(v.high_pass, Quantity::frequency)},
-               {"low_pass", positive(v.low_pass, Quantity::frequency)},
-               {"delay", any(v.delay, Quantity::time)},
-               {"sign", [&](const Json& value, const std::string& key) {
-                  if (!value.is_number_integer() || (value != 1 && value != -1))
-                    fail(key, "must be 1 or -1", "give -1 where the vibrometer points the other way");
-                  v.sign = value.get<int>();
-                }}});
-    };
-    const auto force_sensor = [&](const Json& json) {
-      auto& f = result.force_sensor;
-      section(json, "force_sensor",
-              {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
-               {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key, f.zero_is_force); }},
-               {"crosstalk", any(f.crosstalk, Quantity::dimensionless)},
-               {"mass_below", not_negative(f.mass_below, Quantity::mass)},
-               {"gain", positive(f.gain, Quantity::dimensionless)},
-               {"load_measured", [&](const Json& value, const std::string& key) {
-                  if (!value.is_boolean()) fail(key, "must be true or false", "say whether mu is Ft/Fn measured");
-                  f.load_measured = value.get<bool>();
-                }}});
-    };
-    const auto rig = [&](const Json& json) {
-      auto& r = result.rig;
-      section(json, "rig",
-              {{"stiffness", positive(r.stiffness, Quantity::stiffness)},
-               {"ping_frequency", positive(r.ping_frequency, Quantity::frequency)},
-               {"pad_radius", positive(r.pad_radius, Quantity::length)},
-               {"radius", positive(r.radius, Quantity::length)},
-               {"speed", any(r.speed, Quantity::angular_velocity)},
-               {"load", positive(r.load, Quantity::force)}});
-    };
-    section(root, "",
-            {{"vibrometer", [&](const Json& json, const std::string&) { vibrometer(json); }},
-             {"force_sensor", [&](const Json& json, const std::string&) { force_sensor(json); }},
-             {"rig", [&](const Json& json, const std::string&) { rig(json); }}});
-    return result;
   }
 
- private:
-  using Handler = std::function<void(const Json&, const std::string&)>;
-  using Handlers = std::vector<std::pair<std::string, Handler>>;
+  void read_vibrometer(const Json& json, Instruments::Vibrometer& v) const {
+    section(json, "vibrometer",
+            {{"range", positive(v.range, Quantity::velocity)},
+             {"gain", positive(v.gain, Quantity::dimensionless)},
+             {"high_pass", positive(v.high_pass, Quantity::frequency)},
+             {"low_pass", positive(v.low_pass, Quantity::frequency)},
+             {"delay", any(v.delay, Quantity::time)},
+             {"sign", [&](const Json& value, const std::string& key) {
+                if (!value.is_number_integer() || (value != 1 && value != -1))
+                  fail(key, "must be 1 or -1", "give -1 where the vibrometer points the other way");
+                v.sign = value.get<int>();
+              }}});
+  }
+
+  void read_force_sensor(const Json& json, Instruments::ForceSensor& f) const {
+    section(json, "force_sensor",
+            {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
+             {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key, f.zero_is_force); }},
+             {"crosstalk", any(f.crosstalk, Quantity::dimensionless)},
+             {"mass_below", not_negative(f.mass_below, Quantity::mass)},
+             {"gain", positive(f.gain, Quantity::dimensionless)},
+             {"load_measured", [&](const Json& value, const std::string& key) {
+                if (!value.is_boolean()) fail(key, "must be true or false", "say whether mu is Ft/Fn measured");
+                f.load_measured = value.get<bool>();
+              }}});
+  }
+
+  void read_rig(const Json& json, Instruments::Rig& r) const {
+    section(json, "rig",
+            {{"stiffness", positive(r.stiffness, Quantity::stiffness)},
+             {"ping_frequency", positive(r.ping_frequency, Quantity::frequency)},
+             {"pad_radius", positive(r.pad_radius, Quantity::length)},
+             {"radius", positive(r.radius, Quantity::length)},
+             {"speed", any(r.speed, Quantity::angular_velocity)},
+             {"load", positive(r.load, Quantity::force)}});
+  }
 
   /// Keeps account of where the parser is; a key that is there twice would silently win over the first.
   bool follow(Json::parse_event_t event, const Json& parsed) {

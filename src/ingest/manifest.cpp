@@ -13,15 +13,12 @@
 #include <utility>
 
 #include "column_names.hpp"
-#include "csv/dialect.hpp"
-#include "csv/encoding.hpp"
-#include "input_file.hpp"
+#include "csv/text_table.hpp"
 #include "manifest_roles.hpp"
-#include "tribofit/ingest/spelling.hpp"
-#include "table_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/output_tables.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -65,19 +62,17 @@ std::vector<std::string> files_of(const fs::path& folder) {
   return names;
 }
 
-class Reader {
+class ManifestReader {
  public:
-  Reader(const std::string& folder, ManifestErrors errors) : folder_(folder), errors_(errors) {
+  ManifestReader(const std::string& folder, ManifestErrors errors) : folder_(folder), errors_(errors) {
     manifest_.path = (folder_ / manifest_name).string();
   }
 
   Manifest read() {
-    const InputFile file(manifest_.path);
-    const std::string text = text_of(file);
-    for_each_table_line(text, [this](std::string_view line, std::size_t number) {
-      columns_.empty() ? read_header(line, number) : take_row(line, number);
-    });
-    if (columns_.empty()) refuse("has no header", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
+    const std::string advice = fmt::format("begin it with file,radius,speed,load; {}", kColumns);
+    text_ = read_text_table(manifest_.path, {1 << 24, "is too large for a manifest", "one row a run is meant", advice});
+    read_header();
+    for (std::size_t row = 0; row < text_.rows(); ++row) take_row(row);
     if (manifest_.rows.empty() && manifest_.problems.empty())
       refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
     note_others();
@@ -95,23 +90,10 @@ class Reader {
     throw InputError(std::move(problem), std::move(advice), {manifest_.path, line, std::move(column)});
   }
 
-  std::string text_of(const InputFile& file) const {
-    constexpr std::uint64_t kLargest = 1 << 24;
-    if (file.size() > kLargest) refuse("is too large for a manifest", "one row a run is meant", 0);
-    std::string bytes(static_cast<std::size_t>(file.size()), '\0');
-    bytes.resize(file.read(0, bytes));
-    if (bytes.empty()) refuse("is empty", fmt::format("begin it with file,radius,speed,load; {}", kColumns), 0);
-    refuse_unless_text(bytes, manifest_.path);
-    return to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
-  }
-
-  void read_header(std::string_view line, std::size_t number) {
-    for (const char candidate : {',', ';', '\t'}) {
-      if (std::count(line.begin(), line.end(), candidate) > std::count(line.begin(), line.end(), separator_)) {
-        separator_ = candidate;
-      }
+  void read_header() {
+    for (const RawColumn& column : text_.table.columns) {
+      if (column.named) add_column(column.name, column.line);
     }
-    for (const std::string& cell : split_cells(line, separator_)) add_column(cell, number);
     if (count(Role::file) == 1) return;
     std::vector<std::string> names;
     for (const ManifestColumn& column : columns_) {
@@ -119,7 +101,7 @@ class Reader {
       names.push_back(column.name);
     }
     refuse("there is no column 'file'" + (names.empty() ? "" : " (is it '" + names.front() + "'?)"),
-           fmt::format("name the column of the traces' names 'file'; {}", kColumns), number);
+           fmt::format("name the column of the traces' names 'file'; {}", kColumns), text_.header_line());
   }
 
   std::size_t count(Role role) const {
@@ -162,11 +144,11 @@ class Reader {
     }
   }
 
-  void take_row(std::string_view line, std::size_t number) {
+  void take_row(std::size_t at) {
     file_.clear();
-    if (errors_ == ManifestErrors::refuse) return read_row(line, number);
+    if (errors_ == ManifestErrors::refuse) return read_row(at);
     try {
-      read_row(line, number);
+      read_row(at);
     } catch (const InputError& error) {
       const std::string path = (folder_ / file_).string();
       const bool is_one_run = !file_.empty() && file_.find_first_of("*?") == std::string::npos;
@@ -176,64 +158,42 @@ class Reader {
       }
       ManifestRow row;
       row.path = path;
-      row.line = number;
+      row.line = text_.line_of(at);
       row.problem = error.what();
       manifest_.rows.push_back(std::move(row));
     }
   }
 
-  void read_row(std::string_view line, std::size_t number) {
-    std::vector<std::string> cells = split_cells(line, separator_);
-    while (cells.size() > columns_.size() && cells.back().empty()) cells.pop_back();
-    if (cells.size() > columns_.size()) {
-      refuse(
-          fmt::format("the row has {} cells where the header has {} columns", cells.size(), columns_.size()),
-          separator_ == ',' ? "remove the extra cells; write numbers with a decimal point" : "remove the extra cells",
-          number);
-    }
-    cells.resize(columns_.size());
+  void read_row(std::size_t at) {
+    const std::vector<std::string> cells = text_.cells_of(at);
     ManifestRow row;
-    row.line = number;
+    row.line = text_.line_of(at);
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (columns_[k].role == Role::file) file_ = cells[k];
     }
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const ManifestColumn& column = columns_[k];
       if (cells[k].empty()) continue;
-      if (column.role == Role::radius) row.conditions.radius = condition(cells[k], column, number);
-      if (column.role == Role::speed) row.conditions.speed = condition(cells[k], column, number);
-      if (column.role == Role::load) row.conditions.load = condition(cells[k], column, number);
-      if (column.role == Role::repeat) row.repeat = repeat(cells[k], column, number);
+      if (column.role == Role::radius) row.conditions.radius = condition(cells[k], column, row.line);
+      if (column.role == Role::speed) row.conditions.speed = condition(cells[k], column, row.line);
+      if (column.role == Role::load) row.conditions.load = condition(cells[k], column, row.line);
+      if (column.role == Role::repeat) row.repeat = repeat(cells[k], column, row.line);
       if (column.role == Role::other) row.others.push_back({column.name, cells[k]});
     }
-    if (file_.empty()) refuse("the row names no file", "fill in the file or remove the row", number, named(Role::file));
+    if (file_.empty()) {
+      refuse("the row names no file", "fill in the file or remove the row", row.line, named(Role::file));
+    }
     add_runs(file_, row);
   }
 
-  Condition condition(std::string text, const ManifestColumn& column, std::size_t line) {
-    constexpr double kLargestRadius = 10;  // m; more is a forgotten unit
-    if (separator_ != ',') text = replaced(text, ",", ".");
-    const Quantity quantity = quantity_of(column.role);
-    const bool bare = text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
-    if (bare && column.unit.empty() && column.role != Role::load) {
-      refuse(fmt::format("'{}' has no unit", text),
-             fmt::format("write it as {}, or the unit in the header as '{}'", example_of(quantity),
-                         column.role == Role::radius ? "radius [mm]" : "speed [rpm]"),
-             line, column.name);
-    }
-    if (bare && column.unit.empty()) bare_loads_ = true;
-    double value = 0;
+  Condition condition(const std::string& cell, const ManifestColumn& column, std::size_t line) {
+    const std::string text = text_.with_decimal_point(cell);
+    if (column.role == Role::load && column.unit.empty() && is_bare_number(text)) bare_loads_ = true;
     try {
-      value = parse_quantity(text, quantity, column.name, column.unit);
+      return {condition_in_cell(text, column.role, column.name, column.unit), "manifest"};
     } catch (const InputError& error) {
-      refuse(error.problem().substr(column.name.size() + 2), error.advice(), line, column.name);
+      refuse(error.problem(), error.advice(), line, column.name);
     }
-    if (!(value > 0) || (column.role == Role::radius && value > kLargestRadius)) {
-      refuse(fmt::format("'{}' {}", text, value > 0 ? "would be more than 10 m" : "is not greater than zero"),
-             fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)), line,
-             column.name);
-    }
-    return {value, "manifest"};
   }
 
   int repeat(const std::string& text, const ManifestColumn& column, std::size_t line) const {
@@ -324,7 +284,7 @@ class Reader {
   ManifestErrors errors_;
   Manifest manifest_;
   std::string file_;  // named by the row being read, as written
-  char separator_ = ',';
+  TextTable text_;
   std::vector<ManifestColumn> columns_;
   std::map<std::string, std::size_t> row_of_;  // by the identity of its file
   bool bare_loads_ = false;
@@ -339,7 +299,7 @@ bool same(const Condition& a, const Condition& b) {
 }  // namespace
 
 Manifest read_manifest(const std::string& folder, ManifestErrors errors) {
-  return Reader(folder, errors).read();
+  return ManifestReader(folder, errors).read();
 }
 
 bool same_conditions(const ManifestRow& a, const ManifestRow& b) {

@@ -1,11 +1,15 @@
 #include "manifest_roles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
 
 #include "column_names.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -23,6 +27,31 @@ Role role_of(const ColumnName& name) {
   if (name_rank(name.base, Channel::speed, std::nullopt) != no_rank) return Role::speed;
   if (name_rank(name.base, Channel::load, std::nullopt) != no_rank) return Role::load;
   return Role::other;
+}
+
+bool is_bare_number(const std::string& text) {
+  return text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
+}
+
+double condition_in_cell(const std::string& text, Role role, const std::string& column, const std::string& unit) {
+  constexpr double largest_radius = 10;  // m; more is a forgotten unit
+  const Quantity quantity = quantity_of(role);
+  if (is_bare_number(text) && unit.empty() && role != Role::load) {
+    throw InputError(fmt::format("'{}' has no unit", text),
+                     fmt::format("write it as {}, or the unit in the header as '{}'", example_of(quantity),
+                                 role == Role::radius ? "radius [mm]" : "speed [rpm]"));
+  }
+  double value = 0;
+  try {
+    value = parse_quantity(text, quantity, column, unit);
+  } catch (const InputError& error) {
+    throw InputError(error.problem().substr(column.size() + 2), error.advice());  // without the name before it
+  }
+  if (!(value > 0) || (role == Role::radius && value > largest_radius)) {
+    throw InputError(fmt::format("'{}' {}", text, value > 0 ? "would be more than 10 m" : "is not greater than zero"),
+                     fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));
+  }
+  return value;
 }
 
 Quantity quantity_of(Role role) {
