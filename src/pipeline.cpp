@@ -13,9 +13,9 @@
 #include "diagnosis/user_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
-#include "tribofit/fit/parallel.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

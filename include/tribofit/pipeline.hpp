@@ -23,8 +23,8 @@
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
-#include "tribofit/kinematics/spectrum.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 #include "tribofit/study/twin.hpp"
 
 namespace tribofit {

@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
-#include "content_hash.hpp"
-#include "tribofit/fit/parallel.hpp"
+#include "ingest/content_hash.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "meta_regression.hpp"
 #include "order.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "statistics/meta_regression.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 namespace {

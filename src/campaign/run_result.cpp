@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "content_hash.hpp"
 #include "figures_json.hpp"
+#include "ingest/content_hash.hpp"
 #include "order.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "content_hash.hpp"
+#include "ingest/content_hash.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/version.hpp"
 
@@ -11,7 +11,7 @@ namespace tribofit {
 namespace {
 
 /// Form of the result files; a new one makes old results be done again.
-constexpr int kForm = 1;
+constexpr int kForm = 2;  // 1: the checksum of a trace was another hash
 
 /// Texts with their lengths, so that no two lists of texts become the same one.
 class Text {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "condition_columns.hpp"
+#include "statistics/linear_algebra.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 
@@ -43,9 +44,9 @@ MatrixXd made_positive(const MatrixXd& covariance) {
   constexpr double kLeast = 1e-6;
   const VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const MatrixXd correlation = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(correlation);
-  if (eigen.eigenvalues()(0) > kLeast) return covariance;
-  const double least = std::min(0.0, eigen.eigenvalues()(0));
+  const VectorXd eigenvalues = symmetric_eigen(correlation).values;
+  if (eigenvalues(0) > kLeast) return covariance;
+  const double least = std::min(0.0, eigenvalues(0));
   const MatrixXd drawn_in =
       (correlation + (kLeast - least) * MatrixXd::Identity(scale.size(), scale.size())) / (1 + kLeast - least);
   return scale.asDiagonal() * drawn_in * scale.asDiagonal();
@@ -142,12 +143,12 @@ SharedFit::OfRun of_run(const std::vector<Place>& places, const std::vector<Memb
       }
       with_all.col(a) = m.covariance.col(place.parameter);
     }
-    const MatrixXd keep = scatter.asDiagonal() * (own + MatrixXd(scatter.asDiagonal())).inverse();  // of what is off
+    const MatrixXd keep = scatter.asDiagonal() * inverse_of(own + MatrixXd(scatter.asDiagonal()));  // of what is off
     const MatrixXd rest = MatrixXd::Identity(s, s) - keep;
     const VectorXd moved = keep * off - off;  // from the run's own values to the predicted ones
     const MatrixXd predicted =
         rest * MatrixXd(scatter.asDiagonal()) + rest * covariance_of_levels(here, members, i) * rest.transpose();
-    const MatrixXd follow = with_all * own.inverse();
+    const MatrixXd follow = with_all * inverse_of(own);
     value += follow * moved;
     const MatrixXd left = m.covariance - follow * with_all.transpose() + follow * predicted * follow.transpose();
     error = left.diagonal().cwiseMax(0).cwiseSqrt();

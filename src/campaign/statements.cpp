@@ -7,7 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 namespace {
@@ -17,10 +18,6 @@ std::optional<double> advantage(const RunResult& run, const std::string& first, 
   const ResultFit *a = run.fit(first, "joint"), *b = run.fit(second, "joint");
   if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;
   return std::log(b->held_out_rmse / a->held_out_rmse);
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// Variance of the sum of the values of runs under one condition, and the square of it over its degrees of freedom.

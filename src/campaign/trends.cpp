@@ -11,8 +11,8 @@
 #include <set>
 
 #include "condition_columns.hpp"
-#include "meta_regression.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "statistics/meta_regression.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "fit/starts.hpp"
 #include "spectral_lines.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -26,13 +27,6 @@ struct Excitation {
   bool force_known = false;  ///< the load is known or friction is a force
 };
 
-double quantile(std::vector<double> x, double part) {
-  if (x.empty()) return 0;
-  const auto at = x.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
-}
-
 Excitation excitation_of(std::span<const Record> records, const Observations& observations) {
   Excitation out;
   bool forth = false, back = false;
@@ -44,7 +38,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
   }
   out.both_directions = forth && back;
   if (sticks.size() >= 6) {
-    out.median_stick_time = quantile(sticks, 0.5);
+    out.median_stick_time = median(sticks);
     out.stick_time_ratio = quantile(sticks, 0.95) / quantile(sticks, 0.05);
     std::sort(sticks.rbegin(), sticks.rend());
     out.longest_stick_ratio = sticks[2] / out.median_stick_time;
@@ -61,7 +55,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
   }
   if (!observations.load.empty()) {
     out.load_spread = (quantile(observations.load, 0.95) - quantile(observations.load, 0.05)) /
-                      std::max(1e-300, std::abs(quantile(observations.load, 0.5)));
+                      std::max(1e-300, std::abs(median(observations.load)));
   }
   if (!observations.temperature.empty()) {
     out.temperature_spread = quantile(observations.temperature, 0.95) - quantile(observations.temperature, 0.05);

@@ -8,7 +8,7 @@
 #include "findings.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "tribofit/friction/effect_pairs.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -1,11 +1,12 @@
 #include "held_out.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -45,15 +46,15 @@ Eigen::MatrixXd whitener(const Eigen::MatrixXd& curvature) {
   if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i) scale(i) = curvature(i, i) > 0 ? 1 / std::sqrt(curvature(i, i)) : 0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * curvature * scale.asDiagonal());
+  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * curvature * scale.asDiagonal());
   std::vector<Eigen::Index> good;
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (eigen.eigenvalues()(i) > 1e-10) good.push_back(i);
+    if (eigen.values(i) > 1e-10) good.push_back(i);
   }
   Eigen::MatrixXd out(n, static_cast<Eigen::Index>(good.size()));
   for (std::size_t g = 0; g < good.size(); ++g) {
     out.col(static_cast<Eigen::Index>(g)) =
-        scale.asDiagonal() * eigen.eigenvectors().col(good[g]) / std::sqrt(eigen.eigenvalues()(good[g]));
+        scale.asDiagonal() * eigen.vectors.col(good[g]) / std::sqrt(eigen.values(good[g]));
   }
   return out;
 }
@@ -68,13 +69,13 @@ Eigen::VectorXd spread_out(const Eigen::VectorXd& step, const std::vector<Eigen:
 Eigen::VectorXd step_of(const Normal& kept, const Eigen::MatrixXd& basis) {
   constexpr double kLeastKnown = 0.1;
   if (basis.cols() == 0) return Eigen::VectorXd::Zero(basis.rows());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(basis.transpose() * kept.curvature * basis);
-  Eigen::VectorXd pull = known.eigenvectors().transpose() * (basis.transpose() * kept.gradient);
+  const SymmetricEigen known = symmetric_eigen(basis.transpose() * kept.curvature * basis);
+  Eigen::VectorXd pull = known.vectors.transpose() * (basis.transpose() * kept.gradient);
   for (Eigen::Index i = 0; i < pull.size(); ++i) {
-    const double part = known.eigenvalues()(i);
+    const double part = known.values(i);
     pull(i) = part >= kLeastKnown ? pull(i) / part : 0;
   }
-  return -(basis * (known.eigenvectors() * pull));
+  return -(basis * (known.vectors * pull));
 }
 
 }  // namespace
@@ -162,8 +163,7 @@ double design_effect(const Linearised& model, std::size_t k, double noise) {
 double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom) {
   if (!(fall > 0) || !(noise > 0)) return 1;
   const auto k = static_cast<double>(parameters);
-  const boost::math::fisher_f distribution(k, std::max(1.0, freedom));
-  return boost::math::cdf(boost::math::complement(distribution, fall / (k * noise * design_effect)));
+  return f_p_value(fall / (k * noise * design_effect), k, std::max(1.0, freedom));
 }
 
 double sum(const std::vector<double>& x) {

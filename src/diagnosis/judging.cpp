@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "spectral_lines.hpp"
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

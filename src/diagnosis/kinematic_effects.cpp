@@ -56,8 +56,9 @@ std::vector<EffectFinding> motion_findings(const Motion& motion, const Estimate&
     const auto says = plateau_says(instruments, motion.conditions, motion.corrected_ratio);
     const bool known = gain ? says.not_the_radius && !says.not_the_gain : says.not_the_gain && !says.not_the_radius;
     other.status = known ? EffectStatus::unsupported : EffectStatus::equivalent;
-    other.reason = known ? "the instruments file leaves no room for it"
-                         : std::string("these data cannot tell it from ") + (gain ? "velocity-gain" : "radius-offset");
+    const char* rival = gain ? "velocity-gain" : "radius-offset";
+    other.reason =
+        known ? "the instruments file leaves no room for it" : fmt::format("these data cannot tell it from {}", rival);
   }
   if (motion.high_pass > 0) add("velocity-highpass", {{motion.high_pass, motion.high_pass_std_error}});
   if (load_coupling.value != 0) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

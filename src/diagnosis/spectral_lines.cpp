@@ -1,34 +1,21 @@
 #include "spectral_lines.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit::diagnosis {
 
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-
-/// Frequency of the highest value of a spectrum between two frequencies, interpolated by a parabola.
-double peak_frequency(const Spectrum& spectrum, double lowest, double highest) {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k + 1 < spectrum.amplitude.size(); ++k) {
-    const double f = spectrum.bin_width * static_cast<double>(k);
-    if (f < lowest || f > highest) continue;
-    if (best == 0 || spectrum.amplitude[k] > spectrum.amplitude[best]) best = k;
-  }
-  if (best == 0) return 0;
-  const double a = spectrum.amplitude[best - 1], b = spectrum.amplitude[best], c = spectrum.amplitude[best + 1];
-  const double bend = a - 2 * b + c;
-  const double shift = bend < 0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0;
-  return spectrum.bin_width * (static_cast<double>(best) + shift);
-}
 
 /// Amplitude of a line of that frequency in the residual, slips one after the other: |sum r e^(-i w t)|.
 double strength(const Observations& observations, std::span<const double> residual, double frequency) {
@@ -57,9 +44,7 @@ double median_slip_time(const Observations& observations) {
     }
   }
   if (lengths.size() < 3) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median(std::move(lengths));
 }
 
 }  // namespace
@@ -85,20 +70,13 @@ namespace {
 
 /// Adds to `series`, sampled at `rate` from time 0, what is left of a stick about a parabola.
 void add_stick(const Motion& motion, const SampleRange& stick, double rate, std::vector<double>& series) {
-  const auto n = static_cast<Eigen::Index>(stick.size());
-  if (n < 20) return;
-  Eigen::MatrixXd design(n, 3);
-  Eigen::VectorXd mu(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double u = 2 * static_cast<double>(i) / static_cast<double>(n - 1) - 1;
-    design.row(i) << 1, u, u * u;
-    mu(i) = motion.friction[stick.begin + static_cast<std::size_t>(i)];
-  }
-  const Eigen::VectorXd left = mu - design * (design.transpose() * design).ldlt().solve(design.transpose() * mu);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto at =
-        static_cast<std::size_t>((motion.time[stick.begin + static_cast<std::size_t>(i)] - motion.time[0]) * rate);
-    if (at < series.size()) series[at] = left(i);
+  if (stick.size() < 20) return;
+  const auto friction = std::span<const double>(motion.friction).subspan(stick.begin, stick.size());
+  const Parabola parabola = fit_parabola(friction);
+  for (std::size_t i = 0; i < stick.size(); ++i) {
+    const auto at = static_cast<std::size_t>((motion.time[stick.begin + i] - motion.time[0]) * rate);
+    const double left = friction[i] - parabola.at(static_cast<double>(i) - parabola.centre());
+    if (at < series.size()) series[at] = left;
   }
 }
 

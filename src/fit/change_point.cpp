@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "tribofit/statistics/change_point.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -48,12 +50,14 @@ Scan scan_of(const ChangePoint& point, const ModelResiduals& residuals, const Ob
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return observations.time[slips[a].begin] < observations.time[slips[b].begin];
   });
-  out.squares.push_back(std::accumulate(after.begin(), after.end(), 0.0));
+  std::vector<double> sorted_before, sorted_after;
   for (const std::size_t k : order) {
     out.begin.push_back(observations.time[slips[k].begin]);
     out.end.push_back(observations.time[slips[k].end - 1]);
-    out.squares.push_back(out.squares.back() + before[k] - after[k]);
+    sorted_before.push_back(before[k]);
+    sorted_after.push_back(after[k]);
   }
+  out.squares = squares_by_change(sorted_before, sorted_after);
   return out;
 }
 
@@ -104,7 +108,6 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
 std::pair<double, double> interval_of_change(const ChangePoint& point, const ModelResiduals& residuals,
                                              const Observations& observations, const NormalEquations& equations,
                                              const Bounds& bounds, std::vector<double> p) {
-  constexpr double kRise = 7.35;
   const double best = p[point.time];
   const auto size = static_cast<Eigen::Index>(point.size);
   double spread = 0, known = 0;
@@ -115,7 +118,7 @@ std::pair<double, double> interval_of_change(const ChangePoint& point, const Mod
   const Scan scan = scan_of(point, residuals, observations, p);
   double least = sum_at(residuals, p, point.time, best);
   for (std::size_t k = 1; k + 1 < scan.squares.size(); ++k) least = std::min(least, scan.squares[k]);
-  const double limit = least + kRise * (known > 0 ? spread / known : 0);
+  const double limit = least + kChangePointRise95 * (known > 0 ? spread / known : 0);
   const auto inside = [&](double time) { return sum_at(residuals, p, point.time, time) < limit; };
   // Between the slip before which the change would leave too much and the next lies the wall.
   const auto wall = [&](double in, double out) {

@@ -6,7 +6,8 @@
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 

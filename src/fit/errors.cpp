@@ -21,8 +21,7 @@ std::span<const double> FullRecord::friction(const Observations::SlipObservation
 
 Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   const auto part = [&](const std::vector<double>& channel) {
-    return channel.empty() ? std::span<const double>()
-                           : std::span<const double>(channel).subspan(range.samples.begin, range.samples.size());
+    return part_of(channel, range.samples.begin, range.samples.end);
   };
   const Motion& motion = *records_[range.record].motion;
   const Channel& channel = channels_[range.record];

@@ -19,7 +19,7 @@
 #include "starts.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 

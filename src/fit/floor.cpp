@@ -1,73 +1,44 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
 namespace {
 
-/// What is left of a stretch of samples about a parabola.
-struct Residual {
-  double squares = 0, products = 0;  ///< sums of r_i^2 and r_i r_(i-1)
-  double count = 0;
-};
-
-Residual about_parabola(const std::vector<double>& x, std::size_t begin, std::size_t end) {
-  const std::size_t n = end - begin;
-  const auto count = static_cast<double>(n);
-  const double scale = 2 / (count - 1);
-  const auto grid = [&](std::size_t i) { return scale * static_cast<double>(i) - 1; };
-  double y0 = 0, y1 = 0, y2 = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double u = grid(i), y = x[begin + i] - x[begin];
-    y0 += y;
-    y1 += u * y;
-    y2 += u * u * y;
-  }
-  // Sums of u^2 and u^4 over the grid; odd ones vanish.
-  const double u2 = count * (count + 1) / (3 * (count - 1));
-  const double u4 = u2 * (3 * count * count - 7) / (5 * (count - 1) * (count - 1));
-  const double slope = y1 / u2, bend = (y2 - y0 * u2 / count) / (u4 - u2 * u2 / count);
-  const double level = x[begin] + (y0 - bend * u2) / count;
-  Residual out;
-  out.count = count;
-  double before = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double u = grid(i), r = x[begin + i] - level - slope * u - bend * u * u;
-    out.squares += r * r;
-    out.products += r * before;
-    before = r;
-  }
-  return out;
+/// What is left of samples [begin, end) about a parabola.
+Remainder about_parabola(std::span<const double> x, std::size_t begin, std::size_t end) {
+  const auto part = x.subspan(begin, end - begin);
+  return remainder_about(fit_parabola(part), part);
 }
 
 /// Noise as the pooled spread, leaving out stretches that hold something else (an event, a transient, a drop-out).
 /// A parabola takes three degrees of freedom from white noise, and (1+rho)/(1-rho) times as many from noise whose
 /// neighbours are correlated by rho.
-double pooled_noise(const std::vector<Residual>& parts) {
+double pooled_noise(const std::vector<Remainder>& parts) {
   if (parts.empty()) return 0;
   std::vector<double> variances;
-  for (const Residual& part : parts) variances.push_back(part.squares / part.count);
+  for (const Remainder& part : parts) variances.push_back(part.squares / part.count);
   // The quiet quarter sets the scale: ringing after re-stick may fill most stretches of a short stick.
-  const auto quiet = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 4);
-  std::nth_element(variances.begin(), quiet, variances.end());
-  const double limit = 3 * *quiet;
-  Residual all;
+  const double limit = 3 * quantile(std::move(variances), 0.25);
+  Remainder all;
   double used = 0;
-  for (const Residual& part : parts) {
+  for (const Remainder& part : parts) {
     if (part.squares / part.count > limit) continue;
-    all.squares += part.squares;
-    all.products += part.products;
-    all.count += part.count;
+    all += part;
     used += 1;
   }
   if (!(all.squares > 0)) return 0;
-  const double rho = std::clamp(all.products / all.squares, 0.0, 0.97);
-  const double freedom = all.count - 3 * used * (1 + rho) / (1 - rho);
+  const double freedom = all.count - 3 * used * variance_inflation(all.correlation(0.97));
   return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
@@ -76,8 +47,8 @@ constexpr std::size_t kStretch = 200;       ///< samples over which a ramp, even
 constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
-std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& segmentation) {
-  std::vector<Residual> parts;
+std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Remainder> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
     if (cycle.stick.size() < kShortestStick || !segmentation.is_selected(cycle)) continue;
@@ -92,8 +63,8 @@ std::vector<Residual> stick_residuals(const Motion& motion, const Segmentation& 
 }
 
 /// Stretches of the slips, as long as friction can be a parabola over them.
-std::vector<Residual> slip_residuals(const Motion& motion, const Segmentation& segmentation) {
-  std::vector<Residual> parts;
+std::vector<Remainder> slip_residuals(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Remainder> parts;
   const bool sticks = segmentation.kind == MotionKind::stick_slip;
   for (const Cycle& cycle : segmentation.cycles) {
     if (sticks && !segmentation.is_selected(cycle)) continue;
@@ -145,9 +116,9 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   Eigen::MatrixXd design(n, columns);
   for (Eigen::Index i = 0; i < n; ++i) design.row(i) = rows[static_cast<std::size_t>(i)].head(columns).transpose();
   const Eigen::Map<const Eigen::VectorXd> level(levels.data(), n);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(design);
-  const Eigen::VectorXd left = level - design * qr.solve(level);
-  const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - qr.rank())) -
+  const RankedSolution fitted = least_squares_of_any_rank(design, level);
+  const Eigen::VectorXd left = level - design * fitted.x;
+  const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - fitted.rank)) -
                           noise / static_cast<double>(n);
   return std::sqrt(std::max(0.0, variance));
 }
@@ -156,7 +127,7 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
   Floor floor;
-  std::vector<Residual> parts = stick_residuals(motion, segmentation);
+  std::vector<Remainder> parts = stick_residuals(motion, segmentation);
   floor.source = "stick";
   if (parts.size() < 3) {
     parts = slip_residuals(motion, segmentation);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
 namespace {
@@ -225,9 +226,7 @@ double period_guess(const Motion& motion, const Segmentation& segmentation) {
       if (cycle.slip_complete) slips.push_back(static_cast<double>(cycle.slip.size()) * motion.step);
     }
     if (slips.empty()) return 0;
-    const auto middle = slips.begin() + static_cast<std::ptrdiff_t>(slips.size() / 2);
-    std::nth_element(slips.begin(), middle, slips.end());
-    return 1.5 * *middle;  // a slip takes between a half and a whole period of the free block
+    return 1.5 * median(std::move(slips));  // a slip takes between a half and a whole period of the free block
   }
   const double frequency = fundamental(motion.relative_velocity, motion.step).frequency;
   return frequency > 0 ? 1 / frequency : 0;

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -52,10 +53,9 @@ Eigen::MatrixXd inverse_over(const Eigen::MatrixXd& matrix, const std::vector<bo
   }
   // Eigenvalues at rounding level belong to combinations the data do not determine: no finite error is claimed less
   // than that.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1e-14);
-  const Eigen::MatrixXd inverse =
-      eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
+  const Eigen::VectorXd values = eigen.values.cwiseMax(1e-14);
+  const Eigen::MatrixXd inverse = eigen.vectors * values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
   for (Eigen::Index i = 0; i < m; ++i) {
     for (Eigen::Index j = 0; j < m; ++j) {
@@ -74,12 +74,12 @@ Eigen::MatrixXd inverse_where_known(const Eigen::MatrixXd& kept, const Eigen::Ma
   for (Eigen::Index i = 0; i < n; ++i) scale(i) = total(i, i) > 0 ? 1 / std::sqrt(total(i, i)) : 1;
   const Eigen::MatrixXd scaled_total = scale.asDiagonal() * total * scale.asDiagonal();
   const Eigen::MatrixXd scaled_kept = scale.asDiagonal() * kept * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(inverse_over(scaled_total, free));
-  const Eigen::MatrixXd basis = all.eigenvectors() * all.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(basis.transpose() * scaled_kept * basis);
-  Eigen::VectorXd inverse = known.eigenvalues();
+  const SymmetricEigen all = symmetric_eigen(inverse_over(scaled_total, free));
+  const Eigen::MatrixXd basis = all.vectors * all.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen known = symmetric_eigen(basis.transpose() * scaled_kept * basis);
+  Eigen::VectorXd inverse = known.values;
   for (Eigen::Index i = 0; i < n; ++i) inverse(i) = inverse(i) >= kLeastKnown ? 1 / inverse(i) : 0;
-  const Eigen::MatrixXd directions = scale.asDiagonal() * basis * known.eigenvectors();
+  const Eigen::MatrixXd directions = scale.asDiagonal() * basis * known.vectors;
   return directions * inverse.asDiagonal() * directions.transpose();
 }
 
@@ -116,9 +116,9 @@ std::vector<std::vector<std::size_t>> undetermined(const Eigen::MatrixXd& total,
         scaled(i, j) = total(a, b) / std::sqrt(total(a, a) * total(b, b));
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);  // the least first
-    if (!(eigen.eigenvalues()(0) < kRounding)) break;
-    const Eigen::VectorXd part = eigen.eigenvectors().col(0).cwiseAbs();
+    const SymmetricEigen eigen = symmetric_eigen(scaled);  // the least first
+    if (!(eigen.values(0) < kRounding)) break;
+    const Eigen::VectorXd part = eigen.vectors.col(0).cwiseAbs();
     std::vector<std::size_t> group;
     std::size_t spare = index[0];
     for (Eigen::Index i = 0; i < m; ++i) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/friction/creep.hpp"
 
@@ -154,10 +155,7 @@ bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector
       wider << block.leftCols(block.cols() - 2), more, block.rightCols(2);
       block = std::move(wider);
     }
-    const Eigen::Index kept = std::min(block.rows(), block.cols());
-    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(block);  // in place
-    blocks[k] = Block::Zero(block.cols(), block.cols());
-    blocks[k].topRows(kept) = block.topRows(kept).triangularView<Eigen::Upper>();
+    blocks[k] = triangular_factor(block);
   }
   return true;
 }

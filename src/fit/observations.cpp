@@ -6,6 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -15,12 +18,9 @@ constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a rec
 
 /// Median number of samples of the slips.
 std::size_t median_size(const std::vector<Observations::SlipObservation>& slips) {
-  std::vector<std::size_t> sizes;
-  for (const auto& slip : slips) sizes.push_back(slip.samples.size());
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  std::vector<double> sizes;
+  for (const auto& slip : slips) sizes.push_back(static_cast<double>(slip.samples.size()));
+  return sizes.empty() ? 0 : static_cast<std::size_t>(std::round(median(std::move(sizes))));
 }
 
 /// Mean friction over two milliseconds of the stick after a slip; NaN where no stick follows.
@@ -47,10 +47,9 @@ void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const s
     if (is_selected[k] && std::isfinite(slips[k].stick_time)) known.push_back(slips[k].stick_time);
   }
   if (known.empty()) return;
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
+  const double usual = median(std::move(known));
   for (auto& slip : slips) {
-    if (slip.from_stick && !std::isfinite(slip.stick_time)) slip.stick_time = *middle;
+    if (slip.from_stick && !std::isfinite(slip.stick_time)) slip.stick_time = usual;
   }
 }
 
@@ -141,30 +140,6 @@ std::vector<Observations::SlipObservation> ranges_of(const Motion& motion, const
   free_stick_times_of_their_own_level(ranges, is_selected);
   keep(is_selected, ranges);
   return ranges;
-}
-
-/// Weights of a quadratic's slope at one sample of a window, `left` samples before it and `right` after [1/sample].
-std::vector<double> slope_weights(std::size_t left, std::size_t right) {
-  const std::size_t n = left + right + 1;
-  double moments[5] = {};
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) - static_cast<double>(left);
-    double power = 1;
-    for (double& moment : moments) {
-      moment += power;
-      power *= x;
-    }
-  }
-  // Normal equations of c0 + c1 x + c2 x^2; c1 is the slope at x = 0. Cofactors of the second row.
-  const auto& m = moments;
-  const double k0 = -(m[1] * m[4] - m[2] * m[3]), k1 = m[0] * m[4] - m[2] * m[2], k2 = -(m[0] * m[3] - m[1] * m[2]);
-  const double determinant = m[1] * k0 + m[2] * k1 + m[3] * k2;
-  std::vector<double> weights(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) - static_cast<double>(left);
-    weights[i] = (k0 + k1 * x + k2 * x * x) / determinant;
-  }
-  return weights;
 }
 
 /// Means of `channel` over each value of the observations.
@@ -263,11 +238,9 @@ double mean_of(const std::vector<double>& x, double otherwise) {
 }  // namespace
 
 Slip Observations::slip(const SlipObservation& range) const {
-  const auto part = [&](const std::vector<double>& channel) {
-    return channel.empty() ? std::span<const double>()
-                           : std::span<const double>(channel).subspan(range.begin, range.end - range.begin);
-  };
+  const auto part = [&](const std::vector<double>& channel) { return part_of(channel, range.begin, range.end); };
   Slip slip;
+  static_cast<SlipFacts&>(slip) = range;
   slip.time = part(time);
   slip.velocity = part(velocity);
   slip.acceleration = part(acceleration);
@@ -276,26 +249,12 @@ Slip Observations::slip(const SlipObservation& range) const {
   slip.load = part(load);
   slip.temperature = part(temperature);
   slip.velocity_variance = part(velocity_variance);
-  if (range.lead_end > range.lead_begin) {
-    const std::size_t count = range.lead_end - range.lead_begin;
-    slip.lead_time = std::span<const double>(lead_time).subspan(range.lead_begin, count);
-    slip.lead_velocity = std::span<const double>(lead_velocity).subspan(range.lead_begin, count);
-    slip.lead_friction = range.lead_friction;
-  }
-  const std::size_t earlier = range.earlier_end - range.earlier_begin;
-  slip.earlier_time = std::span<const double>(time).subspan(range.earlier_begin, earlier);
-  slip.earlier_velocity = std::span<const double>(velocity).subspan(range.earlier_begin, earlier);
-  slip.earlier_restick_time = range.earlier_restick_time;
-  slip.from_stick = range.from_stick;
-  slip.break_away_time = range.break_away_time;
-  slip.stick_time = range.stick_time;
-  slip.stick_slope = range.stick_slope;
-  slip.tail_friction = range.tail_friction;
-  slip.restick_time = range.restick_time;
-  slip.direction = range.direction;
+  slip.lead_time = part_of(lead_time, range.lead_begin, range.lead_end);
+  slip.lead_velocity = part_of(lead_velocity, range.lead_begin, range.lead_end);
+  slip.earlier_time = part_of(time, range.earlier_begin, range.earlier_end);
+  slip.earlier_velocity = part_of(velocity, range.earlier_begin, range.earlier_end);
   slip.mean_load = mean_load;
   slip.mean_temperature = mean_temperature;
-  slip.disc_speed = range.disc_speed;
   return slip;
 }
 

@@ -13,7 +13,9 @@
 #include "kinematics/corrections.hpp"
 #include "rig_messages.hpp"
 #include "rig_solution.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 namespace {
@@ -35,42 +37,28 @@ RigValue rig_value(double value, double std_error, double freedom) {
   return out;
 }
 
-/// Force over the way of the disc, as a straight line.
-struct Line {
-  double slope = 0, level = 0, middle = 0, squares = 0;  // level at the middle; sum of squares of the way about it
-};
-
-/// Nothing where the samples are too few or the disc stands.
-std::optional<Line> force_over_way(const Motion& motion, const NormalForce& load, const SampleRange& span) {
+/// Force over the way of the disc, as a straight line. Nothing where the samples are too few or the disc stands.
+std::optional<StraightLine> force_over_way(const Motion& motion, const NormalForce& load, const SampleRange& span) {
   if (span.end < span.begin + 8) return std::nullopt;
-  const auto n = static_cast<double>(span.size());
-  const double first = load.at(span.begin) * motion.friction[span.begin];
-  double way = 0, sx = 0, sf = 0, sxx = 0, sxf = 0;
+  std::vector<double> ways, forces;
+  double way = 0;
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double f = load.at(i) * motion.friction[i] - first;
-    sx += way, sf += f, sxx += way * way, sxf += way * f;
+    ways.push_back(way);
+    forces.push_back(load.at(i) * motion.friction[i]);
     way += motion.step * motion.disc_velocity_at(i);
   }
-  Line line;
-  line.middle = sx / n;
-  line.level = first + sf / n;
-  line.squares = sxx - sx * sx / n;
-  if (!(line.squares > 1e-9 * sxx)) return std::nullopt;
-  line.slope = (sxf - sx * sf / n) / line.squares;
+  const StraightLine line = fit_line(ways, forces);
+  constexpr double kRounding = 1e-9;
+  if (!(line.squares > kRounding * (line.squares + static_cast<double>(ways.size()) * line.middle * line.middle))) {
+    return std::nullopt;
+  }
   return line;
 }
 
 /// The same over the inner part of a stick: what follows re-stick and what precedes break-away are left out.
-std::optional<Line> within_stick(const Motion& motion, const NormalForce& load, const SampleRange& stick) {
+std::optional<StraightLine> within_stick(const Motion& motion, const NormalForce& load, const SampleRange& stick) {
   const std::size_t tenth = stick.size() / 10;
   return force_over_way(motion, load, {stick.begin + tenth, stick.end - tenth});
-}
-
-Estimate mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double x : values) sum += x;
-  const MeanError error = standard_error_of_mean(values);
-  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
 }
 
 bool disc_is_known(const Motion& motion) {
@@ -87,7 +75,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
   std::vector<std::size_t> middles;
   for (const Cycle& cycle : segmentation.cycles) {
     if (!cycle.stick_complete) continue;
-    const std::optional<Line> line = within_stick(motion, load, cycle.stick);
+    const std::optional<StraightLine> line = within_stick(motion, load, cycle.stick);
     if (!line) continue;
     const std::size_t middle = cycle.stick.begin + cycle.stick.size() / 2;
     const double disc = motion.disc_velocity_at(middle), block = disc - cycle.plateau_velocity;
@@ -95,7 +83,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
     middles.push_back(middle);
   }
   if (slopes.size() < 3) return;
-  const Estimate mean = mean_of(slopes);
+  const Estimate mean = mean_with_error(slopes);
   fit.stick_slope_stiffness = rig_value(mean.value, mean.std_error, mean.degrees_of_freedom);
   if (!fit.stiffness.determined || balance == nullptr) return;
   for (std::size_t k = 0, b = 0; k < slopes.size(); ++k) {
@@ -112,14 +100,14 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
 void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit) {
   fit.reason =
       "the block never slips: it moves with the disc, so that nothing accelerates and mass and damping do not show";
-  const std::optional<Line> line = force_over_way(motion, load, {0, motion.size()});
+  const std::optional<StraightLine> line = force_over_way(motion, load, {0, motion.size()});
   if (!disc_is_known(motion) || !line) return;
   constexpr std::size_t kPieces = 24;
   std::vector<double> influence(kPieces, 0.0);
   double way = 0;
   for (std::size_t i = 0; i < motion.size(); ++i) {
-    const double x = way - line->middle, residual = load.at(i) * motion.friction[i] - line->level - line->slope * x;
-    influence[i * kPieces / motion.size()] += kPieces * x * residual / line->squares;
+    const double residual = load.at(i) * motion.friction[i] - line->at(way);
+    influence[i * kPieces / motion.size()] += kPieces * (way - line->middle) * residual / line->squares;
     way += motion.step * motion.disc_velocity_at(i);
   }
   const MeanError error = standard_error_of_mean(influence);

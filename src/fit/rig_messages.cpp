@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::rig {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "statistics/linear_algebra.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -27,10 +29,10 @@ bool invert(const Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
   if (!(matrix.diagonal().array() > 0).all()) return false;
   const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  if (!(eigen.eigenvalues()(0) > kRounding)) return false;
-  inverse = scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
-            eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
+  if (!(eigen.values(0) > kRounding)) return false;
+  inverse = scale.asDiagonal() * eigen.vectors * eigen.values.cwiseInverse().asDiagonal() * eigen.vectors.transpose() *
+            scale.asDiagonal();
   return true;
 }
 

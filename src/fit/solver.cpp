@@ -3,11 +3,13 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
+
+#include "statistics/linear_algebra.hpp"
 
 namespace tribofit {
 
@@ -88,7 +90,7 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
     }
     const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     jacobian *= scale.asDiagonal();
-    const Eigen::VectorXd change = scale.asDiagonal() * jacobian.householderQr().solve(-residual).eval();
+    const Eigen::VectorXd change = scale.asDiagonal() * least_squares(jacobian, -residual);
     std::vector<double> p = result.p;
     double length = 0;
     for (std::size_t k = 0; k < free.size(); ++k) {
@@ -200,10 +202,7 @@ std::vector<double> covariance_of_independent(const Residuals& problem, std::spa
   // QR of the scaled Jacobian: forming J'J would cost half the digits.
   const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() * r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(columns, columns)).eval();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_triangular_factor(scaled);
   const double variance = residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows - columns));
   const Eigen::MatrixXd covariance = variance * inverse * inverse.transpose();
   return {covariance.data(), covariance.data() + covariance.size()};

@@ -6,6 +6,8 @@
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 
+#include "tribofit/statistics/quantiles.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -81,12 +83,6 @@ double mean_break_away(const Observations& observations, double otherwise) {
 std::array<double, 2> decay_range(const Observations& observations) {
   const double v = std::max(observations.fastest, 1e-9);
   return {0.2 / v, 40 / v};
-}
-
-double median(std::vector<double> x) {
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::nth_element(x.begin(), middle, x.end());
-  return *middle;
 }
 
 /// How far the slips of these data exceed those of a tribometer; pieces of a record that never sticks say nothing.

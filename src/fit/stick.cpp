@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "tribofit/friction/creep.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
 #include "tribofit/segmentation/stick_motion.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 

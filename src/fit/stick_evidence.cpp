@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "statistics/linear_algebra.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -18,8 +20,7 @@ Eigen::MatrixXd contrasts(Eigen::Index count, bool ramps) {
   Eigen::MatrixXd nuisance(count, nuisances);
   nuisance.col(0).setOnes();
   if (ramps) nuisance.col(1) = Eigen::VectorXd::LinSpaced(count, -1, 1);
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(nuisance).householderQ();
-  return q.rightCols(count - nuisances);
+  return orthogonal_complement(nuisance);
 }
 
 Eigen::MatrixXd weights_of(const Observations::StickNoise& noise, const CreepLaw& law, double unit) {
@@ -38,7 +39,7 @@ Eigen::MatrixXd weights_of(const Observations::StickNoise& noise, const CreepLaw
   // A velocity in steps of the converter may not scatter at all in some direction.
   constexpr double kLeast = 1e-3;
   covariance.diagonal().array() += kLeast * size;
-  return unit * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixL().solve(directions.transpose());
+  return unit * solve_lower_factor(covariance, directions.transpose());
 }
 
 /// Squares that remain of v_r in stick beside a pattern of free size, in units of its noise.

@@ -1,12 +1,13 @@
 #include "tribofit/friction/dynamics.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "statistics/linear_algebra.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -132,7 +133,7 @@ void FrictionDynamics::steady_states(const SlidingState<double>& at, std::span<d
       shifted[k] += y[k] == 0 ? 1e-9 : 1e-6 * y[k];
       jacobian.col(k) = (rates_of(shifted) - rate) / (shifted[k] - y[k]);
     }
-    const Eigen::VectorXd step = jacobian.partialPivLu().solve(-rate);
+    const Eigen::VectorXd step = solve_regular(jacobian, -rate);
     if (!step.allFinite() || i == kMostIterations) {
       throw InputError("the memory of the friction law does not come to rest at a speed of " +
                            std::to_string(1e3 * at.velocity) + " mm/s",

@@ -10,6 +10,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
@@ -199,15 +200,13 @@ class Assembler {
     auto& column = run_[Channel::speed];
     const Condition& stated = options_.conditions.speed;
     if (column.empty() || !stated.known()) return;
-    std::vector<double> sorted = column;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double usual = median(column);
     constexpr double agreement = 0.02;
-    if (std::abs(*middle - stated.value) <= agreement * std::abs(stated.value)) return;
+    if (std::abs(usual - stated.value) <= agreement * std::abs(stated.value)) return;
     trace_.warnings.push_back(
         fmt::format("the stated speed of {:.4g} rpm ({}) contradicts the median of the speed column, {:.4g} rpm; the "
                     "stated speed is used and the column is not",
-                    stated.value / kRpm, stated.source.empty() ? "stated" : stated.source, *middle / kRpm));
+                    stated.value / kRpm, stated.source.empty() ? "stated" : stated.source, usual / kRpm));
     column.clear();
   }
 

@@ -9,6 +9,7 @@
 #include "column_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
@@ -250,10 +251,7 @@ double typical_interval(const std::vector<double>& time) {
   for (std::size_t i = 0; i < intervals; i += stride) {
     if (time[i + 1] > time[i]) sample.push_back(time[i + 1] - time[i]);
   }
-  if (sample.empty()) return 0;
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  return *middle;
+  return sample.empty() ? 0 : median(std::move(sample));
 }
 
 double Trace::interval() const {

@@ -8,18 +8,13 @@
 
 #include "clock.hpp"
 #include "join.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
 
-double quantile(const std::vector<double>& values, double part) {
-  std::vector<double> sample;
-  const std::size_t stride = std::max<std::size_t>(1, values.size() / 20000);
-  for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
-  const auto at = sample.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(sample.size() - 1));
-  std::nth_element(sample.begin(), at, sample.end());
-  return *at;
-}
+constexpr std::size_t kEnough = 20000;  ///< samples for a quantile
 
 /// The velocity most samples have, and how far slip takes it away from that.
 struct Plateau {
@@ -27,7 +22,7 @@ struct Plateau {
 };
 
 Plateau find_plateau(const std::vector<double>& velocity) {
-  const double low = quantile(velocity, 0.002), high = quantile(velocity, 0.998);
+  const double low = quantile(thinned(velocity, kEnough), 0.002), high = quantile(thinned(velocity, kEnough), 0.998);
   std::array<std::size_t, 100> bins{};
   const double width = (high - low) / static_cast<double>(bins.size());
   if (!(width > 0)) return {low, 0};
@@ -196,7 +191,7 @@ class ForceBalance {
 
 ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, const std::vector<double>& friction,
                                   const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
-  const double low = quantile(friction, 0.05), high = quantile(friction, 0.95);
+  const double low = quantile(thinned(friction, kEnough), 0.05), high = quantile(thinned(friction, kEnough), 0.95);
   const Plateau plateau = find_plateau(velocity);
   if (!(high > low) || !(plateau.reach > 0)) return {};
   auto falls = upward_crossings(

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clock.hpp"
+#include "content_hash.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -135,7 +136,7 @@ void join(FileRecord& run, FileRecord other) {
   for (const std::string& note : other.notes) run.notes.push_back("second file: " + note);
   for (const std::string& warning : other.warnings) run.warnings.push_back("second file: " + warning);
   add_channels(run, other, find_offset(run, other));
-  run.checksum = hash_bytes(reinterpret_cast<const char*>(&other.checksum), sizeof other.checksum, run.checksum);
+  run.checksum = xxh64(other.checksum, run.checksum);
 }
 
 void join_on_one_clock(FileRecord& run, FileRecord other) {

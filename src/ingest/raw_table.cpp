@@ -1,8 +1,6 @@
 #include "raw_table.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 #include "column_names.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -48,23 +46,6 @@ std::vector<std::string> RawTable::names() const {
 
 InputLocation RawTable::heading(std::size_t column) const {
   return {path, columns[column].line, columns[column].shown_name()};
-}
-
-std::uint64_t hash_bytes(const char* bytes, std::size_t count, std::uint64_t hash) {
-  constexpr std::uint64_t prime = 1099511628211ULL;
-  std::size_t i = 0;
-  if (count >= 32) {
-    std::array<std::uint64_t, 4> lanes = {hash, hash + 1, hash + 2,
-                                          hash + 3};  // a multiplication need not wait for the last
-    for (; i + 32 <= count; i += 32) {
-      std::array<std::uint64_t, 4> words;
-      std::memcpy(words.data(), bytes + i, 32);
-      for (std::size_t k = 0; k < 4; ++k) lanes[k] = (lanes[k] ^ words[k]) * prime;
-    }
-    for (const std::uint64_t lane : lanes) hash = (hash ^ lane) * prime;
-  }
-  for (; i < count; ++i) hash = (hash ^ static_cast<unsigned char>(bytes[i])) * prime;
-  return hash;
 }
 
 }  // namespace tribofit

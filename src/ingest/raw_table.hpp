@@ -96,7 +96,4 @@ struct RawTable {
 /// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
 inline constexpr double largest_value = 1e100;
 
-/// FNV-1a of `bytes` continuing from `hash`: over words of eight bytes in four lanes, the rest one by one.
-std::uint64_t hash_bytes(const char* bytes, std::size_t count, std::uint64_t hash = 14695981039346656037ULL);
-
 }  // namespace tribofit

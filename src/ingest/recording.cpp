@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clock.hpp"
+#include "content_hash.hpp"
 #include "join.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -68,10 +69,10 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
 
 std::uint64_t checksum_of(const RawTable& table, const std::vector<Column>& used) {
   if (table.checksum != 0) return table.checksum;
-  std::uint64_t hash = hash_bytes(nullptr, 0);
+  std::uint64_t hash = 0;
   for (const Column& column : used) {
     const auto& values = table.columns[column.index].numbers;
-    hash = hash_bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double), hash);
+    hash = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, hash);
   }
   return hash;
 }
@@ -196,7 +197,7 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
     run.recipe_steps.push_back(recipe + next.recipe_steps[i]);
   }
   run.clock_end = goes_on ? next.clock_end : run.clock_end;
-  run.checksum = hash_bytes(reinterpret_cast<const char*>(&next.checksum), sizeof next.checksum, run.checksum);
+  run.checksum = xxh64(next.checksum, run.checksum);
   run.parts.push_back({before, next.path, std::move(next.lines)});
   for (const std::string& note : next.notes) run.notes.push_back(fmt::format("file {}: {}", number, note));
   for (const std::string& warning : next.warnings) run.warnings.push_back(fmt::format("file {}: {}", number, warning));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tribofit/statistics/polynomials.hpp"
+
 namespace tribofit::kinematics {
 namespace {
 
@@ -82,49 +84,6 @@ void shift_earlier(std::span<double> signal, double delay, double step) {
     signal[i] = i + whole < n ? shifted : last;
   }
   if (reversed) std::reverse(signal.begin(), signal.end());
-}
-
-std::vector<double> savitzky_golay_slope(std::span<const double> signal, double step, std::size_t half_window) {
-  const std::size_t n = signal.size();
-  std::vector<double> slope(n, 0.0);
-  if (n < 2) return slope;
-  const std::size_t half = std::max<std::size_t>(1, std::min(half_window, (n - 1) / 2));
-  if (n < 3) {
-    slope[0] = slope[1] = (signal[1] - signal[0]) / step;
-    return slope;
-  }
-  const double w = static_cast<double>(half);
-  const double squares = w * (w + 1) * (2 * w + 1) / 3;
-  constexpr std::size_t renew = 4096;  // running sums are computed afresh before rounding can gather
-  double sum = 0, moment = 0;
-  for (std::size_t i = half; i + half < n; ++i) {
-    if ((i - half) % renew == 0) {
-      sum = moment = 0;
-      for (std::size_t k = 0; k <= 2 * half; ++k) {
-        sum += signal[i - half + k];
-        moment += (static_cast<double>(k) - w) * signal[i - half + k];
-      }
-    } else {
-      const double in = signal[i + half], out = signal[i - half - 1];
-      moment += (w + 1) * in + w * out - (sum + in - out);
-      sum += in - out;
-    }
-    slope[i] = moment / (squares * step);
-  }
-  // Ends: derivative of the parabola through the first and last window, away from its middle.
-  const auto end_slope = [&](std::size_t middle, std::size_t i) {
-    const double count = 2 * w + 1, shift = (count * count - 1) / 12;
-    double second = 0, norm = 0;
-    for (std::size_t k = 0; k <= 2 * half; ++k) {
-      const double x = static_cast<double>(k) - w, p = x * x - shift;
-      second += p * signal[middle - half + k], norm += p * p;
-    }
-    const double x = static_cast<double>(i) - static_cast<double>(middle);
-    return slope[middle] + 2 * x * second / norm / step;
-  };
-  for (std::size_t i = 0; i < half; ++i) slope[i] = end_slope(half, i);
-  for (std::size_t i = n - half; i < n; ++i) slope[i] = end_slope(n - 1 - half, i);
-  return slope;
 }
 
 Ends correct_declared(Trace& trace, const Instruments& instruments, double step, std::vector<std::string>& notes) {

@@ -18,10 +18,6 @@ struct Ends {
 /// Shifts a signal in place so that it reads `delay` seconds earlier (cubic interpolation); both ends are held.
 void shift_earlier(std::span<double> signal, double delay, double step);
 
-/// Slope of a parabola through 2*half_window+1 samples around each sample (Savitzky and Golay 1964), per second.
-/// The ends take it from the first and last full window. Returns as many values as samples.
-std::vector<double> savitzky_golay_slope(std::span<const double> signal, double step, std::size_t half_window);
-
 /// Sign, gain, delay and low-pass of the vibrometer; zero, gain, crosstalk and bandwidth of the force sensor, in place.
 /// (The high-pass and the mass below the sensor need the plateau and come later.) Says what it did in `notes`.
 Ends correct_declared(Trace& trace, const Instruments& instruments, double step, std::vector<std::string>& notes);

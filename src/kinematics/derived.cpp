@@ -1,17 +1,16 @@
 // What follows from a Motion sample by sample: acceleration, disc angle, sliding distance.
 #include <cmath>
 
-#include "corrections.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 
 std::vector<double> block_acceleration(const Motion& motion, std::size_t half_window) {
-  std::vector<double> acceleration =
-      kinematics::savitzky_golay_slope(motion.relative_velocity, motion.step, half_window);
+  std::vector<double> acceleration = savitzky_golay_slope(motion.relative_velocity, motion.step, half_window);
   for (double& a : acceleration) a = -a;
   if (!motion.disc_velocity.empty()) {
-    const std::vector<double> disc = kinematics::savitzky_golay_slope(motion.disc_velocity, motion.step, half_window);
+    const std::vector<double> disc = savitzky_golay_slope(motion.disc_velocity, motion.step, half_window);
     for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] += disc[i];
   }
   return acceleration;

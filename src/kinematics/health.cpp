@@ -8,7 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -76,7 +77,7 @@ std::size_t lone_samples(std::span<const double> x, const Chunks& chunks) {
   const std::size_t stride = std::max<std::size_t>(1, x.size() / 8192);
   std::vector<double> usual;
   for (std::size_t i = 1; i + 1 < x.size(); i += stride) usual.push_back(std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1])));
-  const double spread = median(std::move(usual)) / 0.6745;
+  const double spread = kSigmaPerMad * median(std::move(usual));
   const double far = std::max(20 * spread, 0.05 * (chunks.whole.high - chunks.whole.low));
   std::size_t count = 0;
   for (std::size_t c = 0; c < chunks.part.size(); ++c) {

@@ -8,8 +8,8 @@
 
 #include "high_pass.hpp"
 #include "plateau.hpp"
-#include "reductions.hpp"
 #include "ripple.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
 namespace tribofit::kinematics {
 namespace {
 
@@ -20,14 +23,13 @@ struct Centre {
 Centre robust_centre(const std::vector<double>& values) {
   Centre centre;
   centre.value = median(values);
-  std::vector<double> deviation;
-  for (double v : values) deviation.push_back(std::abs(v - centre.value));
-  centre.std_error = 1.2533 * 1.4826 * median(std::move(deviation)) / std::sqrt(static_cast<double>(values.size()));
+  const double deviation = median_absolute_deviation(values, centre.value);
+  centre.std_error = 1.2533 * kSigmaPerMad * deviation / std::sqrt(static_cast<double>(values.size()));
   return centre;
 }
 
 double corner_of(std::span<const double> part, double block_step, double disc_slope) {
-  const Line line = fit_line(part);
+  const StraightLine line = fit_line(part);
   return -(line.slope / block_step - disc_slope) / (two_pi * line.value);
 }
 
@@ -79,37 +81,30 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
     if (!disc.empty()) restored[b] -= disc[b];
   }
   if (rests.empty()) {  // no plateau to be level: no drift and no net displacement of the block
-    const Line line = fit_line(restored);
+    const StraightLine line = fit_line(restored);
     terms.slope = -line.slope / h;
     terms.offset = -line.value + 0.5 * line.slope * static_cast<double>(restored.size());
     return terms;
   }
   // Straight line through the levels of the plateaus; those of a run-up or a mistaken rest are left out by halves.
-  struct Level {
-    double time, value, weight;
-  };
-  std::vector<Level> levels;
+  std::vector<double> times, levels, weights;
   for (const StickPlateau& run : rests.runs) {
     const std::size_t n = run.inner_end() - run.inner_begin();
-    const Line line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
-    levels.push_back(
-        {0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()), line.value, static_cast<double>(n)});
+    const StraightLine line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
+    times.push_back(0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()));
+    levels.push_back(line.value);
+    weights.push_back(static_cast<double>(n));
   }
-  double offset = 0, slope = 0, limit = HUGE_VAL;
+  std::vector<double> used = weights;
+  StraightLine line;
   for (int pass = 0; pass < 4; ++pass) {
-    double sw = 0, st = 0, sv = 0, stt = 0, stv = 0;
-    for (const Level& l : levels) {
-      if (std::abs(l.value - offset - slope * l.time) > limit) continue;
-      sw += l.weight, st += l.weight * l.time, sv += l.weight * l.value;
-      stt += l.weight * l.time * l.time, stv += l.weight * l.time * l.value;
-    }
-    const double determinant = sw * stt - st * st;
-    slope = determinant > 1e-9 * sw * stt ? (sw * stv - st * sv) / determinant : 0;
-    offset = (sv - slope * st) / sw;
+    line = fit_line(times, levels, used);
     std::vector<double> deviation;
-    for (const Level& l : levels) deviation.push_back(std::abs(l.value - offset - slope * l.time));
-    limit = std::max(5 * median(std::move(deviation)), 1e-12);
+    for (std::size_t k = 0; k < levels.size(); ++k) deviation.push_back(std::abs(levels[k] - line.at(times[k])));
+    const double limit = std::max(5 * median(deviation), 1e-12);
+    for (std::size_t k = 0; k < levels.size(); ++k) used[k] = deviation[k] <= limit ? weights[k] : 0;
   }
+  const double slope = line.slope, offset = line.at(0);
   terms.slope = -slope;
   if (plateau == plateau) {
     terms.offset = plateau - offset;

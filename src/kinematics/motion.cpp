@@ -15,6 +15,7 @@
 #include "plateau_search.hpp"
 #include "ripple.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 namespace {
@@ -129,9 +130,8 @@ std::optional<kinematics::RecordedPlateau> recorded_plateau(const PlateauSearch&
     if (std::abs(s.rests.level) <= 0.2 * std::abs(recorded)) return following;
   }
   const std::span<const double> v(s.blocks.mean);
-  const kinematics::Extremes range = kinematics::extremes(v);
-  Rests alone = range.high - range.low <= 8 * s.noise ? Rests{{{0, v.size(), kinematics::fit_line(v).value}}, 0, 0}
-                                                      : find_rests(v);
+  const Extremes range = extremes(v);
+  Rests alone = range.high - range.low <= 8 * s.noise ? Rests{{{0, v.size(), fit_line(v).value}}, 0, 0} : find_rests(v);
   if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
   std::size_t resting = 0;
   for (const StickPlateau& run : alone.runs) resting += run.size();
@@ -156,7 +156,7 @@ std::optional<double> plateau_as_recorded(const PlateauSearch& s, const Disc& di
 // A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
 bool is_useless(const Trace& trace) {
   constexpr std::size_t few = 16;
-  const kinematics::Extremes range = kinematics::extremes(trace.velocity);
+  const Extremes range = extremes(trace.velocity);
   return range.low == range.high || (trace.size() < few && trace.conditions.radius.known());
 }
 
@@ -232,10 +232,10 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   const bool block = trace.velocity_kind == VelocityKind::block;
 
   // What the recorder did, on the channels as recorded; then what the user declared.
-  const kinematics::Chunks friction_chunks = kinematics::chunks_of(trace.friction);
-  const kinematics::Chunks velocity_chunks = kinematics::chunks_of(trace.velocity);
+  const Chunks friction_chunks = chunks_of(trace.friction);
+  const Chunks velocity_chunks = chunks_of(trace.velocity);
   const kinematics::RangeEnds ends = kinematics::range_ends(trace, friction_chunks, velocity_chunks);
-  HealthItem drop_outs = check_drop_outs(trace, friction_chunks, velocity_chunks);
+  HealthItem drop_outs = kinematics::check_drop_outs(trace, friction_chunks, velocity_chunks);
   kinematics::Ends lost = kinematics::correct_declared(trace, instruments, motion.step, motion.notes);
   if (lost.head + lost.tail + 2 > trace.size()) lost = {};
 

@@ -5,20 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "statistics/reductions.hpp"
+
 namespace tribofit::kinematics {
-
-/// Means over blocks of `length` samples; a last incomplete block is left out unless it is the only one.
-struct BlockMeans {
-  std::size_t length = 1;    ///< samples in a block
-  double step = 0;           ///< duration of a block [s]
-  std::vector<double> mean;  ///< in the signal's unit
-};
-
-/// Number of samples that can be averaged without losing the motion: an eighth of the time in which the signal
-/// changes by a tenth of its variance, at least so many that 2^17 blocks are not exceeded.
-std::size_t block_length(std::span<const double> signal);
-
-BlockMeans block_means(std::span<const double> signal, std::size_t length, double step);
 
 /// A stretch of blocks [begin, end) in which the velocity rests on a level.
 struct StickPlateau {
@@ -50,21 +39,11 @@ struct LevelRange {
 /// Cost: n log n for at most 2^15 of the blocks, linear in the rest.
 Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> range = {});
 
-/// Slope and value in the middle of a straight line through equally spaced samples (least squares).
-struct Line {
-  double value = 0;  ///< at the mean abscissa
-  double slope = 0;  ///< per sample
-};
-Line fit_line(std::span<const double> samples);
-
-/// Median of a copy; 0 when empty.
-double median(std::vector<double> values);
-
 /// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
 /// parabolas through windows in the given stretches of samples, one value a window.
 std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
                                             std::size_t factor);
-/// The median of these.
+/// The median of these; 0 where no stretch is long enough.
 double spread_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,
                               std::size_t factor);
 

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "reductions.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -21,10 +24,6 @@ struct Stick {
   std::array<double, parts> level{}, friction{};
   double highest = 0;
 };
-
-double mean_of(std::span<const double> values) {
-  return sum_of(values, [](double v) { return v; }) / static_cast<double>(values.size());
-}
 
 // Between re-stick, whose ringing makes a contact creep more, and break-away.
 bool make_stick(const Motion& motion, const StickPlateau& run, std::size_t factor, Stick& stick) {
@@ -48,17 +47,10 @@ bool make_stick(const Motion& motion, const StickPlateau& run, std::size_t facto
   return true;
 }
 
-/// Value with its standard error.
-struct Estimate {
-  double value = 0, std_error = 0;
-};
-
 // Mean of what lies within five robust standard deviations of the median.
 Estimate trimmed_mean(std::vector<double> values) {
   const double centre = median(values);
-  std::vector<double> deviation;
-  for (double v : values) deviation.push_back(std::abs(v - centre));
-  const double limit = 5 * 1.4826 * median(std::move(deviation));
+  const double limit = 5 * kSigmaPerMad * median_absolute_deviation(values, centre);
   std::erase_if(values, [&](double v) { return std::abs(v - centre) > limit; });
   const auto n = static_cast<double>(values.size());
   const double mean = mean_of(values);
@@ -84,17 +76,12 @@ Creep creep_of(const std::vector<Stick>& sticks, double above) {
       const bool loaded = s.highest > 0 && s.friction[k] > 0;
       x[k] = loaded ? 1 / std::max(0.02, 1 - s.friction[k] / (above * s.highest)) : 1;
     }
-    const double mean = mean_of(x), level = mean_of(s.level);
-    double moment = 0, leverage = 0;
-    for (std::size_t k = 0; k < parts; ++k) {
-      leverage += (x[k] - mean) * (x[k] - mean);
-      moment += (x[k] - mean) * (s.level[k] - level);
-      total += (s.level[k] - level) * (s.level[k] - level);
-    }
-    creep.x.push_back(mean);
-    slopes.push_back(leverage > 0 ? moment / leverage : 0);
-    weights.push_back(leverage);
-    sum += moment, weight += leverage;
+    const StraightLine line = fit_line(x, s.level);
+    for (const double level : s.level) total += (level - line.value) * (level - line.value);
+    creep.x.push_back(line.middle);
+    slopes.push_back(line.slope);
+    weights.push_back(line.squares);
+    sum += line.slope * line.squares, weight += line.squares;
   }
   if (!(weight > 0)) return creep;
   creep.slope.value = sum / weight;
@@ -120,17 +107,10 @@ Estimate net_velocity(const Motion& motion, const Rests& rests, std::size_t fact
     position.push_back(x);
   }
   const auto n = static_cast<double>(time.size());
-  const double mean_time = mean_of(time), mean_position = mean_of(position);
-  double moment = 0, norm = 0, squares = 0;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    moment += (time[k] - mean_time) * (position[k] - mean_position);
-    norm += (time[k] - mean_time) * (time[k] - mean_time);
-  }
-  const double velocity = moment / norm;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    squares += std::pow(position[k] - mean_position - velocity * (time[k] - mean_time), 2);
-  }
-  return {velocity, std::sqrt(squares / std::max(1.0, n - 2) / norm)};
+  const StraightLine line = fit_line(time, position);
+  double squares = 0;
+  for (std::size_t k = 0; k < time.size(); ++k) squares += std::pow(position[k] - line.at(time[k]), 2);
+  return {line.slope, std::sqrt(squares / std::max(1.0, n - 2) / line.squares)};
 }
 
 }  // namespace

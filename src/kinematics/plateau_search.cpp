@@ -5,7 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "reductions.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -27,10 +29,8 @@ double roughness_of(std::span<const double> velocity) {
   constexpr double quiet = 0.1;
   std::vector<double> spreads = spreads_about_parabolas(velocity, evenly_spaced_windows(velocity.size()).runs, 1);
   if (spreads.empty()) return 0;
-  const double middle = median(spreads);
-  const auto tenth = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 10);
-  std::nth_element(spreads.begin(), tenth, spreads.end());
-  return *tenth < quiet * middle ? *tenth : middle;
+  const double middle = median(spreads), tenth = quantile(std::move(spreads), 0.1);
+  return tenth < quiet * middle ? tenth : middle;
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 #include "ripple.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <vector>
 
-#include "reductions.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -27,10 +30,6 @@ struct Level {
   double mean = 0, last = 0;  // friction in the middle and towards its end
   bool used = true;
 };
-
-double mean_of(std::span<const double> values) {
-  return sum_of(values, [](double v) { return v; }) / static_cast<double>(std::max<std::size_t>(1, values.size()));
-}
 
 std::vector<Level> levels_of(const BlockMeans& velocity, const Rests& rests, std::span<const double> time,
                              std::span<const double> friction) {
@@ -121,10 +120,10 @@ LinearFit fit_order(const std::vector<Level>& levels, const Design& design) {
     normal += row * row.transpose();
     right += row * (level.value - origin);
   }
-  const Eigen::LDLT<Normal> solver(normal);
-  if (solver.info() != Eigen::Success || solver.rcond() < 1e-8) return fit;
-  fit.inverse = solver.solve(Normal::Identity(k, k));
-  fit.x = solver.solve(right);
+  const SymmetricSystem solved = solve_symmetric_system(normal, right);
+  if (!(solved.reciprocal_condition >= 1e-8)) return fit;
+  fit.inverse = solved.inverse;
+  fit.x = solved.x;
   fit.x(0) += origin;
   fit.rss = 0;
   for (const Level& level : levels) {
@@ -145,7 +144,7 @@ std::complex<double> half_of(const std::vector<Level>& levels, const Design& des
     normal += r * r.transpose();
     right += r * (level.value - other.dot(row));
   }
-  const Eigen::Vector3d x = normal.ldlt().solve(right);
+  const Eigen::Vector3d x = solve_symmetric(normal, right);
   return {x(1), x(2)};
 }
 
@@ -214,7 +213,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
     design.w = order * omega;
     std::vector<double> deviation;
     for (const Level& level : levels) deviation.push_back(std::abs(level.value - design.row(level).dot(best.x)));
-    const double limit = std::max(5 * 1.4826 * median(deviation), 1e-12 * std::abs(best.x(0)));
+    const double limit = std::max(5 * kSigmaPerMad * median(deviation), 1e-12 * std::abs(best.x(0)));
     for (std::size_t r = 0; r < levels.size(); ++r) levels[r].used = deviation[r] <= limit;
   }
   std::vector<double> residual;
@@ -227,13 +226,10 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
   }
   const auto used = static_cast<double>(residual.size());
   if (used < std::max(static_cast<double>(least_rests), 0.7 * static_cast<double>(levels.size()))) return estimate;
-  double squares = 0, products = 0;
-  for (std::size_t r = 0; r < residual.size(); ++r) {
-    squares += residual[r] * residual[r];
-    if (r > 0) products += residual[r] * residual[r - 1];
-  }
-  const double rho = squares > 0 ? std::clamp(products / squares, 0.0, 0.95) : 0;
-  const double variance = squares / (used - static_cast<double>(best.x.size())) * (1 + rho) / (1 - rho);
+  Remainder left;
+  for (std::size_t r = 0; r < residual.size(); ++r) left.add(residual[r]);
+  const double freedom = used - static_cast<double>(best.x.size());
+  const double variance = left.squares / freedom * variance_inflation(left.correlation(0.95));
   const Eigen::Vector2d wave = best.x.segment<2>(2);
   const double size = wave.norm();
   estimate.level = best.x(0);
@@ -249,7 +245,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
   ripple.phase = std::atan2(-sign * wave(1), sign * wave(0));
   ripple.amplitude_std_error = std::sqrt(along.dot(covariance * along)) / std::abs(estimate.level);
   ripple.phase_std_error = std::sqrt(across.dot(covariance * across)) / size;
-  estimate.explained = total > 0 ? 1 - squares / total : 0;
+  estimate.explained = total > 0 ? 1 - left.squares / total : 0;
 
   const std::complex<double> early = half_of(levels, design, best.x, false);
   const std::complex<double> late = half_of(levels, design, best.x, true);
@@ -258,7 +254,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
   estimate.significant =
       same && ripple.amplitude >= std::max(least_amplitude, creep) && ripple.amplitude <= largest_amplitude &&
       ripple.amplitude > significance * ripple.amplitude_std_error && estimate.explained > least_explained;
-  if (estimate.significant) try_true_angle(levels, design, omega, squares, estimate);
+  if (estimate.significant) try_true_angle(levels, design, omega, left.squares, estimate);
   return estimate;
 }
 

@@ -44,19 +44,24 @@ void check(const Sensors& sensors) {
   }
 }
 
-/// The whole record as one slip, for hooks that work on a stretch of samples.
-Slip whole_record(const SimulatedMotion& motion) {
+/// Samples [begin, end) as one slip, for hooks that work on a stretch of samples. velocity: v_r there.
+Slip slip_of(const SimulatedMotion& motion, std::size_t begin, std::size_t end, std::span<const double> velocity) {
+  const auto part = [&](const std::vector<double>& channel) { return part_of(channel, begin, end); };
   Slip slip;
-  slip.time = motion.time;
-  slip.velocity = motion.relative_velocity;
-  slip.acceleration = motion.acceleration;
-  slip.angle = motion.disc_angle;
-  slip.distance = motion.distance;
-  slip.load = motion.load;
-  slip.temperature = motion.temperature;
+  slip.time = part(motion.time);
+  slip.velocity = velocity;
+  slip.acceleration = part(motion.acceleration);
+  slip.angle = part(motion.disc_angle);
+  slip.distance = part(motion.distance);
+  slip.load = part(motion.load);
+  slip.temperature = part(motion.temperature);
   slip.mean_load = motion.mean_load;
   slip.mean_temperature = motion.mean_temperature;
   return slip;
+}
+
+Slip whole_record(const SimulatedMotion& motion) {
+  return slip_of(motion, 0, motion.size(), motion.relative_velocity);
 }
 
 /// First-order high-pass, exact for straight lines between samples. `drift`: its low-pass part at the first sample.
@@ -216,11 +221,6 @@ std::pair<FrictionModel, std::vector<double>> at_the_interface(const FrictionMod
   return {FrictionModel(model.law(), std::move(effects)), std::move(kept)};
 }
 
-/// Samples [begin, end) of a channel that may be absent.
-std::span<const double> part(const std::vector<double>& channel, std::size_t begin, std::size_t end) {
-  return channel.empty() ? std::span<const double>() : std::span(channel).subspan(begin, end - begin);
-}
-
 }  // namespace
 
 double floor_rmse(const SimulatedMotion& motion, const Recording& recording, const FrictionModel& model,
@@ -242,21 +242,12 @@ double floor_rmse(const SimulatedMotion& motion, const Recording& recording, con
     if (!recording.velocity_noise.empty()) {
       for (std::size_t i = begin; i < end; ++i) velocity[i - begin] -= recording.velocity_noise[i];
     }
-    Slip slip;
-    slip.time = part(motion.time, begin, end);
-    slip.velocity = velocity;
-    slip.acceleration = part(motion.acceleration, begin, end);
-    slip.angle = part(motion.disc_angle, begin, end);
-    slip.distance = part(motion.distance, begin, end);
-    slip.load = part(motion.load, begin, end);
-    slip.temperature = part(motion.temperature, begin, end);
+    Slip slip = slip_of(motion, begin, end, velocity);
     slip.from_stick = event.break_away_time >= 0;
     slip.break_away_time = event.break_away_time;
     slip.stick_time = event.stick_time;
     slip.stick_slope = begin >= 2 ? (motion.friction[begin - 1] - motion.friction[begin - 2]) * motion.rate : 0;
     slip.direction = event.direction;
-    slip.mean_load = motion.mean_load;
-    slip.mean_temperature = motion.mean_temperature;
     slip.disc_speed = motion.disc_speed[begin];
     std::vector<double> model_mu(end - begin);
     evaluate<double>(law, kept.data(), slip, velocity, model_mu);

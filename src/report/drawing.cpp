@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "tribofit/statistics/quantiles.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -32,14 +34,6 @@ void draw_stretch(std::span<const double> values, std::size_t begin, std::size_t
   for (const std::size_t i : kept) {
     if (i != kNone && (drawn.empty() || drawn.back() != i)) drawn.push_back(i);
   }
-}
-
-/// By linear interpolation between order statistics; `sorted` is not empty.
-double quantile(std::span<const double> sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const std::size_t below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 }  // namespace
@@ -89,9 +83,9 @@ DrawnBand BandOverCycles::band() const {
     std::vector<double> sorted = bin.means;
     std::sort(sorted.begin(), sorted.end());
     out.at.push_back(bin.all_x / static_cast<double>(bin.all));
-    out.low.push_back(quantile(sorted, 0.05));
-    out.middle.push_back(quantile(sorted, 0.5));
-    out.high.push_back(quantile(sorted, 0.95));
+    out.low.push_back(quantile_of_sorted(sorted, 0.05));
+    out.middle.push_back(quantile_of_sorted(sorted, 0.5));
+    out.high.push_back(quantile_of_sorted(sorted, 0.95));
   }
   return out;
 }

@@ -6,7 +6,7 @@
 
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 

@@ -229,7 +229,7 @@ ReportSection run_section(const std::string& command, std::span<const Identifica
   ReportSection section{"run", "What was run", {}};
   section.items.push_back(plain_text("This report is made by"));
   section.items.push_back(ReportText{command, ReportText::Kind::command});
-  ReportTable inputs{"Input", {"file", "samples", "duration [s]", "checksum of the rows (FNV-1a)"}, {}, {1, 2}, false};
+  ReportTable inputs{"Input", {"file", "samples", "duration [s]", "checksum of the rows (XXH64)"}, {}, {1, 2}, false};
   bool notes = false;
   for (const Identification& trace : traces) {
     inputs.rows.push_back({trace.path, std::to_string(trace.samples), significant(trace.duration, 4),

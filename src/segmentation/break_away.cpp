@@ -1,11 +1,14 @@
 #include "break_away.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "phases.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
 namespace {
@@ -23,12 +26,6 @@ struct Window {
 struct Growth {
   double a = 0, lambda = 0, b = 0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// An onset with the level of its own stick: creep of the contact, a ripple of the disc or a wrong radius is no slip.
 struct Rise {
@@ -180,7 +177,7 @@ PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump
     for (int attempt = 0; attempt < 8 && !better; ++attempt) {
       Eigen::Matrix3d damped = hessian;
       damped.diagonal() *= 1 + damping;
-      const Eigen::Vector3d step = damped.ldlt().solve(gradient);
+      const Eigen::Vector3d step = solve_symmetric(damped, gradient);
       Growth next = fit.growth;
       next.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
       next.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
@@ -206,27 +203,26 @@ PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump
   return fit;
 }
 
-// Factor by which coloured noise enlarges a variance: (1+rho)/(1-rho) of the lag-one correlation before break-away.
+// Variance of what the growth leaves, and the factor by which its colour enlarges it: of the lag-one correlation before
+// break-away.
 struct Noise {
   double variance = 0, inflation = 1;
   double effective() const { return variance * inflation; }
 };
 
 Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
-  double squares = 0, products = 0, count = 0;
+  Remainder all;
   for (const Window& w : windows) {
-    double previous = 0;
+    Remainder left;
     for (std::size_t i = 0; i < w.v.size(); ++i) {
       const double t = static_cast<double>(i) - w.t0;
       const double x = t > 0 ? growth.lambda * t : 0;
-      const double r = w.v[i] - growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x);
-      squares += r * r, products += r * previous, count += 1;
-      previous = r;
+      left.add(w.v[i] - growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x));
     }
+    all += left;
   }
-  if (squares <= 0) return {};
-  const double rho = std::clamp(products / squares, 0.0, 0.98);
-  return {squares / count, (1 + rho) / (1 - rho)};
+  if (all.squares <= 0) return {};
+  return {all.squares / all.count, variance_inflation(all.correlation(0.98))};
 }
 
 }  // namespace
@@ -322,13 +318,10 @@ double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, 
     return motion.time[last - 1] + part * motion.step;
   }
   const auto n = static_cast<double>(last - first);
-  double sum = 0, moment = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    sum += u(i);
-    moment += (static_cast<double>(i - first) - 0.5 * (n - 1)) * u(i);
-  }
-  const double slope = moment * 12 / (n * (n * n - 1)), mean = sum / n;
-  const double where = slope < 0 ? 0.5 * (n - 1) - mean / slope : n;
+  std::vector<double> end;
+  for (std::size_t i = first; i < last; ++i) end.push_back(u(i));
+  const StraightLine line = fit_line(end);
+  const double where = line.slope < 0 ? line.middle - line.value / line.slope : n;
   return motion.time[first] + std::clamp(where, 0.0, n + 1) * motion.step;
 }
 
@@ -359,33 +352,20 @@ StickFriction friction_at(const Motion& motion, SampleRange stick, double time, 
     result.std_error = result.slope = std::nan("");
     return result;
   }
-  // Orthogonal polynomials on equally spaced samples: constant, line, parabola.
-  const auto n = static_cast<double>(end - begin);
-  const double centre = 0.5 * (n - 1), shift = (n * n - 1) / 12;
-  double s0 = 0, s1 = 0, s2 = 0, n2 = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double x = static_cast<double>(i - begin) - centre, p = x * x - shift, y = direction * motion.friction[i];
-    s0 += y, s1 += x * y, s2 += p * y, n2 += p * p;
-  }
-  const double mean = s0 / n, slope = s1 / (n * shift), bend = n > 3 ? s2 / n2 : 0;
-  double squares = 0, products = 0, previous = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double x = static_cast<double>(i - begin) - centre;
-    const double r = direction * motion.friction[i] - mean - slope * x - bend * (x * x - shift);
-    squares += r * r, products += r * previous, previous = r;
-  }
-  const double rho = squares > 0 ? std::clamp(products / squares, 0.0, 0.98) : 0;
-  const double variance = squares / std::max(1.0, n - 3) * (1 + rho) / (1 - rho);
-  const double x = (time - motion.time[begin]) / motion.step - centre;
-  result.value = mean + slope * x;
-  double factor = 1 / n + x * x / (n * shift);
-  if (n > 20 && bend * bend * n2 > 25 * variance) {
-    const double p = x * x - shift;
-    result.value += bend * p;
-    factor += p * p / n2;
-  }
+  const auto friction = std::span<const double>(motion.friction).subspan(begin, end - begin);
+  Parabola parabola = fit_parabola(friction);
+  const double n = parabola.count, bend_norm = parabola.bend_norm();
+  if (n <= 3) parabola.bend = 0;
+  const Remainder left = remainder_about(parabola, friction);
+  const double variance = left.squares / std::max(1.0, n - 3) * variance_inflation(left.correlation(0.98));
+  const double x = (time - motion.time[begin]) / motion.step - parabola.centre();
+  double factor = 1 / n + x * x / parabola.line_norm();
+  const bool is_bent = n > 20 && parabola.bend * parabola.bend * bend_norm > 25 * variance;
+  if (is_bent) factor += std::pow(x * x - parabola.shift(), 2) / bend_norm;
+  const double line = parabola.mean + parabola.slope * x;
+  result.value = direction * (is_bent ? parabola.at(x) : line);
   result.std_error = std::sqrt(variance * factor);
-  result.slope = slope / motion.step;
+  result.slope = direction * parabola.slope / motion.step;
   return result;
 }
 

@@ -7,10 +7,11 @@
 #include <limits>
 #include <span>
 
-#include "../kinematics/reductions.hpp"
 #include "break_away.hpp"
 #include "measures.hpp"
 #include "phases.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
@@ -147,10 +148,10 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
     Cycle& c = cycles[k];
     const bool has_stick = c.stick.size() > 0 && c.break_away_time == c.break_away_time;
     if (has_stick) {
-      const auto [low, high] = kinematics::extremes(friction.subspan(c.stick.begin, c.stick.size()));
+      const auto [low, high] = extremes(friction.subspan(c.stick.begin, c.stick.size()));
       c.stick_maximum = c.direction > 0 ? high : -low;
       const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
-      c.plateau_velocity = kinematics::sum_of(stick, [](double v) { return v; }) / static_cast<double>(stick.size());
+      c.plateau_velocity = mean_of(stick);
       const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
       c.break_away_friction = at_break.value;
       c.break_away_friction_std_error = at_break.std_error;
@@ -159,8 +160,8 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
         c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
       }
     }
-    const auto [weakest, strongest] = kinematics::extremes(friction.subspan(c.slip.begin, c.slip.size()));
-    const auto [slowest, fastest] = kinematics::extremes(velocity.subspan(c.slip.begin, c.slip.size()));
+    const auto [weakest, strongest] = extremes(friction.subspan(c.slip.begin, c.slip.size()));
+    const auto [slowest, fastest] = extremes(velocity.subspan(c.slip.begin, c.slip.size()));
     c.slip_minimum = c.direction > 0 ? weakest : -strongest;
     c.peak_velocity = c.direction > 0 ? fastest : -slowest;
     c.branch_difference = segmentation::branch_difference(velocity.subspan(c.slip.begin, c.slip.size()),
@@ -199,7 +200,7 @@ double rms_block_velocity(const Motion& motion) {
   const std::size_t n = motion.size();
   if (motion.disc_velocity.empty()) {
     const double disc = motion.constant_disc_velocity;
-    squares = kinematics::sum_of(motion.relative_velocity, [disc](double v) { return (disc - v) * (disc - v); });
+    squares = sum_of(motion.relative_velocity, [disc](double v) { return (disc - v) * (disc - v); });
   } else {
     for (std::size_t i = 0; i < n; ++i) {
       const double v = motion.disc_velocity[i] - motion.relative_velocity[i];
@@ -223,10 +224,10 @@ void summarise(Segmentation& result) {
     for (const Cycle& c : result.cycles) peaks.push_back(c.peak_velocity);
   }
   result.frequency = segmentation::frequency_of(periods);
-  result.amplitude = segmentation::mean_over_cycles(std::move(peaks));
-  result.stick_time = segmentation::mean_over_cycles(std::move(sticks));
-  result.branch_difference = segmentation::mean_over_cycles(std::move(branches));
-  result.slip_time = segmentation::mean_over_cycles(std::move(slips));
+  result.amplitude = mean_with_error(std::move(peaks));
+  result.stick_time = mean_with_error(std::move(sticks));
+  result.branch_difference = mean_with_error(std::move(branches));
+  result.slip_time = mean_with_error(std::move(slips));
 }
 
 void add_notes(Segmentation& result) {
@@ -240,11 +241,10 @@ void add_notes(Segmentation& result) {
   constexpr double least_slip = 4;  // samples that show a curve
   std::vector<double> lengths;
   for (const Cycle& c : cycles) lengths.push_back(static_cast<double>(c.slip.size()));
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
-  const double usual = lengths[lengths.size() / 2];
+  const double usual = median(std::move(lengths));
   if (usual < least_slip) {
     result.notes.push_back(
-        fmt::format("only {:.0f} sample{} a slip: too few for a curve", usual, usual == 1 ? "" : "s"));
+        fmt::format("only {:.3g} sample{} a slip: too few for a curve", usual, usual == 1 ? "" : "s"));
   }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -55,12 +55,7 @@ Estimate load_coupling(const Motion& motion, const Segmentation& segmentation) {
     if (line.known && scale > 0) slopes.push_back(line.slope / scale);
   }
   if (slopes.size() < kFewestCycles) return out;
-  out.value = 0;
-  for (const double slope : slopes) out.value += slope / static_cast<double>(slopes.size());
-  const MeanError error = standard_error_of_mean(slopes);
-  out.std_error = error.std_error;
-  out.degrees_of_freedom = error.degrees_of_freedom;
-  return out;
+  return mean_with_error(std::move(slopes));
 }
 
 void uncouple_load(double kappa, Motion& motion) {

@@ -4,18 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::segmentation {
-
-Estimate mean_over_cycles(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !(v == v); });
-  if (values.empty()) return {std::nan(""), std::nan("")};
-  double sum = 0;
-  for (double v : values) sum += v;
-  const MeanError error = standard_error_of_mean(values);
-  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
-}
 
 double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction) {
   constexpr std::size_t bins = 10;
@@ -51,17 +43,10 @@ Estimate frequency_of(const std::vector<double>& periods) {
     if (p == p) known.push_back(p);
   }
   if (known.size() < 2) return {std::nan(""), std::nan("")};
-  const auto median = [](std::vector<double> v) {
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-  };
   const double centre = median(known);
-  std::vector<double> deviation;
-  for (double p : known) deviation.push_back(std::abs(p - centre));
-  const double limit = std::max(3 * 1.4826 * median(std::move(deviation)), 0.02 * centre);
+  const double limit = std::max(3 * kSigmaPerMad * median_absolute_deviation(known, centre), 0.02 * centre);
   std::erase_if(known, [&](double p) { return std::abs(p - centre) > limit; });
-  const Estimate period = mean_over_cycles(std::move(known));
+  const Estimate period = mean_with_error(std::move(known));
   return {1 / period.value, period.std_error / (period.value * period.value), period.degrees_of_freedom};
 }
 

@@ -7,10 +7,6 @@
 
 namespace tribofit::segmentation {
 
-/// Mean of the values that are not NaN, with a standard error that stands correlated cycles
-/// (standard_error_of_mean.hpp). NaN where there are no values; its error is NaN where there are fewer than three.
-Estimate mean_over_cycles(std::vector<double> values);
-
 /// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed
 /// between a quarter and three quarters of the peak. NaN where the slip does not show both branches.
 double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction);

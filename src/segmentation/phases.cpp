@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../kinematics/reductions.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
 double typical_peak(const Motion& motion) {
@@ -23,7 +17,7 @@ double typical_peak(const Motion& motion) {
   const double plateau = motion.plateau_velocity;
   const std::span<const double> velocity(motion.relative_velocity);
   for (std::size_t begin = 0; begin < n; begin += length) {
-    const auto [low, high] = kinematics::extremes(velocity.subspan(begin, std::min(length, n - begin)));
+    const auto [low, high] = extremes(velocity.subspan(begin, std::min(length, n - begin)));
     peaks.push_back(std::max(high - plateau, plateau - low));
   }
   std::sort(peaks.begin(), peaks.end());
@@ -71,7 +65,7 @@ void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   for (const RawSlip& slip : slips) {
     if (slip.peak > 0.4 * peak) durations.push_back(static_cast<double>(slip.samples.size()));
   }
-  const double usual = median(std::move(durations));
+  const double usual = durations.empty() ? 0 : median(std::move(durations));
   std::erase_if(slips, [&](const RawSlip& slip) {
     const auto duration = static_cast<double>(slip.samples.size());
     const bool whole = slip.begins_within && slip.ends_within;

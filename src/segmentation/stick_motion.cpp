@@ -2,16 +2,12 @@
 
 #include <span>
 
-#include "../kinematics/reductions.hpp"
+#include "statistics/reductions.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t tenths = 10, first_part = 2, least_samples = 5;
-
-double mean(std::span<const double> values) {
-  return kinematics::sum_of(values, [](double v) { return v; }) / static_cast<double>(values.size());
-}
 
 }  // namespace
 
@@ -29,13 +25,13 @@ std::vector<StickCreep> stick_motion(const Motion& motion, const Segmentation& s
       const std::size_t begin = cycle.stick.begin + (first_part + k) * length;
       StickPart& part = stick.parts[k];
       part.time = 0.5 * (time[begin] + time[begin + length - 1]);
-      part.relative_velocity = sign * mean(velocity.subspan(begin, length));
+      part.relative_velocity = sign * mean_of(velocity.subspan(begin, length));
       part.disc_velocity = sign * (motion.disc_velocity.empty()
                                        ? motion.constant_disc_velocity
-                                       : mean(std::span<const double>(motion.disc_velocity).subspan(begin, length)));
-      part.friction = sign * mean(friction.subspan(begin, length));
-      const double before = mean(friction.subspan(begin - length, length));
-      const double after = mean(friction.subspan(begin + length, length));
+                                       : mean_of(std::span<const double>(motion.disc_velocity).subspan(begin, length)));
+      part.friction = sign * mean_of(friction.subspan(begin, length));
+      const double before = mean_of(friction.subspan(begin - length, length));
+      const double after = mean_of(friction.subspan(begin + length, length));
       part.friction_rate = sign * (after - before) / (2 * static_cast<double>(length) * motion.step);
     }
     sticks.push_back(stick);

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <string>
 
-#include "tribofit/fit/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

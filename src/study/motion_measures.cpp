@@ -8,15 +8,13 @@
 #include <numbers>
 
 #include "segmentation/measures.hpp"
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t kHarmonics = 5;
 constexpr std::size_t kPortraitPoints = 24;
-
-using segmentation::mean_over_cycles;
 
 /// Break-aways that are followed by another of the same direction, as samples.
 struct Turn {
@@ -134,16 +132,16 @@ MotionMeasures measure_motion(const Motion& motion, const Segmentation& s) {
   }
   const double f = s.frequency.value;
   const Estimate period{1 / f, s.frequency.std_error / (f * f), s.frequency.degrees_of_freedom};
-  Estimate rms = mean_over_cycles(squares);
+  Estimate rms = mean_with_error(squares);
   rms.value = std::sqrt(rms.value);
   rms.std_error /= 2 * rms.value;
   // The line lies where the mean frequency does, and is as well known.
   const Estimate line{fundamental(motion.relative_velocity, motion.step).frequency, s.frequency.std_error,
                       s.frequency.degrees_of_freedom};
   MotionMeasures out;
-  out.values = {period, s.stick_time, s.amplitude, mean_over_cycles(break_away), mean_over_cycles(least), rms, line};
-  for (const std::vector<double>& harmonic : harmonics) out.values.push_back(mean_over_cycles(harmonic));
-  for (const std::vector<double>& point : points) out.portrait.push_back(mean_over_cycles(point));
+  out.values = {period, s.stick_time, s.amplitude, mean_with_error(break_away), mean_with_error(least), rms, line};
+  for (const std::vector<double>& harmonic : harmonics) out.values.push_back(mean_with_error(harmonic));
+  for (const std::vector<double>& point : points) out.portrait.push_back(mean_with_error(point));
   return out;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tribofit/fit/parallel.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

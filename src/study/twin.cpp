@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "motion_measures.hpp"
-#include "tribofit/fit/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

@@ -1,12 +1,15 @@
 #include "tribofit/study/uncertainty.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <stdexcept>
+
+#include "statistics/linear_algebra.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -22,8 +25,8 @@ Eigen::MatrixXd root_of(const std::vector<double>& covariance, std::size_t count
   const Eigen::VectorXd scale =
       full.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr([](double s) { return s > 0 ? s : 1; });
   const Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * full * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (correlation + correlation.transpose()));
-  return scale.asDiagonal() * solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (correlation + correlation.transpose()));
+  return scale.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 bool can_be(const Machine& m) {
@@ -75,13 +78,7 @@ Range range_of(std::vector<double> values) {
     return {nan, nan};
   }
   std::sort(values.begin(), values.end());
-  const auto quantile = [&](double q) {
-    const double place = q * static_cast<double>(values.size() - 1);
-    const auto k = static_cast<std::size_t>(place);
-    const double part = place - static_cast<double>(k);
-    return k + 1 < values.size() ? (1 - part) * values[k] + part * values[k + 1] : values[k];
-  };
-  return {quantile(0.025), quantile(0.975)};
+  return {quantile_of_sorted(values, 0.025), quantile_of_sorted(values, 0.975)};
 }
 
 }  // namespace tribofit

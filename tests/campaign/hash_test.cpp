@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "campaign/content_hash.hpp"
 #include "command.hpp"
+#include "ingest/content_hash.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 

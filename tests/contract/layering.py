@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks that data flow downwards only: a room includes itself and rooms above it, never below.
 
+The room `statistics` knows numbers only: it includes no other room, and every room may include it.
 Public headers include the standard library and tribofit only, so that using the library needs no other package.
 
 usage: layering.py REPOSITORY      exit status 1 and one line per offence when the order is broken
@@ -14,8 +15,10 @@ import tempfile
 
 # In the order in which data flow. The pipeline is no directory but include/tribofit/pipeline.hpp and src/pipeline.cpp: it
 # calls the rooms above it for one trace; what deals with many traces or with its results lies below it.
-ROOMS = ["ingest", "kinematics", "segmentation", "friction", "oscillator", "fit", "diagnosis", "study", "pipeline",
+ROOMS = ["ingest", "statistics", "kinematics", "segmentation", "friction", "oscillator", "fit", "diagnosis", "study", "pipeline",
          "campaign", "report", "workbench"]
+# Numbers in, numbers out: it includes no other room, and so any room may include it, those above it too.
+FOUNDATION = "statistics"
 # What a room must know nothing of, as it would appear in an #include.
 STRANGERS = {
     "friction": {"CSV": r"(libfccp/)?csv\.h"},
@@ -42,7 +45,9 @@ def offences_of_file(path, room, public):
             continue
         target = match.group(1)
         other = room_of_include(target)
-        if other and ROOMS.index(other) > ROOMS.index(room):
+        if other and room == FOUNDATION != other:
+            offences.append(f"{path}:{number}: {room} includes {target}, but knows no other room")
+        elif other and other != FOUNDATION and ROOMS.index(other) > ROOMS.index(room):
             offences.append(f"{path}:{number}: {room} includes {target}, which lies below it")
         if public and not PUBLIC.fullmatch(target):
             offences.append(f"{path}:{number}: a public header includes {target}, which users may not have")
@@ -82,6 +87,9 @@ def self_test():
         ("include/tribofit/friction/effects/a.hpp", '#include "tribofit/fit/fit.hpp"\n', True),
         ("src/friction/a.cpp", '#include <libfccp/csv.h>\n', True),
         ("src/report/a.cpp", "#include <ceres/jet.h>\n", True),
+        ("src/ingest/a.cpp", '#include "tribofit/statistics/quantiles.hpp"\n', False),
+        ("src/fit/a.cpp", '#include "statistics/linear_algebra.hpp"\n', False),
+        ("src/statistics/a.cpp", '#include "tribofit/ingest/trace.hpp"\n', True),
         ("include/tribofit/fit/a.hpp", "#include <vector>\n", False),
         ("include/tribofit/fit/a.hpp", "#include <Eigen/Core>\n", True),
         ("src/util/a.cpp", "", True),

@@ -10,7 +10,8 @@
 
 #include "synthetic.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "hidden_effects.hpp"
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace {
 

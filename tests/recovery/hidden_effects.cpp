@@ -7,7 +7,7 @@
 #include <exception>
 #include <mutex>
 
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace recovery {
 

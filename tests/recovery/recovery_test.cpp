@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/fit/parallel.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "twin.hpp"
 
 namespace {

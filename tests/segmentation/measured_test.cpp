@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/kinematics/spectrum.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
 namespace {

@@ -6,9 +6,9 @@
 #include "machines.hpp"
 #include "published_studies.hpp"
 #include "roots.hpp"
-#include "tribofit/kinematics/spectrum.hpp"
 #include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 #include "tribofit/study/critical_speed.hpp"
 
 namespace tribofit::testing {

@@ -23,26 +23,17 @@ namespace tribofit {
 /// bare laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move
 /// by less than 1e-5.
 struct Observations {
-  struct SlipObservation {
-    std::size_t begin = 0, end = 0;  ///< values of this slip
-    SampleRange samples;             ///< the same in samples of the Motion
-    std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
-    std::size_t segment = 0;         ///< index in Segmentation::cycles
-    std::size_t record = 0;          ///< which of several records
-    bool from_stick = false;
-    double break_away_time = 0;  ///< [s]
-    double stick_time = 0;       ///< [s], without what its own break-away level made of it; the median where its
-                                 ///< beginning was not recorded, NaN where none was
-    double stick_slope = 0;      ///< d mu/dt in the stick before [1/s]
-    double direction = 1;
-    double disc_speed = 0;                     ///< omega [rad/s]; 0 where it is not known
-    double break_away_friction = 0;            ///< |mu| at break-away; NaN when there is none
-    std::size_t lead_begin = 0, lead_end = 0;  ///< of the lead channels below
-    double lead_friction = 0;                  ///< signed, at the first of them
-    double tail_friction = 0;                  ///< signed, in the stick right after the slip; NaN where there is none
-    double restick_time = 0;                   ///< [s]; NaN where there is none
+  /// Where its beginning was not recorded, stick_time is the median of the others (NaN where none was); and it is
+  /// without what its own break-away level made of it.
+  struct SlipObservation : SlipFacts {
+    std::size_t begin = 0, end = 0;                  ///< values of this slip
+    SampleRange samples;                             ///< the same in samples of the Motion
+    std::size_t cycle = 0;                           ///< unit of evidence it belongs to, from 0, in order of time
+    std::size_t segment = 0;                         ///< index in Segmentation::cycles
+    std::size_t record = 0;                          ///< which of several records
+    double break_away_friction = 0;                  ///< |mu| at break-away; NaN when there is none
+    std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
-    double earlier_restick_time = 0;                 ///< when that came to rest [s]
     std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none
   };
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);

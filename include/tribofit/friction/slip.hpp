@@ -36,29 +36,36 @@ struct SlidingState {
   double disc_speed = 0;                                               ///< omega [rad/s]
 };
 
+/// What is known of a slip and of the stick before it beside its samples. SI; friction signed.
+struct SlipFacts {
+  bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
+  double break_away_time = 0;  ///< [s], where from_stick
+  double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded
+  double stick_slope = 0;      ///< d mu/dt imposed by the spring before break-away [1/s]
+  double direction = 1;        ///< sign of v_r
+  double disc_speed = 0;       ///< omega [rad/s]; 0 where it is not known
+  double lead_friction = 0;    ///< friction at the first of the lead samples, see Slip
+  double tail_friction = std::numeric_limits<double>::quiet_NaN();  ///< friction read in the stick right after the
+                                                                    ///< slip; NaN where there is none
+  double restick_time = std::numeric_limits<double>::quiet_NaN();   ///< [s]; NaN where there is none
+  double earlier_restick_time = 0;  ///< when the slip before this one's stick came to rest [s]
+};
+
+/// Samples [begin, end) of a channel; nothing of a channel that is empty.
+inline std::span<const double> part_of(std::span<const double> channel, std::size_t begin, std::size_t end) {
+  return channel.empty() ? channel : channel.subspan(begin, end - begin);
+}
+
 /// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
-struct Slip {
+struct Slip : SlipFacts {
   std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
   std::span<const double>
       velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
-  /// Samples of the stick just before break-away, for effects that act there, and friction (signed) at the first of
-  /// them.
-  std::span<const double> lead_time, lead_velocity;
-  double lead_friction = 0;
-  /// The slip before the stick that this one begins with, and when it came to rest [s]; empty where not recorded.
-  std::span<const double> earlier_time, earlier_velocity;
-  double earlier_restick_time = 0;
-  /// Friction (signed) read in the stick right after the slip; NaN where there is none.
-  double tail_friction = std::numeric_limits<double>::quiet_NaN();
-  double restick_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN where there is none
-  bool from_stick = false;      ///< it begins with a break-away; otherwise the record (or a reversal) begins it
-  double break_away_time = 0;   ///< [s], where from_stick
-  double stick_time = 0;        ///< of the stick before [s]; NaN when its beginning was not recorded
-  double stick_slope = 0;       ///< d mu/dt imposed by the spring before break-away [1/s]
-  double direction = 1;         ///< sign of v_r
-  double mean_load = 1;         ///< N0 [N]
-  double mean_temperature = 0;  ///< T0 [degC]
-  double disc_speed = 0;        ///< omega [rad/s]
+  std::span<const double> lead_time,
+      lead_velocity;  ///< of the stick just before break-away, for effects that act there
+  std::span<const double> earlier_time, earlier_velocity;  ///< of the slip before that stick; empty where not recorded
+  double mean_load = 1;                                    ///< N0 [N]
+  double mean_temperature = 0;                             ///< T0 [degC]
 
   std::size_t size() const { return time.size(); }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -48,12 +49,6 @@ enum class MotionKind {
   stick_slip,       ///< sticks and slips
   always_slipping,  ///< never sticks
   always_sticking,  ///< never slips
-};
-
-/// Mean of a per-cycle measure with its standard error over cycles.
-struct Estimate {
-  double value = 0, std_error = 0;  ///< see standard_error_of_mean.hpp
-  double degrees_of_freedom = 1;    ///< of the t distribution of its error
 };
 
 /// Stick and slip of a whole record.

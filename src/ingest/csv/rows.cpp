@@ -5,7 +5,6 @@
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
@@ -17,6 +16,7 @@
 
 #include "fccp.hpp"
 
+#include "ingest/content_hash.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -44,7 +44,6 @@ struct Chunk {
     empty.values = std::move(values);
     empty.values.resize(columns);
     for (auto& column : empty.values) column.clear();
-    empty.checksum = hash_bytes(nullptr, 0);
     *this = std::move(empty);
   }
 };
@@ -58,7 +57,7 @@ class ChunkSource : public io::ByteSourceBase {
   int read(char* buffer, int size) override {
     const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(size), end_ - at_));
     const std::size_t count = file_.read(at_, {buffer, wanted});
-    chunk_.checksum = hash_bytes(buffer, count);
+    chunk_.checksum = xxh64({buffer, count});
     // io::LineReader ends its lines with NUL, so that one in the file would cut a line unseen.
     if (const void* zero = std::memchr(buffer, '\0', count)) {
       const char* at = static_cast<const char*>(zero);
@@ -101,7 +100,6 @@ class RowReader {
       values.reserve(estimate);
       prefer_huge_pages(values);
     }
-    rows_.checksum = hash_bytes(nullptr, 0);
   }
 
   Rows read(int threads) {
@@ -210,7 +208,7 @@ class RowReader {
     }
     if (chunk.text_rows > 0 && rows_.text_rows == 0) rows_.first_text_line = next_line_ + chunk.first_text_line - 1;
     rows_.text_rows += chunk.text_rows;
-    rows_.checksum = hash_bytes(reinterpret_cast<const char*>(&chunk.checksum), sizeof chunk.checksum, rows_.checksum);
+    rows_.checksum = xxh64(chunk.checksum, rows_.checksum);
     next_line_ += chunk.lines;
   }
 

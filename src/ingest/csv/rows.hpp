@@ -15,7 +15,7 @@ namespace tribofit {
 struct Rows {
   std::vector<std::vector<double>> values;  ///< one vector for each wanted cell, in the same order
   LineMap lines;
-  std::uint64_t checksum = 0;  ///< of the bytes read, see hash_bytes
+  std::uint64_t checksum = 0;  ///< of the bytes read, XXH64
   std::size_t text_rows = 0;   ///< dropped because they hold text, not numbers
   std::size_t first_text_line = 0;
 

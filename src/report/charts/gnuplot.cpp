@@ -25,7 +25,7 @@ constexpr std::string_view kPalette =
 
 /// What is said at a tic, for a label.
 std::string text_of(const Scale& scale, const Scale::Tic& tic) {
-  return scale.named ? quoted(tic.text) : quoted_markup(tic.text);
+  return scale.named ? tribofit::quoted(tic.text) : quoted_markup(tic.text);
 }
 
 /// Everything about one picture.
@@ -98,7 +98,7 @@ void Script::add_terminal(const std::string& output) {
           kTextPoints, 0.75 * kPicturePixelsPerInch / 72.0, kPicturePixelsPerInch / 72.0);
       break;
   }
-  say("set output {}", quoted(output));
+  say("set output {}", tribofit::quoted(output));
   say("unset key");
   say("set errorbars 0.6");
   out_ += kPalette;
@@ -150,7 +150,7 @@ void Script::add_numbers() {
   for (const Scale::Tic& tic : layout_.x.tics) {
     const double x = lowest.left + layout_.x.part(tic.at) * lowest.width;
     if (layout_.upright_names) {
-      say("set label {} at {} right rotate by 90 noenhanced", quoted(tic.text), at(x, lowest.bottom - kTicGap));
+      say("set label {} at {} right rotate by 90 noenhanced", tribofit::quoted(tic.text), at(x, lowest.bottom - kTicGap));
     } else {
       say("set label {} at {} center {}", text_of(layout_.x, tic), at(x, lowest.bottom - kTicGap - kTextLine / 2),
           layout_.x.named ? "noenhanced" : "enhanced");
@@ -259,7 +259,7 @@ void Script::add_labels(std::size_t panel) {
 void Script::add_keys() {
   for (const Key& key : layout_.keys) {
     add_sample(key);
-    say("set label {} at {} left noenhanced", quoted(key.name), at(key.x + kKeySample + kKeyGap, key.y));
+    say("set label {} at {} left noenhanced", tribofit::quoted(key.name), at(key.x + kKeySample + kKeyGap, key.y));
   }
 }
 

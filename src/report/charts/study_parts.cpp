@@ -94,7 +94,7 @@ void add_machine_sections(const StudiedMachine& of, const std::string& kind, con
   run.items.emplace_back(plain_text("This report is made by"));
   run.items.emplace_back(ReportText{study_command(kind, options.arguments, inputs), ReportText::Kind::command});
   std::string made = made_by("Made") + ". Charts by plotly.js (MIT licence).";
-  if (of.record) made += fmt::format(" Checksum of the rows of the record (FNV-1a): {:016x}.", of.record->checksum);
+  if (of.record) made += fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", of.record->checksum);
   run.items.emplace_back(soft_text(std::move(made)));
 }
 

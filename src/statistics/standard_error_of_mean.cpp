@@ -1,7 +1,6 @@
-#include "tribofit/segmentation/standard_error_of_mean.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -56,13 +55,14 @@ MeanError standard_error_of_mean(std::span<const double> series) {
   return {std::sqrt(long_run_variance / count), static_cast<double>(frequencies)};
 }
 
-double t_quantile_95(double degrees_of_freedom) {
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
-}
-
-double t_p_value(double t, double degrees_of_freedom) {
-  if (!std::isfinite(t)) return 1;
-  return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(degrees_of_freedom), std::abs(t)));
+Estimate mean_with_error(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return {kUnknown, kUnknown};
+  double sum = 0;
+  for (const double value : values) sum += value;
+  const MeanError error = standard_error_of_mean(values);
+  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
 }
 
 }  // namespace tribofit

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace tribofit {
 
@@ -22,10 +23,14 @@ struct MeanError {
 /// error is NaN.
 MeanError standard_error_of_mean(std::span<const double> series);
 
-/// Half-width factor of a two-sided 95 % interval: the 0.975 quantile of t.
-double t_quantile_95(double degrees_of_freedom);
+/// Mean of a series with its standard error.
+struct Estimate {
+  double value = 0, std_error = 0;  ///< NaN where they are not known
+  double degrees_of_freedom = 1;    ///< of the t distribution of its error
+};
 
-/// Two-sided p-value of t.
-double t_p_value(double t, double degrees_of_freedom);
+/// Mean of the values that are not NaN, and its standard_error_of_mean(). The value is NaN where there are none, its
+/// error where there are fewer than three.
+Estimate mean_with_error(std::vector<double> values);
 
 }  // namespace tribofit

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "linear_algebra.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -14,7 +16,7 @@ struct Weighted {
 Weighted weighted(const Eigen::VectorXd& y, const Eigen::VectorXd& variance, const Eigen::MatrixXd& x, double between) {
   const Eigen::VectorXd weight = (variance.array() + between).inverse();
   Weighted out;
-  out.inverse = (x.transpose() * weight.asDiagonal() * x).ldlt().solve(Eigen::MatrixXd::Identity(x.cols(), x.cols()));
+  out.inverse = inverse_of_symmetric(x.transpose() * weight.asDiagonal() * x);
   out.coefficients = out.inverse * (x.transpose() * (weight.asDiagonal() * y));
   out.squares = (y - x * out.coefficients).array().square().matrix().dot(weight);
   return out;

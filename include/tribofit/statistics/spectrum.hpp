@@ -23,6 +23,10 @@ struct Spectrum {
 /// Amplitude spectrum (Hann window) of `signal` sampled every `step` seconds.
 Spectrum amplitude_spectrum(std::span<const double> signal, double step);
 
+/// Frequency [Hz] of the highest value of a spectrum between two frequencies, interpolated by a parabola through it and
+/// its neighbours; 0 where no bin lies between them.
+double peak_frequency(const Spectrum& spectrum, double lowest, double highest);
+
 /// Root mean square of the amplitude spectra of up to `most_segments` stretches of `segment` samples, spread evenly
 /// over the signal: the noise of a single spectrum averaged down, at a cost that does not grow with the record.
 Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment = 4096,

@@ -1,4 +1,4 @@
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +7,13 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
-#include "plateau.hpp"
+#include "reductions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
-
-double mean_of(std::span<const double> signal) {
-  return std::accumulate(signal.begin(), signal.end(), 0.0) / static_cast<double>(signal.size());
-}
 
 // Next size with no prime factor above five, for which the transform is fast.
 std::size_t good_size(std::size_t n) {
@@ -132,6 +129,18 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
   return spectrum;
 }
 
+double peak_frequency(const Spectrum& spectrum, double lowest, double highest) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k + 1 < spectrum.amplitude.size(); ++k) {
+    const double f = spectrum.bin_width * static_cast<double>(k);
+    if (f < lowest || f > highest) continue;
+    if (best == 0 || spectrum.amplitude[k] > spectrum.amplitude[best]) best = k;
+  }
+  if (best == 0) return 0;
+  const auto& a = spectrum.amplitude;
+  return spectrum.bin_width * (static_cast<double>(best) + peak_between(a[best - 1], a[best], a[best + 1]));
+}
+
 Spectrum averaged_spectrum(std::span<const double> signal, double step, std::size_t segment,
                            std::size_t most_segments) {
   Spectrum average;
@@ -156,14 +165,14 @@ SpectralPeak fundamental(std::span<const double> signal, double step, std::size_
   constexpr double lines_per_period = 16;
   // The whole record, reduced, sees low lines; one stretch at the full rate sees what the reduction would have lost.
   const std::size_t reduction = (signal.size() + most - 1) / most;
-  const kinematics::BlockMeans reduced = kinematics::block_means(signal, reduction, step);
+  const BlockMeans reduced = block_means(signal, reduction, step);
   Line line = strongest_line(reduced.mean, reduced.step);
   line.amplitude /= block_transmission(line.frequency, reduction > 1 ? reduced.step : 0);
   if (reduction > 1) {
     const Line fast = strongest_line(signal.first(std::min(signal.size(), most)), step);
     if (fast.frequency > 0.5 / reduced.step && fast.amplitude > line.amplitude) {
       const auto blocks = static_cast<std::size_t>(1 / (lines_per_period * fast.frequency * step));
-      const kinematics::BlockMeans finer = kinematics::block_means(signal, std::max<std::size_t>(1, blocks), step);
+      const BlockMeans finer = block_means(signal, std::max<std::size_t>(1, blocks), step);
       const Line refined = strongest_line(finer.mean, finer.step);
       line = {refined.frequency,
               refined.amplitude / block_transmission(refined.frequency, finer.length > 1 ? finer.step : 0)};

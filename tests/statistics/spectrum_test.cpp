@@ -1,12 +1,12 @@
 // Frequency and amplitude of known lines, between the bins.
-#include "tribofit/kinematics/spectrum.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "stick_slip_truth.hpp"
+#include "../kinematics/stick_slip_truth.hpp"
 
 namespace tribofit {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace tribofit::kinematics {
+namespace tribofit {
 
 /// Smallest and largest of some samples.
 struct Extremes {
@@ -38,6 +38,11 @@ double sum_of(std::span<const double> x, Term term) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
+/// Mean of values; NaN where there are none.
+inline double mean_of(std::span<const double> x) {
+  return sum_of(x, [](double value) { return value; }) / static_cast<double>(x.size());
+}
+
 /// Extremes of consecutive chunks of a channel: one pass, after which most questions need to look at few chunks only.
 struct Chunks {
   static constexpr std::size_t length = 256;
@@ -56,4 +61,21 @@ inline Chunks chunks_of(std::span<const double> channel) {
   return chunks;
 }
 
-}  // namespace tribofit::kinematics
+/// Evenly spaced subset of about `most` values at the most (up to twice as many), so that sorting costs the same for
+/// any length of record.
+std::vector<double> thinned(std::span<const double> values, std::size_t most);
+
+/// Means over blocks of `length` samples; a last incomplete block is left out unless it is the only one.
+struct BlockMeans {
+  std::size_t length = 1;    ///< samples in a block
+  double step = 0;           ///< duration of a block [s]
+  std::vector<double> mean;  ///< in the signal's unit
+};
+
+/// Number of samples that can be averaged without losing the motion: an eighth of the time in which the signal
+/// changes by a tenth of its variance, at least so many that 2^17 blocks are not exceeded.
+std::size_t block_length(std::span<const double> signal);
+
+BlockMeans block_means(std::span<const double> signal, std::size_t length, double step);
+
+}  // namespace tribofit

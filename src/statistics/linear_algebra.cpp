@@ -1,0 +1,79 @@
+#include "linear_algebra.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace tribofit {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+MatrixXd solve_symmetric(const MatrixXd& matrix, const MatrixXd& right) {
+  return matrix.ldlt().solve(right);
+}
+
+Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& right) {
+  return matrix.ldlt().solve(right);
+}
+
+MatrixXd inverse_of_symmetric(const MatrixXd& matrix) {
+  return solve_symmetric(matrix, MatrixXd::Identity(matrix.rows(), matrix.cols()));
+}
+
+SymmetricSystem solve_symmetric_system(const MatrixXd& matrix, const VectorXd& right) {
+  SymmetricSystem out;
+  const Eigen::LDLT<MatrixXd> solver(matrix);
+  if (solver.info() != Eigen::Success) return out;
+  out.reciprocal_condition = solver.rcond();
+  out.inverse = solver.solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  out.x = solver.solve(right);
+  return out;
+}
+
+MatrixXd inverse_of(const MatrixXd& matrix) {
+  return matrix.inverse();
+}
+
+VectorXd solve_regular(const MatrixXd& matrix, const VectorXd& right) {
+  return matrix.partialPivLu().solve(right);
+}
+
+VectorXd least_squares(const MatrixXd& design, const VectorXd& right) {
+  return design.householderQr().solve(right);
+}
+
+RankedSolution least_squares_of_any_rank(const MatrixXd& design, const VectorXd& right) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(design);
+  return {qr.solve(right), qr.rank()};
+}
+
+MatrixXd inverse_triangular_factor(const MatrixXd& design) {
+  const Eigen::Index n = design.cols();
+  const Eigen::HouseholderQR<MatrixXd> qr(design);
+  const MatrixXd r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  return r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+}
+
+MatrixXd orthogonal_complement(const MatrixXd& matrix) {
+  const MatrixXd q = Eigen::HouseholderQR<MatrixXd>(matrix).householderQ();
+  return q.rightCols(matrix.rows() - matrix.cols());
+}
+
+MatrixXd solve_lower_factor(const MatrixXd& matrix, const MatrixXd& right) {
+  return Eigen::LLT<MatrixXd>(matrix).matrixL().solve(right);
+}
+
+MatrixXd triangular_factor(MatrixXd& matrix) {
+  const Eigen::Index kept = std::min(matrix.rows(), matrix.cols());
+  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(matrix);  // in place
+  MatrixXd out = MatrixXd::Zero(matrix.cols(), matrix.cols());
+  out.topRows(kept) = matrix.topRows(kept).triangularView<Eigen::Upper>();
+  return out;
+}
+
+}  // namespace tribofit

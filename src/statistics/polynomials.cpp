@@ -1,0 +1,157 @@
+#include "tribofit/statistics/polynomials.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tribofit {
+
+StraightLine fit_line(std::span<const double> samples) {
+  if (samples.empty()) return {};
+  const double n = static_cast<double>(samples.size()), centre = 0.5 * (n - 1), squares = n * (n * n - 1) / 12;
+  double sum = 0, moment = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sum += samples[i];
+    moment += (static_cast<double>(i) - centre) * samples[i];
+  }
+  return {centre, sum / n, squares > 0 ? moment / squares : 0, squares};
+}
+
+StraightLine fit_line(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
+  if (x.empty()) return {};
+  const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
+  double all = 0, sum_x = 0, sum_y = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    all += weight(i);
+    sum_x += weight(i) * x[i];
+    sum_y += weight(i) * y[i];
+  }
+  StraightLine line{sum_x / all, sum_y / all};
+  double moment = 0, norm = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = x[i] - line.middle;
+    line.squares += weight(i) * u * u;
+    moment += weight(i) * u * (y[i] - line.value);
+    norm += weight(i) * x[i] * x[i];
+  }
+  // The mean of equal abscissas may differ from them by rounding.
+  constexpr double kRounding = 1e-24;
+  if (line.squares > kRounding * norm) {
+    line.slope = moment / line.squares;
+  } else {
+    line.squares = 0;
+  }
+  return line;
+}
+
+void Remainder::add(double residual) {
+  squares += residual * residual;
+  products += residual * last;
+  count += 1;
+  last = residual;
+}
+
+Remainder& Remainder::operator+=(const Remainder& other) {
+  squares += other.squares;
+  products += other.products;
+  count += other.count;
+  last = other.last;
+  return *this;
+}
+
+double Remainder::correlation(double most) const {
+  return squares > 0 ? std::clamp(products / squares, 0.0, most) : 0;
+}
+
+double variance_inflation(double rho) {
+  return (1 + rho) / (1 - rho);
+}
+
+Parabola fit_parabola(std::span<const double> samples) {
+  Parabola out;
+  out.count = static_cast<double>(samples.size());
+  if (samples.empty()) return out;
+  const double centre = out.centre(), shift = out.shift(), origin = samples[0];  // keeps sums small beside a large mean
+  double s0 = 0, s1 = 0, s2 = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double x = static_cast<double>(i) - centre, y = samples[i] - origin;
+    s0 += y;
+    s1 += x * y;
+    s2 += (x * x - shift) * y;
+  }
+  out.mean = origin + s0 / out.count;
+  if (samples.size() > 1) out.slope = s1 / out.line_norm();
+  if (samples.size() > 2) out.bend = s2 / out.bend_norm();
+  return out;
+}
+
+Remainder remainder_about(const Parabola& parabola, std::span<const double> samples) {
+  Remainder out;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    out.add(samples[i] - parabola.at(static_cast<double>(i) - parabola.centre()));
+  }
+  return out;
+}
+
+double peak_between(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
+}
+
+std::vector<double> slope_weights(std::size_t left, std::size_t right) {
+  const std::size_t n = left + right + 1;
+  std::array<double, 5> m{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(left);
+    double power = 1;
+    for (double& moment : m) {
+      moment += power;
+      power *= x;
+    }
+  }
+  // Normal equations of c0 + c1 x + c2 x^2; c1 is the slope at x = 0. Cofactors of the second row.
+  const double k0 = -(m[1] * m[4] - m[2] * m[3]), k1 = m[0] * m[4] - m[2] * m[2], k2 = -(m[0] * m[3] - m[1] * m[2]);
+  const double determinant = m[1] * k0 + m[2] * k1 + m[3] * k2;
+  std::vector<double> weights(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(left);
+    weights[i] = (k0 + k1 * x + k2 * x * x) / determinant;
+  }
+  return weights;
+}
+
+std::vector<double> savitzky_golay_slope(std::span<const double> signal, double step, std::size_t half_window) {
+  const std::size_t n = signal.size();
+  std::vector<double> slope(n, 0.0);
+  if (n < 2) return slope;
+  if (n < 3) {
+    slope[0] = slope[1] = (signal[1] - signal[0]) / step;
+    return slope;
+  }
+  const std::size_t half = std::max<std::size_t>(1, std::min(half_window, (n - 1) / 2));
+  const double w = static_cast<double>(half);
+  const double squares = w * (w + 1) * (2 * w + 1) / 3;
+  constexpr std::size_t kRenew = 4096;  // running sums are computed afresh before rounding can gather
+  double sum = 0, moment = 0;
+  for (std::size_t i = half; i + half < n; ++i) {
+    if ((i - half) % kRenew == 0) {
+      sum = moment = 0;
+      for (std::size_t k = 0; k <= 2 * half; ++k) {
+        sum += signal[i - half + k];
+        moment += (static_cast<double>(k) - w) * signal[i - half + k];
+      }
+    } else {
+      const double in = signal[i + half], out = signal[i - half - 1];
+      moment += (w + 1) * in + w * out - (sum + in - out);
+      sum += in - out;
+    }
+    slope[i] = moment / (squares * step);
+  }
+  const Parabola first = fit_parabola(signal.first(2 * half + 1)), last = fit_parabola(signal.last(2 * half + 1));
+  for (std::size_t k = 0; k < half; ++k) {
+    slope[k] = first.slope_at(static_cast<double>(k) - w) / step;
+    slope[n - 1 - k] = last.slope_at(w - static_cast<double>(k)) / step;
+  }
+  return slope;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,82 @@
+// Means whose standard error stands correlated neighbours, and regressions of estimates that have errors of their own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "statistics/meta_regression.hpp"
+#include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
+
+namespace tribofit {
+namespace {
+
+/// First-order autoregression of unit innovations: the long-run variance is 1/(1-r)^2.
+std::vector<double> autoregression(std::mt19937_64& engine, std::size_t n, double r) {
+  std::normal_distribution<double> normal;
+  std::vector<double> x(n);
+  double state = normal(engine) / std::sqrt(1 - r * r);
+  for (double& value : x) {
+    value = state;
+    state = r * state + normal(engine);
+  }
+  return x;
+}
+
+TEST(MeanWithError, CoversTheTruthWhereNeighboursAreCorrelated) {
+  std::mt19937_64 engine(3);
+  for (const double r : {0.0, 0.3, 0.7}) {
+    constexpr int kSeries = 2000;
+    int covered = 0;
+    for (int k = 0; k < kSeries; ++k) {
+      const Estimate mean = mean_with_error(autoregression(engine, 120, r));
+      covered += std::abs(mean.value) <= t_quantile_95(mean.degrees_of_freedom) * mean.std_error ? 1 : 0;
+    }
+    EXPECT_NEAR(covered / static_cast<double>(kSeries), 0.95, 0.025) << r;
+  }
+}
+
+TEST(MeanWithError, FindsTheLongRunVarianceOfALongSeries) {
+  std::mt19937_64 engine(4);
+  constexpr std::size_t kLength = 100000;
+  const double r = 0.5;
+  const Estimate mean = mean_with_error(autoregression(engine, kLength, r));
+  const double expected = 1 / (1 - r) / std::sqrt(static_cast<double>(kLength));
+  EXPECT_NEAR(mean.std_error, expected, 5 * expected / std::sqrt(2 * mean.degrees_of_freedom));
+}
+
+TEST(MeanWithError, UnknownIsSaidAsUnknown) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(mean_with_error({}).value));
+  EXPECT_TRUE(std::isnan(mean_with_error({nan, nan}).value));
+  const Estimate two = mean_with_error({1, nan, 2});
+  EXPECT_EQ(two.value, 1.5);
+  EXPECT_TRUE(std::isnan(two.std_error));
+  EXPECT_EQ(mean_with_error({4, 4, 4, 4}).std_error, 0);
+}
+
+/// Equal variances: tau^2 of Paule and Mandel is the sample variance less the variance of one estimate.
+TEST(MetaRegression, EqualVariancesHaveAClosedForm) {
+  const Eigen::VectorXd y = (Eigen::VectorXd(6) << 1.0, 1.5, 0.2, 2.1, 0.9, 1.3).finished();
+  const double variance = 0.05, mean = y.mean(), spread = (y.array() - mean).square().sum() / 5;
+  const MetaRegression out = meta_regression(y, Eigen::VectorXd::Constant(6, variance), Eigen::MatrixXd::Ones(6, 1));
+  EXPECT_NEAR(out.coefficients(0), mean, 1e-12);
+  EXPECT_NEAR(out.between, std::sqrt(spread - variance), 1e-10);
+  EXPECT_NEAR(out.covariance(0, 0), spread / 6, 1e-10);
+  EXPECT_NEAR(out.statistical(0), std::sqrt(variance / 6), 1e-10);
+  EXPECT_EQ(out.degrees_of_freedom, 5);
+}
+
+TEST(MetaRegression, NoMoreRunsThanColumns) {
+  const MetaRegression out = meta_regression(Eigen::Vector2d(1, 3), Eigen::Vector2d(0.1, 0.2),
+                                             (Eigen::MatrixXd(2, 2) << 1, 0, 1, 2).finished());
+  EXPECT_NEAR(out.coefficients(0), 1, 1e-12);
+  EXPECT_NEAR(out.coefficients(1), 1, 1e-12);
+  EXPECT_EQ(out.between, 0);
+  EXPECT_EQ(out.degrees_of_freedom, 0);
+}
+
+}  // namespace
+}  // namespace tribofit
