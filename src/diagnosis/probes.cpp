@@ -14,8 +14,6 @@ namespace tribofit::diagnosis {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 /// Straight lines between knots: the weights of x on them.
 class Hats {
  public:
@@ -202,7 +200,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
   for (double f = 0.8 / span; f < highest; f += step) {
     std::complex<double> swing = 0;
     for (std::size_t k = 0; k < times.size(); ++k) {
-      swing += weights[k] * (levels[k] - mean) * std::polar(1.0, -kTurn * f * times[k]);
+      swing += weights[k] * (levels[k] - mean) * std::polar(1.0, -(2 * std::numbers::pi) * f * times[k]);
     }
     if (std::abs(swing) > best) {
       best = std::abs(swing);
@@ -221,7 +219,7 @@ Probe over_time(const DiagnosisContext& bench, const Trial& trial, const ProbeIn
   for (const auto& range : o.slips) lasts[range.record] = std::max(lasts[range.record], o.time[range.end - 1]);
   constexpr int kCosines = 4;
   const bool swings = period > 0;
-  const double turn = swings ? kTurn / period : 0;
+  const double turn = swings ? (2 * std::numbers::pi) / period : 0;
   const auto functions = [&, swings, turn](std::size_t k, std::size_t /*i*/) {
     const auto& range = o.slips[k];
     const double t = middle_time(o, range);
@@ -246,7 +244,7 @@ std::optional<Probe> over_angle(const DiagnosisContext& bench, const Trial& tria
   const Observations& o = bench.coarse.observations;
   if (o.angle.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
-  if (*most - *least < 2 * kTurn) return std::nullopt;
+  if (*most - *least < 2 * (2 * std::numbers::pi)) return std::nullopt;
   constexpr int kHarmonics = 6;
   Probe probe;
   probe.variable = "angle";
@@ -330,7 +328,7 @@ std::optional<Probe> over_frequency(const DiagnosisContext& bench, const Trial& 
     const auto n = static_cast<Eigen::Index>(range.end - range.begin);
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + (range.from_stick ? 1 : 0), 2);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double phase = kTurn * line.frequency * o.time[range.begin + static_cast<std::size_t>(i)];
+      const double phase = (2 * std::numbers::pi) * line.frequency * o.time[range.begin + static_cast<std::size_t>(i)];
       out.row(i) << std::cos(phase), std::sin(phase);
     }
     return out;

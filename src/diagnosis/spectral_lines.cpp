@@ -15,8 +15,6 @@ namespace tribofit::diagnosis {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 /// Amplitude of a line of that frequency in the residual, slips one after the other: |sum r e^(-i w t)|.
 double strength(const Observations& observations, std::span<const double> residual, double frequency) {
   std::complex<double> total = 0;
@@ -25,8 +23,8 @@ double strength(const Observations& observations, std::span<const double> residu
     // Equal steps within a slip: one rotation a value.
     const double step = (observations.time[slip.end - 1] - observations.time[slip.begin]) /
                         static_cast<double>(std::max<std::size_t>(1, slip.end - slip.begin - 1));
-    std::complex<double> phasor = std::polar(1.0, -kTurn * frequency * observations.time[slip.begin]);
-    const std::complex<double> turn = std::polar(1.0, -kTurn * frequency * step);
+    std::complex<double> phasor = std::polar(1.0, -(2 * std::numbers::pi) * frequency * observations.time[slip.begin]);
+    const std::complex<double> turn = std::polar(1.0, -(2 * std::numbers::pi) * frequency * step);
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
       total += observations.weight[i] * residual[i] * phasor;
       phasor *= turn;

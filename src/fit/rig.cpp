@@ -20,7 +20,6 @@
 namespace tribofit {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kClear = 3;          // standard errors from zero that mass and stiffness must be
 constexpr double kMostNoise = 0.3;    // of what a channel has for itself
 constexpr double kFewestSamples = 8;  // in a free period
@@ -139,7 +138,7 @@ void add_derived(RigFit& fit) {
   const auto derived = [&](double value, const Eigen::Vector3d& gradient) {
     return rig_value(value, std::sqrt(std::max(0.0, gradient.dot(covariance * gradient))), fit.degrees_of_freedom);
   };
-  const double f = std::sqrt(k / m) / kTwoPi, zeta = c / (2 * std::sqrt(k * m));
+  const double f = std::sqrt(k / m) / (2 * std::numbers::pi), zeta = c / (2 * std::sqrt(k * m));
   fit.natural_frequency = derived(f, {-0.5 * f / m, 0, 0.5 * f / k});
   fit.damping_ratio = derived(zeta, {-0.5 * zeta / m, 0.5 / std::sqrt(k * m), -0.5 * zeta / k});
 }
@@ -148,7 +147,7 @@ void add_derived(RigFit& fit) {
 void add_mass_below(const Instruments& instruments, RigFit& fit) {
   const auto& ping = instruments.rig.ping_frequency;
   if (!ping || fit.per_unit_load || !(fit.stiffness.value > 0)) return;
-  const double omega = kTwoPi * ping->value, whole = fit.stiffness.value / (omega * omega);
+  const double omega = (2 * std::numbers::pi) * ping->value, whole = fit.stiffness.value / (omega * omega);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> covariance(fit.covariance.data());
   const Eigen::Vector3d gradient(-1, 0, 1 / (omega * omega));
   fit.mass_below =
@@ -182,9 +181,10 @@ void try_further_terms(const Balance& balance, const BalanceSolution& solution, 
     return rig_value(factor * all.values(k), std::abs(factor) * spread.std_error(k), spread.degrees_of_freedom(k));
   };
   fit.delay = value(4, -1);
-  if (!corner_is_free) fit.high_pass = value(3, 1 / (kTwoPi * all.values(2)));
+  if (!corner_is_free) fit.high_pass = value(3, 1 / ((2 * std::numbers::pi) * all.values(2)));
   // v_b = v_m + w integral(v_m): the coefficients of v_m and of its integral are c + m w and k + c w.
-  const double w = corner_is_free ? 0 : kTwoPi * fit.high_pass.value, m = all.values(0), c = all.values(1) - m * w;
+  const double w = corner_is_free ? 0 : (2 * std::numbers::pi) * fit.high_pass.value, m = all.values(0),
+               c = all.values(1) - m * w;
   fit.without_both = {m, c, all.values(2) - c * w};
 }
 
@@ -207,7 +207,7 @@ std::pair<Balance, BalanceSolution> solve(const Motion& motion, const Segmentati
   Balance balance = force_balance(motion, segmentation, load, period);
   BalanceSolution solution = solve_balance(balance, columns);
   if (solution.solved && solution.values(0) > 0 && solution.values(2) > 0) {
-    const double found = kTwoPi * std::sqrt(solution.values(0) / solution.values(2));
+    const double found = (2 * std::numbers::pi) * std::sqrt(solution.values(0) / solution.values(2));
     balance = force_balance(motion, segmentation, load, std::clamp(found, period / 4, 4 * period));
     solution = solve_balance(balance, columns);
   }

@@ -10,7 +10,6 @@
 namespace tribofit::rig {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kChance = 1e-3;  // of a false word about one record
 constexpr double kMatters = 0.1;  // of the damping
 

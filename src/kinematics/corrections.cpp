@@ -11,8 +11,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
-
 // Four-point Lagrange interpolation between b (u = 0) and c (u = 1).
 double cubic(double a, double b, double c, double d, double u) {
   return b + u * (c - b) + u * (1 - u) / 6 * ((u - 2) * (a - 2 * b + c) - (u + 1) * (b - 2 * c + d));
@@ -96,7 +94,7 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
     scale(trace.velocity, vibrometer.sign / gain, 0);
     double delay = vibrometer.delay ? vibrometer.delay->value : 0;
     // To first order in frequency a low-pass is a delay; a full inverse would only amplify noise.
-    if (vibrometer.low_pass) delay += 1 / (two_pi * vibrometer.low_pass->value);
+    if (vibrometer.low_pass) delay += 1 / ((2 * std::numbers::pi) * vibrometer.low_pass->value);
     correct_delay(trace.velocity, delay, step, ends);
     if (vibrometer.sign < 0) notes.push_back("velocity: sign reversed as declared");
     if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {:.4g}", gain));
@@ -112,7 +110,7 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
   }
   if (sensor.bandwidth) {
     // Second order with zeta = 0.7 (flat response): group delay 2 zeta / (2 pi f_0) at low frequency.
-    const double delay = 2 * 0.7 / (two_pi * sensor.bandwidth->value);
+    const double delay = 2 * 0.7 / ((2 * std::numbers::pi) * sensor.bandwidth->value);
     correct_delay(trace.friction, delay, step, ends);
     notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {:.4g} Hz",
                                 1e3 * delay, sensor.bandwidth->value));

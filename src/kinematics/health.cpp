@@ -15,7 +15,6 @@ namespace tribofit::kinematics {
 namespace {
 
 using Status = HealthItem::Status;
-constexpr double two_pi = 2 * std::numbers::pi;
 
 // A quantised channel repeats its extremes by chance, as it repeats every other value.
 bool repeats_elsewhere(std::span<const double> x, const Extremes& range) {
@@ -356,7 +355,7 @@ HealthItem check_revolutions(const Motion& motion) {
       angle += speed.value * static_cast<double>(step.end - step.begin) * motion.step;
     }
   }
-  const double revolutions = std::abs(angle) / two_pi;
+  const double revolutions = std::abs(angle) / (2 * std::numbers::pi);
   item.message = fmt::format("{:.2f} revolutions recorded", revolutions);
   if (revolutions < 2) {
     item.status = Status::warning;
@@ -418,7 +417,8 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
   }
   if (!speed_was_stated) {
     item.message = fmt::format("speed taken from the plateau of v_b: omega r = {:.4g} mm/s", 1e3 * plateau);
-    if (radius_known) item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / two_pi);
+    if (radius_known)
+      item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / (2 * std::numbers::pi));
     return item;
   }
   compare(plateau, motion.constant_disc_velocity, "omega r");

@@ -10,7 +10,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
 constexpr double least_corner = 0.01, largest_corner = 3;  // Hz
 constexpr double significance = 6;                         // standard errors
 constexpr double least_sag = 0.01;                         // of the plateau, over one plateau
@@ -30,7 +29,7 @@ Centre robust_centre(const std::vector<double>& values) {
 
 double corner_of(std::span<const double> part, double block_step, double disc_slope) {
   const StraightLine line = fit_line(part);
-  return -(line.slope / block_step - disc_slope) / (two_pi * line.value);
+  return -(line.slope / block_step - disc_slope) / ((2 * std::numbers::pi) * line.value);
 }
 
 }  // namespace
@@ -59,7 +58,7 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& res
   estimate.std_error = all.std_error;
   estimate.first_half = a.value;
   estimate.second_half = b.value;
-  const double sag = two_pi * all.value * median(std::move(lengths));
+  const double sag = (2 * std::numbers::pi) * all.value * median(std::move(lengths));
   const bool clear = all.value > significance * all.std_error && sag > least_sag;
   const bool same = std::abs(a.value - b.value) < 0.2 * all.value + 3 * std::hypot(a.std_error, b.std_error) &&
                     a.value > 0.5 * all.value && b.value > 0.5 * all.value;
@@ -71,7 +70,7 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& res
 HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, double corner, double plateau,
                               std::span<const double> disc) {
   HighPassTerms terms;
-  terms.rate = two_pi * corner;
+  terms.rate = (2 * std::numbers::pi) * corner;
   const double h = velocity.step;
   std::vector<double> restored(velocity.mean.size());
   double integral = 0;

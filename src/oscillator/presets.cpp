@@ -19,7 +19,7 @@ constexpr std::array<Row, 4> kRows = {{{9, 0.521, 0.388, 0.03237, 0.05265, 11.0,
                                        {18, 0.500, 0.355, 0.05377, 0.10580, 12.3, 0.93}}};
 constexpr double kDampingRatio = 0.02;
 constexpr double kLoad = 50;                              // N
-constexpr double kSpeed = 4 * 2 * std::numbers::pi / 60;  // 4 rpm in rad/s
+constexpr double kPublishedSpeed = 4 * 2 * std::numbers::pi / 60;  // 4 rpm in rad/s
 
 }  // namespace
 
@@ -31,7 +31,7 @@ PublishedTest published_test(double radius, BaseLaw law) {
   if (law == BaseLaw::exponential) decay = 1e3 * row.alpha_s_per_mm;
   if (law == BaseLaw::fractional) decay = 1e3 * row.beta_s_per_mm;
   return {.radius = 1e-3 * row.radius_mm,
-          .speed = kSpeed,
+          .speed = kPublishedSpeed,
           .load = kLoad,
           .rig = rig_with_damping_ratio(row.mass_kg, 1e3 * row.stiffness_n_per_mm, kDampingRatio),
           .friction = {row.mu_s, row.mu_k, decay}};

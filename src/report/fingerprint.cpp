@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRows = 13, kMargin = 11;
 
-struct Range {
+struct PlotRange {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void take(double x) {
     low = std::min(low, x);
@@ -25,8 +25,8 @@ struct Range {
   }
 };
 
-Range range_of(const Fingerprint& print, std::vector<double> FingerprintCloud::*values, double si) {
-  Range range;
+PlotRange range_of(const Fingerprint& print, std::vector<double> FingerprintCloud::*values, double si) {
+  PlotRange range;
   for (const FingerprintCloud& cloud : print.clouds) {
     for (const double x : cloud.*values) range.take(x / si);
   }
@@ -42,7 +42,7 @@ std::string with_unit(const FingerprintAxis& axis) {
 }
 
 /// Ends of an axis to three digits, of one that hardly moves to as many as tell them apart.
-std::string end_of(double value, const Range& range) {
+std::string end_of(double value, const PlotRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   if (std::abs(value) < 1e-3 * (range.high - range.low)) return "0";
   const int digits = 3 + static_cast<int>(std::max(0.0, std::floor(std::log10(size / (range.high - range.low)))));
@@ -53,8 +53,8 @@ std::string end_of(double value, const Range& range) {
 
 std::string render_fingerprint(const Fingerprint& print, const TerminalOptions& options) {
   const std::size_t columns = std::clamp<std::size_t>(options.width, 40, 80) - kMargin - 1;
-  const Range x = range_of(print, &FingerprintCloud::x, print.x.si);
-  const Range y = range_of(print, &FingerprintCloud::y, print.y.si);
+  const PlotRange x = range_of(print, &FingerprintCloud::x, print.x.si);
+  const PlotRange y = range_of(print, &FingerprintCloud::y, print.y.si);
   const std::vector<std::string> marks =
       options.unicode ? std::vector<std::string>{"\u2022", "\u25e6"} : std::vector<std::string>{"*", "o"};
   const std::string wall = options.unicode ? "\u2502" : "|", corner = options.unicode ? "\u2514" : "+",

@@ -95,8 +95,8 @@ std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
   return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
 }
 
-double shown(const FitParameter& parameter, double si_value) {
-  return si_value / parameter.parameter.si;
+double shown(const FitParameter& parameter, double value_in_si) {
+  return value_in_si / parameter.parameter.si;
 }
 
 Table::Table(std::vector<std::string> header, std::vector<bool> left) : left_(std::move(left)) {

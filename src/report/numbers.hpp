@@ -49,7 +49,7 @@ std::string friction_unit(const Motion& motion);
 std::string shown_unit(const FitParameter& parameter, const Motion& motion);
 
 /// A SI quantity of this parameter in the unit people read.
-double shown(const FitParameter& parameter, double si_value);
+double shown(const FitParameter& parameter, double value_in_si);
 
 /// A table whose columns line up; the first is left-aligned, numbers to the right.
 class Table {

@@ -13,8 +13,6 @@
 namespace tribofit {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
-
 // Next size with no prime factor above five, for which the transform is fast.
 std::size_t good_size(std::size_t n) {
   for (;; ++n) {
@@ -29,7 +27,7 @@ std::size_t good_size(std::size_t n) {
 // sin^2 window, periodic; by rotation instead of a cosine per sample.
 class Hann {
  public:
-  explicit Hann(std::size_t n) : step_(std::polar(1.0, two_pi / static_cast<double>(n))) {}
+  explicit Hann(std::size_t n) : step_(std::polar(1.0, (2 * std::numbers::pi) / static_cast<double>(n))) {}
   double next() {
     const double w = 0.5 * (1 - phase_.real());
     phase_ *= step_;
@@ -51,7 +49,7 @@ std::vector<std::complex<double>> transform(std::vector<double> padded) {
 // Amplitude of the sine of a given frequency under the window, by direct summation.
 double amplitude_at(std::span<const double> signal, double mean, double step, double frequency) {
   Hann window(signal.size());
-  const std::complex<double> turn = std::polar(1.0, -two_pi * frequency * step);
+  const std::complex<double> turn = std::polar(1.0, -(2 * std::numbers::pi) * frequency * step);
   std::complex<double> phase{1, 0}, sum{0, 0};
   for (double x : signal) {
     sum += window.next() * (x - mean) * phase;
