@@ -55,7 +55,8 @@ struct SmoothedOptions {
   double stick_share = 0;
 };
 
-/// Simulates m x'' + c x' + k x = N mu(v_r), v_r = omega r - x', with a smoothed law, by SUNDIALS CVODE (BDF, stiff).
+/// Simulates m x'' + c x' + k x = N mu(v_r), v_r = omega r - x', with a smoothed law, by a Rosenbrock method of order
+/// 4 for stiff problems (RODAS, as Boost.Odeint has it).
 ///
 /// The result is that of simulate(), so that whatever is measured there is measured here in the same way; but
 /// break-away and re-stick are where |v_r| crosses what counts as stuck, relative_velocity is not zero in
@@ -65,7 +66,8 @@ struct SmoothedOptions {
 /// of the smoothed law is below mu_brk by about sqrt(8/pi mu_brk (mu_brk - mu_c) c_v/s), so period, stick time and
 /// amplitude come to those of simulate() as 1/sqrt(s).
 ///
-/// Throws InputError for a rig, drive, law or option that cannot be, and where CVODE gives up, with what was seen.
+/// Throws InputError for a rig, drive, law or option that cannot be, and where the integration gives up, with what was
+/// seen: where the law is so sharp that doubles do not resolve the creep of a stick (s v_disc above 1.4e8).
 /// Cost: about 0.5 ms a stick-slip cycle.
 SimulatedMotion simulate_smoothed(const Rig& rig, const Drive& drive, const SmoothedLaw& law,
                                   const SmoothedOptions& options = {});
