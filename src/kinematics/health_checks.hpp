@@ -8,6 +8,7 @@
 
 #include "high_pass.hpp"
 #include "plateau.hpp"
+#include "plateau_search.hpp"
 #include "ripple.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/trace.hpp"
@@ -52,11 +53,6 @@ HealthItem check_revolutions(const Motion& motion);
 HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate);
 
 HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found);
-
-/// Where v_b rests, and what the recorded speed says there [m/s].
-struct RecordedPlateau {
-  double block = 0, disc = 0;
-};
 
 /// Plateau of v_b against the stated omega r, or against the recorded one.
 HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "corrections.hpp"
+#include "disc_ripple.hpp"
 #include "health_checks.hpp"
 #include "high_pass.hpp"
 #include "plateau.hpp"
@@ -15,25 +16,16 @@
 #include "plateau_search.hpp"
 #include "ripple.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 namespace {
 
-using kinematics::add_sensor_mass;
 using kinematics::Disc;
-using kinematics::disc_of;
-using kinematics::disc_slopes;
-using kinematics::final_level;
-using kinematics::find_rests;
-using kinematics::first_known;
 using kinematics::HighPassEstimate;
-using kinematics::largest_of;
-using kinematics::LevelRange;
 using kinematics::PlateauSearch;
+using kinematics::RecordedPlateau;
 using kinematics::Rests;
 using kinematics::RippleEstimate;
-using kinematics::run_up_blocks;
 using kinematics::StickPlateau;
 
 void require_channels(const Trace& trace) {
@@ -55,18 +47,6 @@ void take_conditions_from_instruments(Conditions& conditions, const Instruments:
   take(conditions.radius, rig.radius);
   take(conditions.speed, rig.speed);
   take(conditions.load, rig.load);
-}
-
-// The direction of the vibrometer, where nobody declared it, from the plateau.
-bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& s) {
-  if (!s.sticks || trace.velocity_kind != VelocityKind::block || !disc.varying.empty()) return false;
-  if (disc.known) return s.rests.level * disc.constant < 0;
-  double sum = 0;
-  for (const StickPlateau& run : s.rests.runs) {
-    const auto part = std::span<const double>(trace.friction).subspan(run.inner_begin() * s.blocks.length);
-    sum += part[0] + part[(run.inner_end() - run.inner_begin()) * s.blocks.length - 1];
-  }
-  return s.rests.level < 0 && sum > 0;
 }
 
 void drop_ends(std::vector<double>& channel, std::size_t head, std::size_t tail) {
@@ -111,48 +91,6 @@ void settle_friction_sign(Motion& motion, double scale) {
   motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");
 }
 
-// Where v_b rests beside a recorded speed. A record whose rests follow the recorded speed is compared there; where none
-// do, or far from it, the rests of v_b alone tell what the disc did.
-std::optional<kinematics::RecordedPlateau> recorded_plateau(const PlateauSearch& s, const Disc& disc, bool block) {
-  if (!block || disc.varying.empty() || s.disc.mean.empty()) return std::nullopt;
-  const auto recorded_in = [&](const Rests& rests) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (const StickPlateau& run : rests.runs) {
-      for (std::size_t b = run.begin; b < run.end; ++b) sum += s.disc.mean[b], ++count;
-    }
-    return sum / static_cast<double>(std::max<std::size_t>(1, count));
-  };
-  std::optional<kinematics::RecordedPlateau> following;
-  if (s.sticks) {
-    const double recorded = recorded_in(s.rests);
-    following = {recorded + s.rests.level, recorded};
-    if (std::abs(s.rests.level) <= 0.2 * std::abs(recorded)) return following;
-  }
-  const std::span<const double> v(s.blocks.mean);
-  const Extremes range = extremes(v);
-  Rests alone = range.high - range.low <= 8 * s.noise ? Rests{{{0, v.size(), fit_line(v).value}}, 0, 0} : find_rests(v);
-  if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
-  std::size_t resting = 0;
-  for (const StickPlateau& run : alone.runs) resting += run.size();
-  const bool rests = 10 * resting > v.size() && std::abs(alone.level) > 3 * s.noise;
-  return rests ? kinematics::RecordedPlateau{alone.level, recorded_in(alone)} : following;
-}
-
-// Where the velocity as recorded repeats in stick when there is no noise.
-std::optional<double> plateau_as_recorded(const PlateauSearch& s, const Disc& disc, const Instruments& instruments,
-                                          bool block, bool stated, bool reversed,
-                                          const std::optional<kinematics::RecordedPlateau>& recorded) {
-  double level = 0;  // of v_r
-  if (block) {
-    if (!disc.varying.empty() && !recorded) return std::nullopt;
-    if (disc.varying.empty() && (!s.sticks || (reversed && !stated))) return std::nullopt;
-    level = !disc.varying.empty() ? recorded->disc : disc.constant;
-  }
-  const auto& vibrometer = instruments.vibrometer;
-  return level * vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (reversed ? -1 : 1);
-}
-
 // A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
 bool is_useless(const Trace& trace) {
   constexpr std::size_t few = 16;
@@ -160,218 +98,287 @@ bool is_useless(const Trace& trace) {
   return range.low == range.high || (trace.size() < few && trace.conditions.radius.known());
 }
 
-[[noreturn]] void throw_no_speed(const Trace& trace) {
-  throw InputError("v_r cannot be made: the block never sticks, so that no plateau shows the speed of the disc",
-                   "give --radius and --speed, or a column with v_r", {trace.path, 0, ""});
+/// A trace on its way to a motion. Each stage reads what the stages before it have settled.
+class MotionStages {
+ public:
+  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options);
+
+  void look_at_recording();
+  void correct_declared();
+  void find_disc();
+  void find_plateau();
+  void find_direction();
+  void undo_high_pass();
+  void take_speed_from_plateau();
+  void undo_ripple();
+  void check_clipping();
+  void add_sensor_mass();
+  void make_relative_motion();
+  void settle_signs_and_levels();
+  void check_health();
+  void compare_plateau();
+  Motion take() { return std::move(motion_); }
+
+ private:
+  bool is_block() const { return trace_.velocity_kind == VelocityKind::block; }
+  bool speed_is_constant() const { return disc_.varying.empty(); }
+  std::optional<double> plateau_as_recorded() const;
+  void undo_ripple_in_high_pass();
+  std::size_t run_up() const;
+  Rests rests_in_motion() const;
+
+  Trace trace_;
+  const Instruments& instruments_;
+  const MotionOptions& options_;
+  Motion motion_;
+
+  // Of the channels as recorded.
+  kinematics::RangeEnds range_ends_;
+  HealthItem clipping_, drop_outs_;
+  kinematics::Ends lost_;  ///< to the corrections
+
+  Disc disc_;
+  bool speed_was_stated_ = false;
+  PlateauSearch search_;
+  bool is_reversed_ = false;
+  std::optional<double> declared_high_pass_;
+  HighPassEstimate sag_;
+  double plateau_ = 0;  ///< of v_b, or of v_r where that was measured, towards which the record tends [m/s]
+  std::optional<RecordedPlateau> recorded_;
+  RippleEstimate ripple_;
+  bool undoes_ripple_ = false;
+  std::size_t run_up_ = 0;
+};
+
+MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
+    : trace_(std::move(trace)), instruments_(instruments), options_(options) {
+  require_channels(trace_);
+  take_conditions_from_instruments(trace_.conditions, instruments.rig);
+  if (trace_.steps.empty()) trace_.steps.push_back({0, trace_.size(), "", {}});
+  motion_.step = trace_.interval();
+  motion_.friction_kind = trace_.friction_kind;
+  motion_.velocity_kind = trace_.velocity_kind;
 }
 
-// The one stated speed of the whole record [rad/s], NaN where there are several or it was recorded.
-double steady_speed(const Trace& trace) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!trace.disc_speed.empty() || !trace.disc_angle.empty()) return none;
-  double speed = none;
-  for (const Step& step : trace.steps) {
-    const double here = first_known(step.conditions.speed, trace.conditions.speed).value;
-    if (speed == speed && here != speed) return none;
-    speed = here;
+/// What the recorder did: its range and its gaps.
+void MotionStages::look_at_recording() {
+  const Chunks friction = chunks_of(trace_.friction);
+  const Chunks velocity = chunks_of(trace_.velocity);
+  range_ends_ = kinematics::range_ends(trace_, friction, velocity);
+  drop_outs_ = kinematics::check_drop_outs(trace_, friction, velocity);
+}
+
+void MotionStages::correct_declared() {
+  lost_ = kinematics::correct_declared(trace_, instruments_, motion_.step, motion_.notes);
+  if (lost_.head + lost_.tail + 2 > trace_.size()) lost_ = {};
+}
+
+void MotionStages::find_disc() {
+  disc_ = kinematics::disc_of(trace_);
+  speed_was_stated_ = disc_.known;
+  if (trace_.velocity_kind != VelocityKind::fixed_block) return;
+  if (!disc_.known) {
+    throw InputError("v_r cannot be made: the block stands still and omega or r is not known",
+                     "give --radius and --speed, or a column with the speed of the disc", {trace_.path, 0, ""});
   }
-  return speed;
+  trace_.velocity.assign(trace_.size(), disc_.constant);
+  if (!speed_is_constant()) trace_.velocity = disc_.varying;
 }
 
-// A ripple of the disc's speed. Where the speed is read off the plateau, it is read off again without the ripple.
-RippleEstimate find_ripple(Trace& trace, const PlateauSearch& s, Disc& disc, bool stated) {
-  if (!s.sticks || !disc.varying.empty() || trace.velocity_kind != VelocityKind::block) return {};
-  const double omega = steady_speed(trace);
-  if (!(std::abs(omega) > 0)) return {};
-  RippleEstimate ripple = estimate_ripple(s.blocks, s.rests, omega, trace.time, trace.friction);
-  const bool from_plateau = trace.conditions.speed.source == "plateau" && trace.conditions.radius.known();
-  if (stated) return ripple;
-  Condition speed = trace.conditions.speed;
-  for (int pass = 0; pass < 3 && from_plateau && ripple.level != 0; ++pass) {
-    speed.value = ripple.level / trace.conditions.radius.value;
-    ripple = estimate_ripple(s.blocks, s.rests, speed.value, trace.time, trace.friction);
+void MotionStages::find_plateau() {
+  search_ = kinematics::survey(trace_, disc_, motion_.step);
+}
+
+/// A vibrometer that points the other way.
+void MotionStages::find_direction() {
+  is_reversed_ = kinematics::points_the_other_way(trace_, disc_, search_);
+  if (!is_reversed_) return;
+  for (double& v : trace_.velocity) v = -v;
+  motion_.notes.push_back("velocity: sign reversed, the plateau runs against the disc");
+  find_plateau();
+}
+
+void MotionStages::undo_high_pass() {
+  const std::optional<Declared>& stated = instruments_.vibrometer.high_pass;
+  if (is_block() && stated) declared_high_pass_ = stated->value;
+  if (is_block() && search_.sticks) {
+    sag_ = kinematics::estimate_high_pass(search_.blocks, search_.rests, kinematics::disc_slopes(search_));
   }
-  if (!ripple.significant) return ripple;
-  disc.constant = ripple.level;
-  if (from_plateau) trace.conditions.speed = speed;
-  return ripple;
+  if (!declared_high_pass_ && !(sag_.significant && options_.undo_high_pass)) return;
+  motion_.high_pass = declared_high_pass_ ? *declared_high_pass_ : sag_.corner;
+  motion_.high_pass_std_error = declared_high_pass_ ? stated->uncertainty : sag_.std_error;
+  const double level = disc_.known && speed_is_constant() ? disc_.constant : disc_.known ? 0 : std::nan("");
+  kinematics::restore(
+      trace_.velocity, motion_.step,
+      kinematics::restoring_terms(search_.blocks, search_.rests, motion_.high_pass, level, search_.disc.mean));
+  find_plateau();
 }
 
-// The survey as a disc without the ripple would have shown it.
-void flatten(PlateauSearch& s, const RippleEstimate& ripple, double omega, std::span<const double> time) {
-  std::vector<double> middles(s.blocks.mean.size());
-  for (std::size_t b = 0; b < middles.size(); ++b) middles[b] = time[b * s.blocks.length + s.blocks.length / 2];
-  const kinematics::RippledDisc rippled = kinematics::rippled_disc(ripple, omega, middles);
-  for (std::size_t b = 0; b < middles.size(); ++b) s.blocks.mean[b] /= rippled.factor[b];
-  const double near = 0.5 * s.rests.level, far = 1.5 * s.rests.level;
-  Rests rests = find_rests(s.blocks.mean, LevelRange{std::min(near, far), std::max(near, far)});
-  if (!rests.empty()) s.rests = std::move(rests);
+/// Speed from the plateau where nobody said it.
+void MotionStages::take_speed_from_plateau() {
+  plateau_ = search_.sticks ? kinematics::final_level(search_.rests) : 0;
+  if (!is_block() || disc_.known) return;
+  const bool unknown = !search_.sticks || trace_.disc_speed.size() == trace_.size();
+  if (unknown && !is_useless(trace_)) {
+    throw InputError("v_r cannot be made: the block never sticks, so that no plateau shows the speed of the disc",
+                     "give --radius and --speed, or a column with v_r", {trace_.path, 0, ""});
+  }
+  if (unknown) motion_.notes.push_back("the speed of the disc is not known and no plateau shows it: v_r is -v_b");
+  disc_.known = true;
+  disc_.constant = unknown ? 0 : plateau_;
+  disc_.largest = std::abs(disc_.constant);
+  if (!unknown && trace_.conditions.radius.known()) {
+    trace_.conditions.speed = {plateau_ / trace_.conditions.radius.value, "plateau"};
+  }
 }
 
-// Speed and angle of the disc, and omega r, with the ripple.
-void ripple_disc(Trace& trace, Disc& disc, const RippleEstimate& ripple, double omega) {
-  kinematics::RippledDisc rippled = kinematics::rippled_disc(ripple, omega, trace.time);
-  trace.disc_angle = std::move(rippled.angle);
-  trace.disc_speed = rippled.factor;
-  disc.varying = std::move(rippled.factor);
-  for (double& v : trace.disc_speed) v *= omega;
-  for (double& v : disc.varying) v *= disc.constant;
-  disc.largest = std::abs(disc.constant) * (1 + ripple.ripple.amplitude);
+void MotionStages::undo_ripple() {
+  ripple_ = kinematics::find_ripple(trace_, search_, disc_, speed_was_stated_);
+  undoes_ripple_ = ripple_.significant && options_.undo_speed_ripple;
+  if (!undoes_ripple_) return;
+  const DiscRipple& ripple = motion_.speed_ripple = ripple_.ripple;
+  if (motion_.high_pass > 0) undo_ripple_in_high_pass();
+  kinematics::flatten(search_, ripple_, kinematics::steady_speed(trace_), trace_.time);
+  plateau_ = kinematics::final_level(search_.rests);
+  motion_.notes.push_back(
+      fmt::format("disc: its speed follows its angle by {:.2f} +- {:.2f} %, {} a revolution ({} plateaus); omega r "
+                  "follows it",
+                  100 * ripple.amplitude, 100 * ripple.amplitude_std_error,
+                  ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order), ripple_.plateaus));
+}
+
+/// The integration constants of an undone high-pass came from plateaus with the ripple on them.
+void MotionStages::undo_ripple_in_high_pass() {
+  const double shift = disc_.constant - ripple_.level;
+  for (std::size_t i = 0; i < trace_.size(); ++i) {
+    trace_.velocity[i] += shift - ripple_.drift * (trace_.time[i] - ripple_.middle);
+  }
+  find_plateau();
+}
+
+void MotionStages::check_clipping() {
+  recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
+  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_, plateau_as_recorded());
+}
+
+/// Where the velocity as recorded repeats in stick when there is no noise.
+std::optional<double> MotionStages::plateau_as_recorded() const {
+  double level = 0;  // of v_r
+  if (is_block()) {
+    const bool unknown =
+        speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
+    if (unknown) return std::nullopt;
+    level = speed_is_constant() ? disc_.constant : recorded_->disc;
+  }
+  const auto& vibrometer = instruments_.vibrometer;
+  return level * vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
+}
+
+void MotionStages::add_sensor_mass() {
+  const std::optional<Declared>& mass = instruments_.force_sensor.mass_below;
+  if (!is_block() || !mass) return;
+  kinematics::add_sensor_mass(trace_, trace_.velocity, mass->value, motion_.step, motion_.notes);
+}
+
+/// Samples before the disc has come to its speed; looked for only where that is taken as constant.
+std::size_t MotionStages::run_up() const {
+  if (!is_block() || !search_.sticks || !speed_is_constant()) return 0;
+  const std::size_t samples = kinematics::run_up_blocks(search_) * search_.blocks.length;
+  return samples + 2 > trace_.size() ? 0 : samples;
+}
+
+/// v_r, without the run-up and the ends that a correction has lost.
+void MotionStages::make_relative_motion() {
+  run_up_ = run_up();
+  const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
+  if (undoes_ripple_) kinematics::impose_ripple(trace_, disc_, ripple_, kinematics::steady_speed(trace_));
+  if (is_block()) make_relative(trace_.velocity, disc_);
+  for (auto* channel : {&trace_.time, &trace_.friction, &trace_.velocity, &trace_.load, &trace_.temperature,
+                        &trace_.disc_speed, &trace_.disc_angle, &disc_.varying}) {
+    drop_ends(*channel, head, lost_.tail);
+  }
+  motion_.trimmed = head;
+  motion_.time = std::move(trace_.time);
+  motion_.friction = std::move(trace_.friction);
+  motion_.relative_velocity = std::move(trace_.velocity);
+  motion_.load = std::move(trace_.load);
+  motion_.temperature = std::move(trace_.temperature);
+  motion_.disc_speed = std::move(trace_.disc_speed);
+  motion_.disc_angle = std::move(trace_.disc_angle);
+  motion_.disc_velocity = std::move(disc_.varying);
+  motion_.conditions = trace_.conditions;
+  motion_.steps = steps_within(trace_.steps, head, motion_.size());
+}
+
+void MotionStages::settle_signs_and_levels() {
+  const bool constant = disc_.known && (motion_.disc_velocity.empty() || undoes_ripple_);
+  motion_.constant_disc_velocity = constant ? disc_.constant : 0;
+  motion_.sticks = search_.sticks;
+  motion_.velocity_noise = search_.noise;
+  if (search_.sticks) {
+    const double level = search_.rests.level;
+    motion_.plateau_velocity = is_block() ? motion_.constant_disc_velocity - level : level;
+  }
+  double scale = search_.rests.depth;
+  if (scale == 0) scale = kinematics::largest_of(motion_.relative_velocity);
+  if (disc_.largest > 0 || !is_block()) settle_friction_sign(motion_, scale);
+}
+
+/// The rests that the motion still holds, in its own blocks.
+Rests MotionStages::rests_in_motion() const {
+  Rests rests = search_.rests;
+  const std::size_t length = search_.blocks.length;
+  const std::size_t cut = (motion_.trimmed + length - 1) / length, kept = motion_.size() / length;
+  std::erase_if(rests.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
+  for (StickPlateau& run : rests.runs) run.begin -= cut, run.end -= cut;
+  return rests;
+}
+
+void MotionStages::check_health() {
+  const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
+  const std::span<const double> velocity =
+      velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
+  motion_.health = {
+      std::move(clipping_),
+      std::move(drop_outs_),
+      kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
+      kinematics::check_bandwidth(motion_.friction, velocity, motion_.step),
+      kinematics::check_channel_delay(motion_, rests_in_motion(), search_.blocks.length),
+      kinematics::check_revolutions(motion_),
+      kinematics::check_speed_ripple(motion_, ripple_),
+      kinematics::check_run_up(motion_, options_.trim, run_up_),
+      kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_, motion_.conditions.radius.known(),
+                                      recorded_),
+  };
+}
+
+void MotionStages::compare_plateau() {
+  if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
+  const kinematics::PlateauRatio ratio = plateau_ratio(motion_, rests_in_motion(), search_.blocks.length);
+  motion_.plateau_ratio = ratio.value;
+  motion_.plateau_ratio_std_error = ratio.std_error;
+  correct_plateau(motion_, ratio, options_.plateau);
 }
 
 }  // namespace
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
-  require_channels(trace);
-  take_conditions_from_instruments(trace.conditions, instruments.rig);
-  if (trace.steps.empty()) trace.steps.push_back({0, trace.size(), "", {}});
-  Motion motion;
-  motion.step = trace.interval();
-  motion.friction_kind = trace.friction_kind;
-  motion.velocity_kind = trace.velocity_kind;
-  const bool block = trace.velocity_kind == VelocityKind::block;
-
-  // What the recorder did, on the channels as recorded; then what the user declared.
-  const Chunks friction_chunks = chunks_of(trace.friction);
-  const Chunks velocity_chunks = chunks_of(trace.velocity);
-  const kinematics::RangeEnds ends = kinematics::range_ends(trace, friction_chunks, velocity_chunks);
-  HealthItem drop_outs = kinematics::check_drop_outs(trace, friction_chunks, velocity_chunks);
-  kinematics::Ends lost = kinematics::correct_declared(trace, instruments, motion.step, motion.notes);
-  if (lost.head + lost.tail + 2 > trace.size()) lost = {};
-
-  Disc disc = disc_of(trace);
-  if (trace.velocity_kind == VelocityKind::fixed_block) {
-    if (!disc.known) {
-      throw InputError("v_r cannot be made: the block stands still and omega or r is not known",
-                       "give --radius and --speed, or a column with the speed of the disc", {trace.path, 0, ""});
-    }
-    trace.velocity.assign(trace.size(), disc.constant);
-    if (!disc.varying.empty()) trace.velocity = disc.varying;
-  }
-
-  // Where the velocity rests; a vibrometer that points the other way; a high-pass.
-  PlateauSearch s = survey(trace, disc, motion.step);
-  const bool reversed = points_the_other_way(trace, disc, s);
-  if (reversed) {
-    for (double& v : trace.velocity) v = -v;
-    motion.notes.push_back("velocity: sign reversed, the plateau runs against the disc");
-    s = survey(trace, disc, motion.step);
-  }
-  HighPassEstimate sag;
-  std::optional<double> declared;
-  if (block && instruments.vibrometer.high_pass) declared = instruments.vibrometer.high_pass->value;
-  if (block && s.sticks) sag = estimate_high_pass(s.blocks, s.rests, disc_slopes(s));
-  const bool undo = declared || (sag.significant && options.undo_high_pass);
-  if (undo) {
-    motion.high_pass = declared ? *declared : sag.corner;
-    motion.high_pass_std_error = declared ? instruments.vibrometer.high_pass->uncertainty : sag.std_error;
-    const double level = disc.known && disc.varying.empty() ? disc.constant : disc.known ? 0 : std::nan("");
-    restore(trace.velocity, motion.step, restoring_terms(s.blocks, s.rests, motion.high_pass, level, s.disc.mean));
-    s = survey(trace, disc, motion.step);
-  }
-
-  // Speed from the plateau where nobody said it.
-  const bool stated = disc.known;
-  double plateau = s.sticks ? final_level(s.rests) : 0;
-  if (block && !disc.known) {
-    const bool unknown = !s.sticks || trace.disc_speed.size() == trace.size();
-    if (unknown && !is_useless(trace)) throw_no_speed(trace);
-    if (unknown) motion.notes.push_back("the speed of the disc is not known and no plateau shows it: v_r is -v_b");
-    disc.known = true;
-    disc.constant = unknown ? 0 : plateau;
-    disc.largest = std::abs(disc.constant);
-    if (!unknown && trace.conditions.radius.known()) {
-      trace.conditions.speed = {plateau / trace.conditions.radius.value, "plateau"};
-    }
-  }
-  const RippleEstimate ripple = find_ripple(trace, s, disc, stated);
-  const bool undo_ripple = ripple.significant && options.undo_speed_ripple;
-  const double omega = undo_ripple ? steady_speed(trace) : 0;
-  if (undo_ripple) {
-    motion.speed_ripple = ripple.ripple;
-    if (motion.high_pass > 0) {  // its integration constants came from plateaus with the ripple on them
-      const double shift = disc.constant - ripple.level;
-      for (std::size_t i = 0; i < trace.size(); ++i) {
-        trace.velocity[i] += shift - ripple.drift * (trace.time[i] - ripple.middle);
-      }
-      s = survey(trace, disc, motion.step);
-    }
-    flatten(s, ripple, omega, trace.time);
-    plateau = final_level(s.rests);
-    motion.notes.push_back(
-        fmt::format("disc: its speed follows its angle by {:.2f} +- {:.2f} %, {} a revolution ({} plateaus); omega r "
-                    "follows it",
-                    100 * ripple.ripple.amplitude, 100 * ripple.ripple.amplitude_std_error,
-                    ripple.ripple.order == 1 ? "once" : fmt::format("{} times", ripple.ripple.order), ripple.plateaus));
-  }
-  const auto recorded = recorded_plateau(s, disc, block);
-  HealthItem clipping = check_clipping(ends, trace, instruments,
-                                       plateau_as_recorded(s, disc, instruments, block, stated, reversed, recorded));
-  if (block && instruments.force_sensor.mass_below) {
-    add_sensor_mass(trace, trace.velocity, instruments.force_sensor.mass_below->value, motion.step, motion.notes);
-  }
-
-  // Run-up: only where the speed is taken as constant.
-  std::size_t run_up = block && s.sticks && disc.varying.empty() ? run_up_blocks(s) * s.blocks.length : 0;
-  if (run_up + 2 > trace.size()) run_up = 0;
-  const std::size_t head = std::max(lost.head, options.trim ? run_up : 0);
-
-  if (undo_ripple) ripple_disc(trace, disc, ripple, omega);
-  if (block) make_relative(trace.velocity, disc);
-  for (auto* channel : {&trace.time, &trace.friction, &trace.velocity, &trace.load, &trace.temperature,
-                        &trace.disc_speed, &trace.disc_angle, &disc.varying}) {
-    drop_ends(*channel, head, lost.tail);
-  }
-  motion.trimmed = head;
-  motion.time = std::move(trace.time);
-  motion.friction = std::move(trace.friction);
-  motion.relative_velocity = std::move(trace.velocity);
-  motion.load = std::move(trace.load);
-  motion.temperature = std::move(trace.temperature);
-  motion.disc_speed = std::move(trace.disc_speed);
-  motion.disc_angle = std::move(trace.disc_angle);
-  motion.disc_velocity = std::move(disc.varying);
-  const bool constant = disc.known && (motion.disc_velocity.empty() || undo_ripple);
-  motion.constant_disc_velocity = constant ? disc.constant : 0;
-  motion.conditions = trace.conditions;
-  motion.steps = steps_within(trace.steps, head, motion.size());
-  motion.sticks = s.sticks;
-  motion.velocity_noise = s.noise;
-  if (s.sticks) {
-    const double level = s.rests.level;
-    motion.plateau_velocity = !block ? level : motion.constant_disc_velocity - level;
-  }
-  double scale = s.rests.depth;
-  if (scale == 0) scale = largest_of(motion.relative_velocity);
-  if (disc.largest > 0 || !block) settle_friction_sign(motion, scale);
-
-  // Rests in blocks of the trimmed record.
-  Rests rests = s.rests;
-  const std::size_t cut = (head + s.blocks.length - 1) / s.blocks.length, kept = motion.size() / s.blocks.length;
-  std::erase_if(rests.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
-  for (StickPlateau& run : rests.runs) run.begin -= cut, run.end -= cut;
-
-  motion.health = {
-      std::move(clipping),
-      std::move(drop_outs),
-      kinematics::check_sagging(sag, declared, undo, s.sticks),
-      kinematics::check_bandwidth(motion.friction,
-                                  motion.velocity_kind == VelocityKind::fixed_block
-                                      ? std::span<const double>()
-                                      : std::span<const double>(motion.relative_velocity),
-                                  motion.step),
-      kinematics::check_channel_delay(motion, rests, s.blocks.length),
-      kinematics::check_revolutions(motion),
-      kinematics::check_speed_ripple(motion, ripple),
-      kinematics::check_run_up(motion, options.trim, run_up),
-      kinematics::check_plateau_speed(motion, plateau, stated, motion.conditions.radius.known(), recorded)};
-  if (block && stated && s.sticks) {
-    const kinematics::PlateauRatio ratio = plateau_ratio(motion, rests, s.blocks.length);
-    motion.plateau_ratio = ratio.value;
-    motion.plateau_ratio_std_error = ratio.std_error;
-    correct_plateau(motion, ratio, options.plateau);
-  }
-  return motion;
+  MotionStages stages(std::move(trace), instruments, options);
+  stages.look_at_recording();
+  stages.correct_declared();
+  stages.find_disc();
+  stages.find_plateau();
+  stages.find_direction();
+  stages.undo_high_pass();
+  stages.take_speed_from_plateau();
+  stages.undo_ripple();
+  stages.check_clipping();
+  stages.add_sensor_mass();
+  stages.make_relative_motion();
+  stages.settle_signs_and_levels();
+  stages.check_health();
+  stages.compare_plateau();
+  return stages.take();
 }
 
 }  // namespace tribofit

@@ -123,6 +123,44 @@ PlateauSearch survey(const Trace& trace, const Disc& disc, double step) {
   return s;
 }
 
+bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& search) {
+  if (!search.sticks || trace.velocity_kind != VelocityKind::block || !disc.varying.empty()) return false;
+  if (disc.known) return search.rests.level * disc.constant < 0;
+  double sum = 0;
+  for (const StickPlateau& run : search.rests.runs) {
+    const auto part = std::span<const double>(trace.friction).subspan(run.inner_begin() * search.blocks.length);
+    sum += part[0] + part[(run.inner_end() - run.inner_begin()) * search.blocks.length - 1];
+  }
+  return search.rests.level < 0 && sum > 0;
+}
+
+std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind) {
+  if (kind != VelocityKind::block || disc.varying.empty() || search.disc.mean.empty()) return std::nullopt;
+  const auto recorded_in = [&](const Rests& rests) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const StickPlateau& run : rests.runs) {
+      for (std::size_t b = run.begin; b < run.end; ++b) sum += search.disc.mean[b], ++count;
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, count));
+  };
+  std::optional<RecordedPlateau> following;
+  if (search.sticks) {
+    const double recorded = recorded_in(search.rests);
+    following = {recorded + search.rests.level, recorded};
+    if (std::abs(search.rests.level) <= 0.2 * std::abs(recorded)) return following;
+  }
+  const std::span<const double> v(search.blocks.mean);
+  const Extremes range = extremes(v);
+  Rests alone =
+      range.high - range.low <= 8 * search.noise ? Rests{{{0, v.size(), fit_line(v).value}}, 0, 0} : find_rests(v);
+  if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
+  std::size_t resting = 0;
+  for (const StickPlateau& run : alone.runs) resting += run.size();
+  const bool rests = 10 * resting > v.size() && std::abs(alone.level) > 3 * search.noise;
+  return rests ? RecordedPlateau{alone.level, recorded_in(alone)} : following;
+}
+
 std::vector<double> disc_slopes(const PlateauSearch& s) {
   std::vector<double> slopes;
   if (s.disc.mean.empty()) return slopes;

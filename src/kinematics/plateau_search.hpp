@@ -37,6 +37,18 @@ struct PlateauSearch {
 
 PlateauSearch survey(const Trace& trace, const Disc& disc, double step);
 
+/// Whether the plateau runs against the disc, or against friction where the direction of the disc is not known.
+bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& search);
+
+/// Where v_b rests, and what the recorded speed says there [m/s].
+struct RecordedPlateau {
+  double block = 0, disc = 0;
+};
+
+/// Where v_b rests beside a recorded speed; nothing where there is none, or no rest. A record whose rests follow the
+/// recorded speed is compared there; where none do, or far from it, the rests of v_b alone tell what the disc did.
+std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind);
+
 /// d(omega r)/dt of every rest [m/s^2]; empty where omega r is constant.
 std::vector<double> disc_slopes(const PlateauSearch& s);
 

@@ -180,6 +180,89 @@ void try_true_angle(std::vector<Level> levels, Design design, double omega, doub
   estimate.true_angle = true;
 }
 
+/// The time between the middles of the first and the last rest.
+struct TimeSpan {
+  double middle = 0, half = 0;  // [s]
+  double turns(double omega) const { return std::abs(omega) * 2 * half / (2 * std::numbers::pi); }
+};
+
+TimeSpan time_span_of(const std::vector<Level>& levels) {
+  const double first = 0.5 * (levels.front().begin + levels.front().end);
+  const double last = 0.5 * (levels.back().begin + levels.back().end);
+  return {0.5 * (first + last), 0.5 * (last - first)};
+}
+
+/// A fit of the order that leaves least.
+struct OrderFit {
+  int order = 0;  // 0: none could be fitted
+  Design design;
+  LinearFit fit;
+};
+
+OrderFit fit_best_order(const std::vector<Level>& levels, Design design, double omega, double turns) {
+  OrderFit best{0, design, {}};
+  for (int n = 1; n <= largest_order; ++n) {
+    if (static_cast<double>(levels.size()) < least_per_period * n * turns) break;
+    design.w = n * omega;
+    LinearFit fit = fit_order(levels, design);
+    if (fit.rss < best.fit.rss) best = {n, design, std::move(fit)};
+  }
+  return best;
+}
+
+// Levels far from the fit are not used in the next one.
+void leave_out_far(std::vector<Level>& levels, const OrderFit& best) {
+  std::vector<double> deviation;
+  for (const Level& level : levels) deviation.push_back(std::abs(level.value - best.design.row(level).dot(best.fit.x)));
+  const double limit = std::max(5 * kSigmaPerMad * median(deviation), 1e-12 * std::abs(best.fit.x(0)));
+  for (std::size_t r = 0; r < levels.size(); ++r) levels[r].used = deviation[r] <= limit;
+}
+
+/// What a fit leaves of the levels it used.
+struct Residuals {
+  Remainder left;
+  double with_wave = 0;  // squares of the residuals where the wave is not taken off
+
+  double variance_explained() const { return with_wave > 0 ? 1 - left.squares / with_wave : 0; }
+  /// Of one level, enlarged by the correlation from rest to rest.
+  double variance(Eigen::Index parameters) const {
+    const double freedom = left.count - static_cast<double>(parameters);
+    return left.squares / freedom * variance_inflation(left.correlation(0.95));
+  }
+};
+
+Residuals residuals_of(const std::vector<Level>& levels, const OrderFit& best) {
+  Residuals residuals;
+  const Row& x = best.fit.x;
+  for (const Level& level : levels) {
+    if (!level.used) continue;
+    const Row row = best.design.row(level);
+    const double residual = level.value - row.dot(x);
+    residuals.with_wave += std::pow(residual + x(2) * row(2) + x(3) * row(3), 2);
+    residuals.left.add(residual);
+  }
+  return residuals;
+}
+
+DiscRipple ripple_of(const OrderFit& best, double variance) {
+  const double level = best.fit.x(0), sign = level > 0 ? 1 : -1;
+  const Eigen::Vector2d wave = best.fit.x.segment<2>(2);
+  const double size = wave.norm();
+  const Eigen::Matrix2d covariance = variance * best.fit.inverse.block<2, 2>(2, 2);
+  const Eigen::Vector2d along = wave / size, across(-along(1), along(0));
+  return {.amplitude = size / std::abs(level),
+          .order = best.order,
+          .phase = std::atan2(-sign * wave(1), sign * wave(0)),
+          .amplitude_std_error = std::sqrt(along.dot(covariance * along)) / std::abs(level),
+          .phase_std_error = std::sqrt(across.dot(covariance * across)) / size};
+}
+
+bool is_same_in_both_halves(const std::vector<Level>& levels, const OrderFit& best, double std_error) {
+  const std::complex<double> early = half_of(levels, best.design, best.fit.x, false);
+  const std::complex<double> late = half_of(levels, best.design, best.fit.x, true);
+  return std::abs(early - late) < 0.35 * best.fit.x.segment<2>(2).norm() + 6 * std_error;
+}
+
 }  // namespace
 
 RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, double omega,
@@ -188,73 +271,35 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
   std::vector<Level> levels = levels_of(velocity, rests, time, friction);
   estimate.plateaus = levels.size();
   if (levels.size() < least_rests || omega == 0) return estimate;
-  const double first = 0.5 * (levels.front().begin + levels.front().end);
-  const double last = 0.5 * (levels.back().begin + levels.back().end);
-  const double turns = std::abs(omega) * (last - first) / (2 * std::numbers::pi);
-  if (turns < least_revolutions) return estimate;
-  const double middle = 0.5 * (first + last), half = 0.5 * (last - first);
-  estimate.middle = middle;
+  const TimeSpan span = time_span_of(levels);
+  if (span.turns(omega) < least_revolutions) return estimate;
+  estimate.middle = span.middle;
 
   standardise(levels, &Level::mean);
   standardise(levels, &Level::last);
   const double creep = creep_of(levels);
-  Design design{0, middle, half, creep > 0};
-  LinearFit best;
-  int order = 0;
+  OrderFit best;
   for (int pass = 0; pass < 4; ++pass) {
-    best = {};
-    for (int n = 1; n <= largest_order; ++n) {
-      if (static_cast<double>(levels.size()) < least_per_period * n * turns) break;
-      design.w = n * omega;
-      const LinearFit fit = fit_order(levels, design);
-      if (fit.rss < best.rss) best = fit, order = n;
-    }
-    if (order == 0 || best.rss == HUGE_VAL) return estimate;
-    design.w = order * omega;
-    std::vector<double> deviation;
-    for (const Level& level : levels) deviation.push_back(std::abs(level.value - design.row(level).dot(best.x)));
-    const double limit = std::max(5 * kSigmaPerMad * median(deviation), 1e-12 * std::abs(best.x(0)));
-    for (std::size_t r = 0; r < levels.size(); ++r) levels[r].used = deviation[r] <= limit;
+    best = fit_best_order(levels, {0, span.middle, span.half, creep > 0}, omega, span.turns(omega));
+    if (best.order == 0) return estimate;
+    leave_out_far(levels, best);
   }
-  std::vector<double> residual;
-  double total = 0;
-  for (const Level& level : levels) {
-    if (!level.used) continue;
-    const Row row = design.row(level);
-    residual.push_back(level.value - row.dot(best.x));
-    total += std::pow(residual.back() + best.x(2) * row(2) + best.x(3) * row(3), 2);
-  }
-  const auto used = static_cast<double>(residual.size());
-  if (used < std::max(static_cast<double>(least_rests), 0.7 * static_cast<double>(levels.size()))) return estimate;
-  Remainder left;
-  for (std::size_t r = 0; r < residual.size(); ++r) left.add(residual[r]);
-  const double freedom = used - static_cast<double>(best.x.size());
-  const double variance = left.squares / freedom * variance_inflation(left.correlation(0.95));
-  const Eigen::Vector2d wave = best.x.segment<2>(2);
-  const double size = wave.norm();
-  estimate.level = best.x(0);
-  estimate.drift = best.x(1) / half;
-  estimate.plateaus = residual.size();
-  if (size == 0 || estimate.level == 0) return estimate;
-  const Eigen::Matrix2d covariance = variance * best.inverse.block<2, 2>(2, 2);
-  const Eigen::Vector2d along = wave / size, across(-along(1), along(0));
-  DiscRipple& ripple = estimate.ripple;
-  const double sign = estimate.level > 0 ? 1 : -1;
-  ripple.order = order;
-  ripple.amplitude = size / std::abs(estimate.level);
-  ripple.phase = std::atan2(-sign * wave(1), sign * wave(0));
-  ripple.amplitude_std_error = std::sqrt(along.dot(covariance * along)) / std::abs(estimate.level);
-  ripple.phase_std_error = std::sqrt(across.dot(covariance * across)) / size;
-  estimate.explained = total > 0 ? 1 - left.squares / total : 0;
+  const Residuals residuals = residuals_of(levels, best);
+  const double fewest = std::max(static_cast<double>(least_rests), 0.7 * static_cast<double>(levels.size()));
+  if (residuals.left.count < fewest) return estimate;
+  estimate.plateaus = static_cast<std::size_t>(residuals.left.count);
+  estimate.level = best.fit.x(0);
+  estimate.drift = best.fit.x(1) / span.half;
+  if (best.fit.x.segment<2>(2).isZero(0) || estimate.level == 0) return estimate;
+  estimate.ripple = ripple_of(best, residuals.variance(best.fit.x.size()));
+  estimate.explained = residuals.variance_explained();
 
-  const std::complex<double> early = half_of(levels, design, best.x, false);
-  const std::complex<double> late = half_of(levels, design, best.x, true);
-  const double error = ripple.amplitude_std_error * std::abs(estimate.level);
-  const bool same = std::abs(early - late) < 0.35 * size + 6 * error;
+  const DiscRipple& ripple = estimate.ripple;
   estimate.significant =
-      same && ripple.amplitude >= std::max(least_amplitude, creep) && ripple.amplitude <= largest_amplitude &&
+      is_same_in_both_halves(levels, best, ripple.amplitude_std_error * std::abs(estimate.level)) &&
+      ripple.amplitude >= std::max(least_amplitude, creep) && ripple.amplitude <= largest_amplitude &&
       ripple.amplitude > significance * ripple.amplitude_std_error && estimate.explained > least_explained;
-  if (estimate.significant) try_true_angle(levels, design, omega, left.squares, estimate);
+  if (estimate.significant) try_true_angle(levels, best.design, omega, residuals.left.squares, estimate);
   return estimate;
 }
 

@@ -5,27 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "growth_fit.hpp"
 #include "phases.hpp"
-#include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
 namespace {
-
-/// Samples around one break-away, in units of samples and m/s above the plateau, in the slip's direction.
-struct Window {
-  std::size_t begin = 0;        // sample of the first value
-  std::vector<double> v;        // above the local plateau
-  std::vector<double> squares;  // squares[i]: sum of v^2 before i, what is left over if nothing has happened yet
-  double t0 = 0;                // break-away, in samples from `begin`
-  double crossing = 0;          // where the velocity crosses the end of the fit
-};
-
-/// The growth common to all break-aways, time in samples: A, lambda, B.
-struct Growth {
-  double a = 0, lambda = 0, b = 0;
-};
 
 /// An onset with the level of its own stick: creep of the contact, a ripple of the disc or a wrong radius is no slip.
 struct Rise {
@@ -84,145 +70,95 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   return w;
 }
 
-// Residuals of a window and their derivatives, summed into normal equations. The exponential runs by recurrence.
-struct Sums {
-  double rss = 0, h = 0, g = 0;                     // t0
-  Eigen::Vector3d mixed = Eigen::Vector3d::Zero();  // t0 with (log A, log lambda, B)
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-};
-
-template <bool with_shared>
-Sums sums_of(const Window& w, const Growth& growth, double t0) {
-  Sums s;
-  const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(t0)));
-  s.rss = w.squares[std::min(first, w.v.size())];
-  const double factor = std::exp(growth.lambda);
-  double e = std::exp(growth.lambda * (static_cast<double>(first) - t0));
-  for (std::size_t i = first; i < w.v.size(); ++i, e *= factor) {
-    const double x = growth.lambda * (static_cast<double>(i) - t0);
-    const double shape = e - 1 - x;
-    const double r = w.v[i] - growth.a * shape - growth.b * (e - 1);
-    const double slope = growth.a * (e - 1) + growth.b * e;  // dv/dx
-    const double d = -growth.lambda * slope;                 // dv/dt0
-    s.rss += r * r;
-    s.h += d * d;
-    s.g += d * r;
-    if constexpr (with_shared) {
-      const Eigen::Vector3d j(growth.a * shape, x * slope, e - 1);
-      s.mixed += d * j;
-      s.shared += j * j.transpose();
-      s.gradient += j * r;
-    }
-  }
-  return s;
-}
-
-double fit_time(const Window& w, const Growth& growth, double start) {
-  double t0 = std::clamp(start, -2.0, w.crossing);
-  Sums here = sums_of<false>(w, growth, t0);
-  for (int k = 0; k < 20 && here.h > 0; ++k) {
-    double step = std::clamp(here.g / here.h, -5 / growth.lambda, 5 / growth.lambda);
-    bool better = false;
-    for (int half = 0; half < 6 && !better; ++half, step *= 0.5) {
-      const double next = std::clamp(t0 + step, -2.0, w.crossing);
-      const Sums there = sums_of<false>(w, growth, next);
-      if (there.rss < here.rss) t0 = next, here = there, better = true;
-    }
-    if (!better || std::abs(step) < 1e-3) break;
-  }
-  return t0;
-}
-
-struct PooledFit {
-  Growth growth;
-  double rss = std::numeric_limits<double>::infinity();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B), for unit variance
-  std::size_t samples = 0;
-};
-
-// Levenberg-Marquardt on the shared parameters, each window's t0 eliminated.
-PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
+/// What all break-aways of a record have in common.
+struct CommonGrowth {
+  double level = 0;  // where the fit of a rise ends [m/s]
+  double time = 0;   // in which the velocity grows e-fold [samples]
   PooledFit fit;
-  fit.growth = growth;
-  double damping = 1e-3;
-  const auto total = [&](const Growth& g, const std::vector<double>& t0) {
-    double rss = 0;
-    for (std::size_t i = 0; i < windows.size(); ++i) rss += sums_of<false>(windows[i], g, t0[i]).rss;
-    return rss;
-  };
-  std::vector<double> times;
-  for (const Window& w : windows) times.push_back(w.t0), fit.samples += w.v.size();
-  fit.rss = total(growth, times);
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    std::vector<Sums> all;
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      all.push_back(sums_of<true>(windows[i], fit.growth, times[i]));
-      const Sums& s = all.back();
-      hessian += s.shared;
-      gradient += s.gradient;
-      if (s.h <= 0) continue;
-      hessian -= s.mixed * s.mixed.transpose() / s.h;
-      gradient -= s.mixed * (s.g / s.h);
-    }
-    if (!with_jump) {
-      hessian.row(2).setZero(), hessian.col(2).setZero();
-      hessian(2, 2) = 1, gradient(2) = 0;
-    }
-    fit.information = hessian;
-    bool better = false;
-    double gain = 0;
-    for (int attempt = 0; attempt < 8 && !better; ++attempt) {
-      Eigen::Matrix3d damped = hessian;
-      damped.diagonal() *= 1 + damping;
-      const Eigen::Vector3d step = solve_symmetric(damped, gradient);
-      Growth next = fit.growth;
-      next.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
-      next.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
-      next.b = with_jump ? std::max(0.0, next.b + step(2)) : 0;
-      std::vector<double> moved = times;
-      for (std::size_t i = 0; i < windows.size(); ++i) {
-        const Sums& s = all[i];
-        if (s.h > 0) moved[i] += (s.g - s.mixed.dot(step)) / s.h;
-        moved[i] = std::clamp(moved[i], -2.0, windows[i].crossing);
-      }
-      const double rss = std::isfinite(step.sum()) ? total(next, moved) : HUGE_VAL;
-      if (rss < fit.rss) {
-        gain = fit.rss - rss;
-        fit.growth = next, fit.rss = rss, times = std::move(moved), better = true;
-        damping = std::max(1e-6, damping * 0.2);
-      } else {
-        damping = std::min(1e6, 8 * (damping + 1e-4));
-      }
-    }
-    if (!better || gain < 1e-7 * fit.rss) break;
-  }
-  for (std::size_t i = 0; i < windows.size(); ++i) windows[i].t0 = times[i];
-  return fit;
-}
-
-// Variance of what the growth leaves, and the factor by which its colour enlarges it: of the lag-one correlation before
-// break-away.
-struct Noise {
-  double variance = 0, inflation = 1;
-  double effective() const { return variance * inflation; }
+  double variance = 0;                                       // of a sample, enlarged where noise is coloured
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B)
 };
 
-Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
-  Remainder all;
-  for (const Window& w : windows) {
-    Remainder left;
-    for (std::size_t i = 0; i < w.v.size(); ++i) {
-      const double t = static_cast<double>(i) - w.t0;
-      const double x = t > 0 ? growth.lambda * t : 0;
-      left.add(w.v[i] - growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x));
-    }
-    all += left;
+// Up to 96 rises, evenly picked.
+std::vector<Window> pool_of(const Motion& motion, const std::vector<Rise>& rises, double level, double growth) {
+  constexpr std::size_t most_pooled = 96;
+  const std::size_t stride = (rises.size() + most_pooled - 1) / most_pooled;
+  std::vector<Window> pool;
+  for (std::size_t i = 0; i < rises.size(); i += stride) {
+    pool.push_back(window_of(motion, rises[i], level, growth));
+    pool.back().t0 = std::max(0.0, pool.back().crossing - 2 * growth);
   }
-  if (all.squares <= 0) return {};
-  return {all.squares / all.count, variance_inflation(all.correlation(0.98))};
+  return pool;
+}
+
+CommonGrowth fit_common_growth(const Motion& motion, const std::vector<Rise>& rises, double level) {
+  CommonGrowth common{.level = level, .time = growth_time(motion, rises, level)};
+  const Growth start{level / 4.4, 1 / common.time, 0};  // v reaches the end of the fit at x = 2
+  std::vector<Window> pool = pool_of(motion, rises, level, common.time);
+  std::vector<Window> with_jump_pool = pool;
+  PooledFit& fit = common.fit;
+  fit = fit_growth(pool, start, false);
+  const Growth jump_start{fit.growth.a, fit.growth.lambda, 0.1 * level};
+  const PooledFit jump = fit_growth(with_jump_pool, jump_start, true);
+  Noise colour = noise_of(pool, fit.growth);
+  // A jump must earn its place against the noise, coloured as it may be.
+  if (jump.rss < fit.rss && fit.rss - jump.rss > 40 * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
+      jump.rss < 0.9 * fit.rss) {
+    fit = jump;
+    colour = noise_of(with_jump_pool, fit.growth);
+  }
+  // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
+  // factor of three on the rates, a jump of the size of the window.
+  common.variance = std::max(colour.effective(), 1e-12 * level * level);
+  const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
+  const Eigen::Matrix3d information = fit.information / common.variance + Eigen::Matrix3d(plausible.asDiagonal());
+  common.covariance = information.inverse();
+  if (fit.growth.b == 0) common.covariance.row(2).setZero(), common.covariance.col(2).setZero();
+  return common;
+}
+
+// Each rise with its own break-away.
+std::vector<Window> locate_each(const Motion& motion, const std::vector<Rise>& rises, const CommonGrowth& common) {
+  const Growth& growth = common.fit.growth;
+  std::vector<Window> windows;
+  for (const Rise& rise : rises) {
+    Window w = window_of(motion, rise, common.level, common.time);
+    w.t0 = fit_time(w, growth, w.crossing - std::log1p(common.level / (growth.a + growth.b)) / growth.lambda);
+    windows.push_back(std::move(w));
+  }
+  return windows;
+}
+
+// A contact that creeps has no sharp onset: what leads up to the slip belongs to the stick.
+bool contact_creeps(const std::vector<Rise>& rises, const std::vector<Window>& windows) {
+  std::vector<double> gradualness;
+  for (std::size_t k = 0; k < rises.size(); ++k) {
+    const Window& w = windows[k];
+    const double crossing = static_cast<double>(w.begin) + w.crossing;
+    gradualness.push_back((w.crossing - w.t0) / std::max(1.0, static_cast<double>(rises[k].onset.slip_end) - crossing));
+  }
+  return median(std::move(gradualness)) > 0.3;
+}
+
+/// Break-away in samples from the begin of a window.
+struct Located {
+  double t0 = 0, error = 0;
+};
+
+Located settle_break_away(const Window& w, const CommonGrowth& common, bool creeps) {
+  const double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
+  if (creeps) return {w.crossing, std::min(error, common.time)};
+  const Sums s = sums_of(w, common.fit.growth, w.t0);
+  if (w.t0 < w.crossing - 0.5 && s.h > 0) {
+    const Eigen::Vector3d lever = s.mixed / s.h;
+    const double own = common.variance / s.h + std::max(0.0, lever.dot(common.covariance * lever));
+    return {w.t0, std::min(error, std::sqrt(own + 1.0 / 144))};  // at best a fraction of a sample
+  }
+  // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
+  std::size_t i = w.v.size() - 1;
+  while (i > 0 && w.v[i] > 0.25 * common.level) --i;
+  const auto t0 = static_cast<double>(i);
+  return {t0, std::max(1.0, w.crossing - t0)};
 }
 
 }  // namespace
@@ -234,68 +170,15 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   const double level = std::max({0.01 * peak, std::min(25 * noise, 0.03 * peak), std::min(8 * noise, 0.06 * peak)});
   std::vector<Rise> rises;
   for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
-  const double growth = growth_time(motion, rises, level);
-  constexpr std::size_t most_pooled = 96;
-  const std::size_t stride = (rises.size() + most_pooled - 1) / most_pooled;
-  const Growth start{level / 4.4, 1 / growth, 0};  // v reaches the end of the fit at x = 2
-  std::vector<Window> pool;
-  for (std::size_t i = 0; i < rises.size(); i += stride) {
-    pool.push_back(window_of(motion, rises[i], level, growth));
-    pool.back().t0 = std::max(0.0, pool.back().crossing - 2 * growth);
-  }
-  std::vector<Window> with_jump_pool = pool;
-  PooledFit fit = fit_growth(pool, start, false);
-  const Growth jump_start{fit.growth.a, fit.growth.lambda, 0.1 * level};
-  PooledFit jump = fit_growth(with_jump_pool, jump_start, true);
-  Noise colour = noise_of(pool, fit.growth);
-  // A jump must earn its place against the noise, coloured as it may be.
-  if (jump.rss < fit.rss && fit.rss - jump.rss > 40 * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
-      jump.rss < 0.9 * fit.rss) {
-    fit = jump;
-    colour = noise_of(with_jump_pool, fit.growth);
-  }
-  // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
-  // factor of three on the rates, a jump of the size of the window.
-  const double variance = std::max(colour.effective(), 1e-12 * level * level);
-  const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
-  const Eigen::Matrix3d information = fit.information / variance + Eigen::Matrix3d(plausible.asDiagonal());
-  Eigen::Matrix3d covariance = information.inverse();
-  if (fit.growth.b == 0) covariance.row(2).setZero(), covariance.col(2).setZero();
-  std::vector<Window> windows;
-  std::vector<double> gradualness;
-  for (const Rise& rise : rises) {
-    Window w = window_of(motion, rise, level, growth);
-    w.t0 = fit_time(w, fit.growth, w.crossing - std::log1p(level / (fit.growth.a + fit.growth.b)) / fit.growth.lambda);
-    const double crossing = static_cast<double>(w.begin) + w.crossing;
-    gradualness.push_back((w.crossing - w.t0) / std::max(1.0, static_cast<double>(rise.onset.slip_end) - crossing));
-    windows.push_back(std::move(w));
-  }
-  // A contact that creeps has no sharp onset: what leads up to the slip belongs to the stick.
-  const bool creeps = median(std::move(gradualness)) > 0.3;
+  const CommonGrowth common = fit_common_growth(motion, rises, level);
+  const std::vector<Window> windows = locate_each(motion, rises, common);
+  const bool creeps = contact_creeps(rises, windows);
   for (std::size_t k = 0; k < rises.size(); ++k) {
-    const Rise& rise = rises[k];
-    Window& w = windows[k];
-    const Sums s = sums_of<true>(w, fit.growth, w.t0);
-    double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
-    if (creeps) {
-      w.t0 = w.crossing;
-      error = std::min(error, growth);
-    } else if (w.t0 < w.crossing - 0.5 && s.h > 0) {
-      const Eigen::Vector3d lever = s.mixed / s.h;
-      const double own = variance / s.h + std::max(0.0, lever.dot(covariance * lever));
-      error = std::min(error, std::sqrt(own + 1.0 / 144));  // at best a fraction of a sample
-    } else {
-      // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the
-      // stick.
-      std::size_t i = w.v.size() - 1;
-      while (i > 0 && w.v[i] > 0.25 * level) --i;
-      w.t0 = static_cast<double>(i);
-      error = std::max(1.0, w.crossing - w.t0);
-    }
-    const double index = std::max(0.0, static_cast<double>(w.begin) + w.t0);
+    const Located at = settle_break_away(windows[k], common, creeps);
+    const double index = std::max(0.0, static_cast<double>(windows[k].begin) + at.t0);
     const std::size_t whole = std::min(static_cast<std::size_t>(index), motion.size() - 1);
     const double time = motion.time[whole] + (index - static_cast<double>(whole)) * motion.step;
-    result.push_back({std::max(time, motion.time[rise.onset.stick_begin]), motion.step * error});
+    result.push_back({std::max(time, motion.time[rises[k].onset.stick_begin]), motion.step * at.error});
   }
   return result;
 }

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace tribofit::segmentation {
+
+/// Samples around one break-away, in units of samples and m/s above the plateau, in the slip's direction.
+struct Window {
+  std::size_t begin = 0;        // sample of the first value
+  std::vector<double> v;        // above the local plateau
+  std::vector<double> squares;  // squares[i]: sum of v^2 before i, what is left over if nothing has happened yet
+  double t0 = 0;                // break-away, in samples from `begin`
+  double crossing = 0;          // where the velocity crosses the end of the fit
+};
+
+/// The growth common to all break-aways, time in samples: A, lambda, B.
+struct Growth {
+  double a = 0, lambda = 0, b = 0;
+};
+
+/// Residuals of a window and their derivatives, summed into normal equations.
+struct Sums {
+  double rss = 0, h = 0, g = 0;                     // t0
+  Eigen::Vector3d mixed = Eigen::Vector3d::Zero();  // t0 with (log A, log lambda, B)
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+/// All of them, at t0.
+Sums sums_of(const Window& window, const Growth& growth, double t0);
+
+/// t0 of a window by Gauss-Newton from `start`.
+double fit_time(const Window& window, const Growth& growth, double start);
+
+struct PooledFit {
+  Growth growth;
+  double rss = std::numeric_limits<double>::infinity();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B), for unit variance
+  std::size_t samples = 0;
+};
+
+/// Levenberg-Marquardt on the shared parameters, each window's t0 eliminated; sets t0 of the windows.
+PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump);
+
+/// Variance of what the growth leaves, and the factor by which its colour enlarges it: of the lag-one correlation
+/// before break-away.
+struct Noise {
+  double variance = 0, inflation = 1;
+  double effective() const { return variance * inflation; }
+};
+
+Noise noise_of(const std::vector<Window>& windows, const Growth& growth);
+
+}  // namespace tribofit::segmentation
