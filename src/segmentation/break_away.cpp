@@ -92,7 +92,9 @@ std::vector<Window> pool_of(const Motion& motion, const std::vector<Rise>& rises
 }
 
 CommonGrowth fit_common_growth(const Motion& motion, const std::vector<Rise>& rises, double level) {
-  CommonGrowth common{.level = level, .time = growth_time(motion, rises, level)};
+  CommonGrowth common;
+  common.level = level;
+  common.time = growth_time(motion, rises, level);
   const Growth start{level / 4.4, 1 / common.time, 0};  // v reaches the end of the fit at x = 2
   std::vector<Window> pool = pool_of(motion, rises, level, common.time);
   std::vector<Window> with_jump_pool = pool;
