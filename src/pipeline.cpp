@@ -13,6 +13,7 @@
 #include "diagnosis/user_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
+#include "tribofit/kinematics/clock_offset.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -320,7 +321,9 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
 
 std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options) {
   if (input.trace) return input.trace;
-  return std::make_shared<const Trace>(read_trace(input.path, with_declared(input.read, options.instruments)));
+  ReadOptions read = with_declared(input.read, options.instruments);
+  read.clock_offset = estimate_clock_offset;
+  return std::make_shared<const Trace>(read_trace(input.path, read));
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {

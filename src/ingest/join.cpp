@@ -62,18 +62,19 @@ void crop(FileRecord& run, std::size_t begin, std::size_t end) {
   for (double& t : time) t -= start;
 }
 
-double find_offset(FileRecord& run, const FileRecord& other) {
+double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFinder& find) {
   const double as_written = other.clock_start - run.clock_start;
   const bool overlap = std::abs(as_written) < run[Channel::time].back();
   ClockOffset found;
-  if (run.has_friction() && other.has_velocity()) {
-    found = estimate_clock_offset(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
-  } else if (run.has_velocity() && other.has_friction()) {
-    found = estimate_clock_offset(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
+  if (find && run.has_friction() && other.has_velocity()) {
+    found = find(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
+  } else if (find && run.has_velocity() && other.has_friction()) {
+    found = find(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
     found.offset = -found.offset;
   }
   if (found.events < 3) {
-    run.warnings.push_back(std::string("the two files show too few break-aways to compare their clocks; ") +
+    run.warnings.push_back(std::string(find ? "the two files show too few break-aways to compare their clocks; "
+                                            : "the clocks of the two files were not compared; ") +
                            (overlap ? "the times were taken as written" : "both were taken to start together"));
     return overlap ? as_written : 0;
   }
@@ -122,7 +123,7 @@ void add_channels(FileRecord& run, const FileRecord& other, double offset) {
 
 }  // namespace
 
-void join(FileRecord& run, FileRecord other) {
+void join(FileRecord& run, FileRecord other, const ClockOffsetFinder& find) {
   if (!run.has_friction() && other.has_friction()) {
     std::swap(run, other);
     run.notes.push_back("the friction is in the second file, whose time was kept");
@@ -135,7 +136,7 @@ void join(FileRecord& run, FileRecord other) {
   }
   for (const std::string& note : other.notes) run.notes.push_back("second file: " + note);
   for (const std::string& warning : other.warnings) run.warnings.push_back("second file: " + warning);
-  add_channels(run, other, find_offset(run, other));
+  add_channels(run, other, find_offset(run, other, find));
   run.checksum = xxh64(other.checksum, run.checksum);
 }
 

@@ -45,7 +45,7 @@ Trace read_trace(const std::string& path, const ReadOptions& options, std::span<
   if (!options.second_file.empty()) {
     FileRecord other = read_recording(options.second_file, options, readers);
     check_requests(run, other, options);
-    join(run, std::move(other));
+    join(run, std::move(other), options.clock_offset);
   }
   return assemble(std::move(run), options);
 }

@@ -1,11 +1,10 @@
-#include "join.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <random>
 
 #include "temp_files.hpp"
+#include "tribofit/kinematics/clock_offset.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate.hpp"
 
@@ -45,6 +44,12 @@ struct StickSlip {
 
 class Join : public TempFiles {
  protected:
+  static ReadOptions with(const std::string& second_file) {
+    ReadOptions options;
+    options.second_file = second_file;
+    options.clock_offset = estimate_clock_offset;
+    return options;
+  }
   /// Two files of one run; the second clock shows `offset` less than the first.
   std::pair<std::string, std::string> record(double offset, double friction_rate, double velocity_rate) const {
     const double duration = 20;
@@ -63,8 +68,7 @@ class Join : public TempFiles {
 TEST_F(Join, TheOffsetOfTheClocksIsFoundFromBreakAway) {
   for (const double offset : {0.0, 1.2345, -0.8}) {
     const auto [friction, velocity] = record(offset, 1000, 2500);
-    ReadOptions options;
-    options.second_file = velocity;
+    ReadOptions options = with(velocity);
     const Trace trace = read_trace(friction, options);
     ASSERT_FALSE(trace.velocity.empty());
     EXPECT_EQ(trace.velocity.size(), trace.time.size());
@@ -106,8 +110,7 @@ TEST_F(Join, TheOffsetIsWithinItsUncertaintyOfTheTruth) {
 
 TEST_F(Join, TheFrictionMayBeInTheSecondFile) {
   const auto [friction, velocity] = record(0.5, 1000, 1000);
-  ReadOptions options;
-  options.second_file = friction;
+  ReadOptions options = with(friction);
   const Trace trace = read_trace(velocity, options);
   EXPECT_GT(trace.size(), 10000U);
   EXPECT_THAT(trace.notes, Contains(HasSubstr("the friction is in the second file")));
@@ -117,19 +120,25 @@ TEST_F(Join, WithoutBreakAwayTheTimesAreTakenAsWritten) {
   std::string friction = "time_s,mu\n", velocity = "time_s,v_r_mm_s\n";
   for (int i = 0; i < 100; ++i) friction += fmt::format("{},0.3\n", i);
   for (int i = 0; i < 50; ++i) velocity += fmt::format("{},{}\n", 2 * i + 10, i);
-  ReadOptions options;
-  options.second_file = write(velocity, "v.csv");
+  ReadOptions options = with(write(velocity, "v.csv"));
   const Trace trace = read_trace(write(friction, "mu.csv"), options);
   EXPECT_THAT(trace.warnings, Contains(HasSubstr("the times were taken as written")));
   ASSERT_EQ(trace.size(), 90U);
   EXPECT_NEAR(trace.velocity[1], 0.5e-3, 1e-12) << "halfway between two samples of the slower instrument";
 }
 
+TEST_F(Join, ClocksThatNobodyComparesAreTakenAsWritten) {
+  const auto [friction, velocity] = record(0, 500, 500);
+  ReadOptions options = with(velocity);
+  options.clock_offset = nullptr;
+  EXPECT_THAT(read_trace(friction, options).warnings,
+              Contains(HasSubstr("were not compared; the times were taken as written")));
+}
+
 TEST_F(Join, FilesThatDoNotFitAreRefused) {
   const std::string both = write("time_s,mu,v_b_mm_s\n0,1,1\n1,1,1\n2,1,1\n", "both.csv");
   const std::string other = write("time_s,v_b_mm_s\n0,1\n1,1\n2,1\n", "other.csv");
-  ReadOptions options;
-  options.second_file = other;
+  ReadOptions options = with(other);
   try {
     read_trace(both, options);
     FAIL();
@@ -141,8 +150,7 @@ TEST_F(Join, FilesThatDoNotFitAreRefused) {
 
 TEST_F(Join, ColumnsMayBeNamedInEitherFile) {
   const auto [friction, velocity] = record(0.2, 500, 500);
-  ReadOptions options;
-  options.second_file = velocity;
+  ReadOptions options = with(velocity);
   options.columns = {{"mu", "COF"}, {"v_b", "v_b [mm/s]"}};
   EXPECT_NO_THROW(read_trace(friction, options));
   options.columns = {{"mu", "COF"}, {"v_b", "absent"}};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,6 +10,19 @@
 #include "tribofit/ingest/trace.hpp"
 
 namespace tribofit {
+
+/// How far the clock of `velocity` lags: its event at t happened at t + offset on the clock of friction.
+struct ClockOffset {
+  double offset = 0;       ///< [s]
+  double uncertainty = 0;  ///< [s], from the events' scatter
+  std::size_t events = 0;  ///< break-aways that were matched; fewer than 3: no offset was found
+  double ambiguity = 0;    ///< support of the second best offset over that of the best
+};
+/// Finds the offset between the clocks of a file with friction and one with velocity; times in s from the start of
+/// each.
+using ClockOffsetFinder =
+    std::function<ClockOffset(const std::vector<double>& friction_time, const std::vector<double>& friction,
+                              const std::vector<double>& velocity_time, const std::vector<double>& velocity)>;
 
 /// How to read a trace; everything not said is found out from the file.
 struct ReadOptions {
@@ -20,8 +35,11 @@ struct ReadOptions {
   Conditions conditions;       ///< as given by the user or the manifest; beats the file
   /// One friction radius [m] per step, in the order of the steps, for files whose radius changes.
   std::vector<double> step_radii;
-  /// A second file holding the other instrument's channels; joined on time, clock offset estimated from break-away.
+  /// A second file holding the other instrument's channels; joined on time.
   std::string second_file;
+  /// Finds the offset between the clocks of the two files: estimate_clock_offset (kinematics/clock_offset.hpp). Empty:
+  /// the times are taken as written.
+  ClockOffsetFinder clock_offset;
   /// Further files that continue the run, in order.
   std::vector<std::string> continued_in;
   int threads = 0;  ///< 0: as many as there are; the result does not depend on it

@@ -1,3 +1,5 @@
+#include "tribofit/kinematics/clock_offset.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -6,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "clock.hpp"
-#include "join.hpp"
+#include "ingest/clock.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
