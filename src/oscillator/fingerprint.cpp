@@ -1,5 +1,5 @@
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/ingest/units.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -18,7 +18,7 @@ constexpr std::array<Row, 4> kRows = {{{9, 0.521, 0.388, 0.03237, 0.05265, 11.0,
                                        {15, 0.509, 0.318, 0.05214, 0.09533, 16.2, 0.85},
                                        {18, 0.500, 0.355, 0.05377, 0.10580, 12.3, 0.93}}};
 constexpr double kDampingRatio = 0.02;
-constexpr double kLoad = 50;                              // N
+constexpr double kLoad = 50;                                       // N
 constexpr double kPublishedSpeed = 4 * 2 * std::numbers::pi / 60;  // 4 rpm in rad/s
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -11,12 +10,6 @@
 #include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
-
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
                        const SimulationOptions& options)

@@ -21,6 +21,7 @@ class Simulation {
   SimulatedMotion run();
 
  private:
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   struct Stepper;
   struct DeleteStepper {
     void operator()(Stepper* stepper) const;
@@ -78,7 +79,7 @@ class Simulation {
   // Where the law acts in stick: from the last reversal.
   double reversal_time_ = 0, slid_at_reversal_ = 0, creep_end_ = 0, friction_at_creep_end_ = 0, least_slip_ = 0;
   /// When |v_r| fell below half the disc's speed, where nothing but that ends a slip.
-  double slow_again_ = std::numeric_limits<double>::quiet_NaN();
+  double slow_again_ = kNaN;
 };
 
 }  // namespace tribofit

@@ -12,10 +12,6 @@ namespace tribofit {
 
 namespace {
 
-void require(bool good, const std::string& problem, const std::string& advice) {
-  if (!good) throw InputError(problem, advice);
-}
-
 void check_friction(const FrictionModel& model, std::span<const double> p) {
   require(p.size() == model.parameters().size(),
           "the model has " + std::to_string(model.parameters().size()) + " parameters, not " + std::to_string(p.size()),
@@ -48,6 +44,10 @@ bool not_negative(double x) {
 }
 
 }  // namespace
+
+void require(bool good, const std::string& problem, const std::string& advice) {
+  if (!good) throw InputError(problem, advice);
+}
 
 void check_rig_and_drive(const Rig& rig, const Drive& drive) {
   require(positive(rig.mass), "the mass of the block is not positive", "give the moving mass in kg");

@@ -2,10 +2,14 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "tribofit/oscillator/simulate.hpp"
 
 namespace tribofit {
+
+/// Throws InputError unless `good`.
+void require(bool good, const std::string& problem, const std::string& advice);
 
 /// Each throws InputError for what cannot be, and says what to do.
 void check_rig_and_drive(const Rig& rig, const Drive& drive);

@@ -2,7 +2,6 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "find_zero.hpp"
@@ -12,12 +11,6 @@
 // Slip: steps with error control that end where v_r is zero; and the slips of a law that acts in stick.
 
 namespace tribofit {
-
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 struct Simulation::Stepper {
   boost::numeric::odeint::runge_kutta_dopri5<BlockState> method;

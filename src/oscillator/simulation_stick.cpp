@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "find_zero.hpp"
@@ -90,7 +89,7 @@ void Simulation::break_away() {
   flow_.begin(time_, state_, direction, stick_time, slid_);
   step_ = 1e-3 * most_step_;
   motion_.slips.push_back({.break_away_time = time_,
-                           .restick_time = std::numeric_limits<double>::quiet_NaN(),
+                           .restick_time = kNaN,
                            .stick_time = stick_time,
                            .direction = direction,
                            .mu_s_offset = scatter_.value(),

@@ -21,10 +21,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-void require(bool good, const std::string& problem, const std::string& advice) {
-  if (!good) throw InputError(problem, advice);
-}
-
 void check(const SmoothedLaw& law, const SmoothedOptions& options) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   const auto not_negative = [](double x) { return std::isfinite(x) && x >= 0; };
