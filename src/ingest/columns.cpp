@@ -252,7 +252,7 @@ class Finder {
   [[noreturn]] void refuse_unit(const Column& used, const std::string& text) const {
     const InputLocation where = heading_of_unit(used);
     const std::string advice =
-        fmt::format("say the unit of {0} with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
+        fmt::format("state the unit of {0} with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
     const auto unit = find_unit(text);
     if (!unit) {
       const std::string nearest = suggest_unit(text);
@@ -261,7 +261,7 @@ class Finder {
     }
     if (unit->quantity == Quantity::voltage) {
       throw InputError("is in volts",
-                       fmt::format("say the sensitivity with --units {0}=\"5 {1}/V\"", to_string(used.channel),
+                       fmt::format("state the sensitivity with --units {0}=\"5 {1}/V\"", to_string(used.channel),
                                    usual_unit(used.channel)),
                        where);
     }
@@ -290,7 +290,7 @@ class Finder {
       return true;
     }
     const std::string advice =
-        fmt::format("say it with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
+        fmt::format("state it with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
     const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity_is_taken());
     if (needed || requests_[index_of(used.channel)]) {
       throw InputError("has no unit", advice, table_.heading(used.index));

@@ -228,6 +228,25 @@ TEST_F(Columns_, AStatedSpeedBeatsAColumnThatContradictsIt) {
   EXPECT_TRUE(agrees.warnings.empty());
 }
 
+TEST_F(Columns_, ColumnsBeyondTheHeaderAreNamedByNumber) {
+  ReadOptions options;
+  options.columns = {{"v_b", "#3:mm/s"}};
+  const std::string file = write("time_s,mu\n0,0.3,1\n1,0.3,2\n2,0.3,3\n");
+  EXPECT_DOUBLE_EQ(read_trace(file, options).velocity[2], 3e-3);
+  options.columns = {{"v_b", "#4:mm/s"}};
+  expect_error(file, options, "no column #4 for v_b", "#1 to #3", 1);
+}
+
+TEST_F(Columns_, AColumnMayHoldTwoChannels) {
+  ReadOptions options;
+  options.columns = {{"force", "F_N"}, {"load", "F_N"}, {"v_r", "v_r [m/s]"}, {"temperature", "v_r [m/s]:degC"}};
+  const Trace trace = read("time_s,F_N,v_r [m/s]", options);
+  EXPECT_DOUBLE_EQ(trace.friction[1], 1);
+  EXPECT_DOUBLE_EQ(trace.load[1], 2.1);
+  EXPECT_DOUBLE_EQ(trace.velocity[1], 3.1);
+  EXPECT_DOUBLE_EQ(trace.temperature[1], 3.1);
+}
+
 TEST_F(Columns_, ACoefficientAboveFiveIsDoubted) {
   const std::string header = "time_s,mu,v_b_mm_s\n";
   EXPECT_THAT(read_trace(write(header + "0,15,1\n1,17.5,2\n2,16,1\n")).warnings,

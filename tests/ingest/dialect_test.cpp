@@ -130,6 +130,22 @@ TEST_F(Dialect_, WithoutATimeColumnTheRateGivesTheTime) {
   expect_error(file, options, "rate must be positive", "--rate");
 }
 
+TEST_F(Dialect_, ThePreambleMayStateTheRate) {
+  const std::string rows = "mu,v_b_mm_s,load_N\n0.1,1,50\n0.2,2,50\n0.3,3,50\n";
+  for (const auto& [preamble, interval] : {std::pair{"Axis1\nSampling time interval(ms),0.5\n", 5e-4},
+                                           {"# Sampling rate: 2 kHz\n", 5e-4},
+                                           {"\"Abtastrate [Hz]\";2000;\n", 5e-4},
+                                           {"Interval,0.0005,Interval,0.0005\n", 5e-4},
+                                           {"fs = 2000\n", 5e-4}}) {
+    const Trace trace = read_trace(write(preamble + rows));
+    EXPECT_NEAR(trace.time[2], 2 * interval, 1e-12) << preamble;
+    EXPECT_THAT(trace.notes, Contains(HasSubstr("of the file"))) << preamble;
+  }
+  EXPECT_THROW(read_trace(write("Sampling rate: high\n" + rows)), InputError);
+  const Trace timed = read_trace(write("fs = 2000\ntime_s,mu,v_b_mm_s\n0,0.1,1\n1,0.2,2\n2,0.3,3\n"));
+  EXPECT_NEAR(timed.rate(), 1, 1e-12) << "a time column comes first";
+}
+
 TEST(Encoding, GuessesFromPairsOfHighBytes) {
   EXPECT_EQ(guess_encoding("plain"), Encoding::utf8);
   EXPECT_EQ(guess_encoding("23 \xC2\xB0"

@@ -24,7 +24,7 @@ using ClockOffsetFinder =
     std::function<ClockOffset(const std::vector<double>& friction_time, const std::vector<double>& friction,
                               const std::vector<double>& velocity_time, const std::vector<double>& velocity)>;
 
-/// How to read a trace; everything not said is found out from the file.
+/// How to read a trace; what is not stated is taken from the file.
 struct ReadOptions {
   /// Channel (time, mu, v_b, v_r, force, torque, load, speed, angle, temperature, step) -> column as the file
   /// names it, optionally with ":UNIT" ("Velocity:mm/s"). Columns are also named by number ("#3").
@@ -45,13 +45,13 @@ struct ReadOptions {
   int threads = 0;  ///< 0: as many as there are; the result does not depend on it
 };
 
-/// Reads one run from the file of an instrument, of any format that src/ingest/reader.hpp lists; the content tells
-/// which.
+/// Reads one run from a file, with the reader that recognises its content (src/ingest/reader.hpp lists them).
 ///
-/// CSV: comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the
-/// header or in a row of their own; Latin-1 and GBK headers; trailing separators; text rows between data; a clock that
-/// restarts at each step. Friction as mu, as tangential force with a load channel or a nominal load, or as torque with
-/// a radius. Throws InputError with file, line, column, what is wrong and what to do. Cost: linear in bytes.
+/// CSV: comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the header or in
+/// a row of their own; Latin-1 and GBK headers; trailing separators; text rows between data.
+/// Any format: a clock that restarts at each step; without a time column the rate of the user, else that of the file;
+/// friction as mu, as tangential force with a load channel or a nominal load, or as torque with a radius.
+/// Throws InputError with file, line (or value), column, what is wrong and what to do. Cost: linear in bytes.
 Trace read_trace(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace tribofit
