@@ -118,6 +118,8 @@ TEST_F(Dialect_, ALastLineThatIsCutOffIsDroppedAndSaid) {
   }
   const Trace whole = read_trace(write("time_s,mu,v_b_mm_s\n0,0.411,6.28\n1,0.412,6.27\n2,0.413,6.26"));
   EXPECT_EQ(whole.size(), 3U);
+  const std::string more = write("time_s,mu,v_b_mm_s\n0,0.411,6.28\n1,0.412,6.27\n2,0.413,6.26\n3,0.413,6.26,7,8");
+  expect_error(more, {}, "the row has 5 cells where the file has 3 columns", "remove the extra", 5);
 }
 
 TEST_F(Dialect_, WithoutATimeColumnTheRateGivesTheTime) {

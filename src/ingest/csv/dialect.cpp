@@ -237,7 +237,7 @@ std::vector<RawFact> find_facts(const std::vector<Line>& lines, Encoding encodin
 
 /// Sets data_end before a last line that lacks its line end and is cut off.
 ///
-/// Only its number of cells and the length of its last cell can tell: a cell with fewer characters than the one above
+/// Only its number of cells and the length of its last cell show that: a cell with fewer characters than the one above
 /// may be a number cut in two, and one sample is a small price for not reading 0.4 where 0.4123 was meant.
 void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dialect) {
   const std::uint64_t size = file.size();
@@ -256,7 +256,8 @@ void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dial
   const auto above = split_cells(view.substr(from, end - from), dialect.separator);
   const bool numbers = take_census(view.substr(from, end - from), dialect.separator, dialect.decimal).mostly_numbers();
   if (!numbers || above.size() < columns) return;
-  const bool whole = cells.size() >= above.size() && cells.back().size() >= above[cells.size() - 1].size();
+  const bool whole =
+      cells.size() > above.size() || (cells.size() == above.size() && cells.back().size() >= above.back().size());
   if (whole) return;
   dialect.data_end = begin;
   dialect.notes.push_back(fmt::format("the last line is cut off (no line end) and was dropped: \"{}\"",
