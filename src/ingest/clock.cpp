@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "column_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -174,10 +173,6 @@ std::size_t rows_of(const FileRecord& recording) {
   std::size_t rows = 0;
   for (const auto& channel : recording.channels) rows = std::max(rows, channel.size());
   return rows;
-}
-
-bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// A fact that states the sampling, as a rate or as an interval.

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <initializer_list>
 #include <optional>
 #include <string_view>
 
@@ -12,13 +10,6 @@
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
-namespace {
-
-bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-}  // namespace
 
 Role role_of(const ColumnName& name) {
   if (is_one_of(name.base, {"file", "filename", "trace", "path", "datei"})) return Role::file;

@@ -5,14 +5,6 @@
 #include "tribofit/ingest/nearest_name.hpp"
 
 namespace tribofit {
-namespace {
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-}  // namespace
-
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string nearest = likely_name(word, candidates);
   return nearest.empty() ? std::string() : " (did you mean " + nearest + "?)";
@@ -32,7 +24,9 @@ std::string_view trimmed(std::string_view text) {
 
 std::string lower_case(std::string_view text) {
   std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), lower);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
   return result;
 }
 
@@ -56,6 +50,10 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
 
 std::vector<std::string> split(std::string_view text, char separator) {
   return split(text, std::string_view(&separator, 1));
+}
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 std::string listed(const std::vector<std::string>& names) {

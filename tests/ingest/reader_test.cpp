@@ -9,7 +9,7 @@
 
 #include "binary_reader.hpp"
 #include "temp_files.hpp"
-#include "tribofit/ingest/units.hpp"
+#include "tribofit/kinematics/clock_offset.hpp"
 
 namespace tribofit {
 namespace {
@@ -228,6 +228,7 @@ TEST_F(Readers, TwoInstrumentsAreJoinedByTheirBreakAways) {
   velocity.columns = {column("Velocity", "mm/s", {truth.velocity.begin() + skipped, truth.velocity.end()})};
   ReadOptions options;
   options.second_file = write_binary(velocity, "velocity.bin");
+  options.clock_offset = estimate_clock_offset;
   const Trace trace = read(write_binary(friction, "friction.bin"), options);
   EXPECT_THAT(trace.notes, Contains(HasSubstr("clock offset from")));
   ASSERT_GT(trace.size(), truth.velocity.size() - skipped - 10);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,8 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
 /// The parts of `text` between separators; as many as there are separators, and one more.
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 std::vector<std::string> split(std::string_view text, char separator);
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names);
 
 /// "a, b, c".
 std::string listed(const std::vector<std::string>& names);
