@@ -370,7 +370,7 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
     best.push_back(trace.fits[trace.best]);
     out.rigs.push_back(rig_beside(best.back(), trace.motion, trace.segmentation, options.instruments));
     if (out.rigs.back().determined) return;
-    trace.warnings.push_back("no rig can be had: " + out.rigs.back().reason);
+    trace.warnings.push_back("the rig could not be identified: " + out.rigs.back().reason);
     trace.analysed = false;
   };
   options.effects.clear();

@@ -39,7 +39,7 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
   if (!s.quiet && s.json != "-") print(render_rig(result, terminal_options(s, arguments_for(input, arguments))));
   if (result.rig.determined) return kDone;
-  print_error(trace.path + ": no rig can be had: " + result.rig.reason);
+  print_error(trace.path + ": the rig could not be identified: " + result.rig.reason);
   return kFailed;
 }
 

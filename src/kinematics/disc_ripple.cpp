@@ -24,13 +24,13 @@ RippleEstimate find_ripple(Trace& trace, const PlateauSearch& search, Disc& disc
   if (!search.sticks || !disc.varying.empty() || trace.velocity_kind != VelocityKind::block) return {};
   const double omega = steady_speed(trace);
   if (!(std::abs(omega) > 0)) return {};
-  RippleEstimate ripple = estimate_ripple(search.blocks, search.rests, omega, trace.time, trace.friction);
+  RippleEstimate ripple = estimate_ripple(search.blocks, search.plateaus, omega, trace.time, trace.friction);
   const bool from_plateau = trace.conditions.speed.source == "plateau" && trace.conditions.radius.known();
   if (stated) return ripple;
   Condition speed = trace.conditions.speed;
   for (int pass = 0; pass < 3 && from_plateau && ripple.level != 0; ++pass) {
     speed.value = ripple.level / trace.conditions.radius.value;
-    ripple = estimate_ripple(search.blocks, search.rests, speed.value, trace.time, trace.friction);
+    ripple = estimate_ripple(search.blocks, search.plateaus, speed.value, trace.time, trace.friction);
   }
   if (!ripple.significant) return ripple;
   disc.constant = ripple.level;
@@ -44,9 +44,9 @@ void flatten(PlateauSearch& search, const RippleEstimate& ripple, double omega, 
     middles[b] = time[b * search.blocks.length + search.blocks.length / 2];
   const RippledDisc rippled = rippled_disc(ripple, omega, middles);
   for (std::size_t b = 0; b < middles.size(); ++b) search.blocks.mean[b] /= rippled.factor[b];
-  const double near = 0.5 * search.rests.level, far = 1.5 * search.rests.level;
-  Rests rests = find_rests(search.blocks.mean, LevelRange{std::min(near, far), std::max(near, far)});
-  if (!rests.empty()) search.rests = std::move(rests);
+  const double near = 0.5 * search.plateaus.level, far = 1.5 * search.plateaus.level;
+  Plateaus plateaus = find_plateaus(search.blocks.mean, LevelRange{std::min(near, far), std::max(near, far)});
+  if (!plateaus.empty()) search.plateaus = std::move(plateaus);
 }
 
 void impose_ripple(Trace& trace, Disc& disc, const RippleEstimate& ripple, double omega) {

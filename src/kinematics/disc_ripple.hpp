@@ -16,7 +16,7 @@ double steady_speed(const Trace& trace);
 /// of `trace`.
 RippleEstimate find_ripple(Trace& trace, const PlateauSearch& search, Disc& disc, bool stated);
 
-/// Makes the blocks and rests those that a disc without the ripple would have shown.
+/// Makes the blocks and plateaus those that a disc without the ripple would have shown.
 void flatten(PlateauSearch& search, const RippleEstimate& ripple, double omega, std::span<const double> time);
 
 /// Gives speed and angle of the disc, and omega r, the ripple.

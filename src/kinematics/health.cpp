@@ -138,16 +138,16 @@ HealthItem check_bandwidth(std::span<const double> friction, std::span<const dou
   return item;
 }
 
-HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::size_t factor) {
+HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
   HealthItem item{"channel-delay", Status::ok, "no re-stick to compare the channels at"};
   const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
   const std::size_t n = v.size();
-  const double edge = 0.05 * rests.depth;
+  const double edge = 0.05 * plateaus.depth;
   // Window: the steep part of re-stick and as much again, at most 10 ms.
   const auto half = static_cast<std::size_t>(std::clamp(0.01 / motion.step, 4.0, 2000.0));
   std::vector<double> jump(2 * half, 0.0);
   std::size_t used = 0;
-  for (const StickPlateau& run : rests.runs) {
+  for (const StickPlateau& run : plateaus.runs) {
     std::size_t i = std::min(run.inner_begin() * factor, n - 1);
     while (i > 0 && std::abs(v[i] - motion.plateau_velocity) < edge) --i;
     if (i < half + 1 || i + half + 1 >= n || used >= 400) continue;

@@ -43,9 +43,9 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
 /// Frequency up to which friction and velocity rise above their floor, and whether they are filtered above it.
 HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step);
 
-/// Time between re-stick in the velocity and the jump of friction there, averaged over slips. `rests` are in blocks of
-/// `factor` samples of `relative_velocity`.
-HealthItem check_channel_delay(const Motion& motion, const Rests& rests, std::size_t factor);
+/// Time between re-stick in the velocity and the jump of friction there, averaged over slips. `plateaus` are in blocks
+/// of `factor` samples of `relative_velocity`.
+HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
 
 HealthItem check_revolutions(const Motion& motion);
 

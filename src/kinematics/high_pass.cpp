@@ -34,14 +34,14 @@ double corner_of(std::span<const double> part, double block_step, double disc_sl
 
 }  // namespace
 
-HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& rests,
+HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& plateaus,
                                     std::span<const double> disc_slope) {
   HighPassEstimate estimate;
   std::vector<double> whole, first, second, lengths;
   const std::span<const double> v(velocity.mean);
-  const double usual = std::abs(rests.level);
-  for (std::size_t r = 0; r < rests.runs.size(); ++r) {
-    const StickPlateau& run = rests.runs[r];
+  const double usual = std::abs(plateaus.level);
+  for (std::size_t r = 0; r < plateaus.runs.size(); ++r) {
+    const StickPlateau& run = plateaus.runs[r];
     const std::size_t length = run.inner_end() - run.inner_begin();
     if (length < 8 || std::abs(run.level) < 0.2 * usual) continue;
     const auto inner = v.subspan(run.inner_begin(), length);
@@ -67,7 +67,7 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& res
   return estimate;
 }
 
-HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, double corner, double plateau,
+HighPassTerms restoring_terms(const BlockMeans& velocity, const Plateaus& plateaus, double corner, double plateau,
                               std::span<const double> disc) {
   HighPassTerms terms;
   terms.rate = (2 * std::numbers::pi) * corner;
@@ -79,15 +79,15 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
     integral += h * velocity.mean[b];
     if (!disc.empty()) restored[b] -= disc[b];
   }
-  if (rests.empty()) {  // no plateau to be level: no drift and no net displacement of the block
+  if (plateaus.empty()) {  // no plateau to be level: no drift and no net displacement of the block
     const StraightLine line = fit_line(restored);
     terms.slope = -line.slope / h;
     terms.offset = -line.value + 0.5 * line.slope * static_cast<double>(restored.size());
     return terms;
   }
-  // Straight line through the levels of the plateaus; those of a run-up or a mistaken rest are left out by halves.
+  // Straight line through the levels of the plateaus; those of a run-up or a mistaken plateau are left out by halves.
   std::vector<double> times, levels, weights;
-  for (const StickPlateau& run : rests.runs) {
+  for (const StickPlateau& run : plateaus.runs) {
     const std::size_t n = run.inner_end() - run.inner_begin();
     const StraightLine line = fit_line(std::span<const double>(restored).subspan(run.inner_begin(), n));
     times.push_back(0.5 * h * static_cast<double>(run.inner_begin() + run.inner_end()));
@@ -110,8 +110,8 @@ HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, do
     return terms;
   }
   // No net displacement between the middles of the first and the last plateau.
-  const std::size_t begin = (rests.runs.front().begin + rests.runs.front().end) / 2;
-  const std::size_t end = (rests.runs.back().begin + rests.runs.back().end) / 2;
+  const std::size_t begin = (plateaus.runs.front().begin + plateaus.runs.front().end) / 2;
+  const std::size_t end = (plateaus.runs.back().begin + plateaus.runs.back().end) / 2;
   double sum = 0;
   for (std::size_t b = begin; b < end; ++b) sum += restored[b] - slope * h * (static_cast<double>(b) + 0.5);
   terms.offset = end > begin ? -sum / static_cast<double>(end - begin) : 0;

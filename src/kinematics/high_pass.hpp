@@ -20,10 +20,11 @@ struct HighPassEstimate {
 /// Corner frequency from the sag of the plateaus: behind dv_m/dt + 2 pi f_c v_m = dv_b/dt a block that moves with the
 /// disc reads dv_m/dt = d(omega r)/dt - 2 pi f_c v_m.
 ///
-/// `velocity`: block means of v_m [m/s]; `disc_slope`: d(omega r)/dt of each rest [m/s^2], empty when constant.
+/// `velocity`: block means of v_m [m/s]; `disc_slope`: d(omega r)/dt of each plateau [m/s^2], empty when constant.
 /// A creeping contact (bristle, contact-spin) also falls, but ever faster towards break-away; a high-pass falls ever
 /// slower. Both halves of the plateaus must therefore give the same corner.
-HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Rests& rests, std::span<const double> disc_slope);
+HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& plateaus,
+                                    std::span<const double> disc_slope);
 
 /// The restoring terms of v_b = v_m + 2 pi f_c integral(v_m) dt + offset + slope t.
 struct HighPassTerms {
@@ -34,7 +35,7 @@ struct HighPassTerms {
 
 /// Integration constant and drift such that the plateaus are level, at `plateau` [m/s] when it is known (not NaN), else
 /// such that the block has no net displacement. `disc`: block means of omega r minus `plateau`, empty when constant.
-HighPassTerms restoring_terms(const BlockMeans& velocity, const Rests& rests, double corner, double plateau,
+HighPassTerms restoring_terms(const BlockMeans& velocity, const Plateaus& plateaus, double corner, double plateau,
                               std::span<const double> disc);
 
 /// Undoes the high-pass in place. One pass.

@@ -22,9 +22,9 @@ namespace {
 
 using kinematics::Disc;
 using kinematics::HighPassEstimate;
+using kinematics::Plateaus;
 using kinematics::PlateauSearch;
 using kinematics::RecordedPlateau;
-using kinematics::Rests;
 using kinematics::RippleEstimate;
 using kinematics::StickPlateau;
 
@@ -125,7 +125,7 @@ class MotionStages {
   std::optional<double> plateau_as_recorded() const;
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;
-  Rests rests_in_motion() const;
+  Plateaus plateaus_in_motion() const;
 
   Trace trace_;
   const Instruments& instruments_;
@@ -186,7 +186,7 @@ void MotionStages::find_disc() {
 }
 
 void MotionStages::find_plateau() {
-  search_ = kinematics::survey(trace_, disc_, motion_.step);
+  search_ = kinematics::search_plateaus(trace_, disc_, motion_.step);
 }
 
 /// A vibrometer that points the other way.
@@ -202,7 +202,7 @@ void MotionStages::undo_high_pass() {
   const std::optional<Declared>& stated = instruments_.vibrometer.high_pass;
   if (is_block() && stated) declared_high_pass_ = stated->value;
   if (is_block() && search_.sticks) {
-    sag_ = kinematics::estimate_high_pass(search_.blocks, search_.rests, kinematics::disc_slopes(search_));
+    sag_ = kinematics::estimate_high_pass(search_.blocks, search_.plateaus, kinematics::disc_slopes(search_));
   }
   if (!declared_high_pass_ && !(sag_.significant && options_.undo_high_pass)) return;
   motion_.high_pass = declared_high_pass_ ? *declared_high_pass_ : sag_.corner;
@@ -210,13 +210,13 @@ void MotionStages::undo_high_pass() {
   const double level = disc_.known && speed_is_constant() ? disc_.constant : disc_.known ? 0 : std::nan("");
   kinematics::restore(
       trace_.velocity, motion_.step,
-      kinematics::restoring_terms(search_.blocks, search_.rests, motion_.high_pass, level, search_.disc.mean));
+      kinematics::restoring_terms(search_.blocks, search_.plateaus, motion_.high_pass, level, search_.disc.mean));
   find_plateau();
 }
 
 /// Speed from the plateau where nobody said it.
 void MotionStages::take_speed_from_plateau() {
-  plateau_ = search_.sticks ? kinematics::final_level(search_.rests) : 0;
+  plateau_ = search_.sticks ? kinematics::final_level(search_.plateaus) : 0;
   if (!is_block() || disc_.known) return;
   const bool unknown = !search_.sticks || trace_.disc_speed.size() == trace_.size();
   if (unknown && !is_useless(trace_)) {
@@ -239,7 +239,7 @@ void MotionStages::undo_ripple() {
   const DiscRipple& ripple = motion_.speed_ripple = ripple_.ripple;
   if (motion_.high_pass > 0) undo_ripple_in_high_pass();
   kinematics::flatten(search_, ripple_, kinematics::steady_speed(trace_), trace_.time);
-  plateau_ = kinematics::final_level(search_.rests);
+  plateau_ = kinematics::final_level(search_.plateaus);
   motion_.notes.push_back(
       fmt::format("disc: its speed follows its angle by {:.2f} +- {:.2f} %, {} a revolution ({} plateaus); omega r "
                   "follows it",
@@ -316,22 +316,22 @@ void MotionStages::settle_signs_and_levels() {
   motion_.sticks = search_.sticks;
   motion_.velocity_noise = search_.noise;
   if (search_.sticks) {
-    const double level = search_.rests.level;
+    const double level = search_.plateaus.level;
     motion_.plateau_velocity = is_block() ? motion_.constant_disc_velocity - level : level;
   }
-  double scale = search_.rests.depth;
+  double scale = search_.plateaus.depth;
   if (scale == 0) scale = kinematics::largest_of(motion_.relative_velocity);
   if (disc_.largest > 0 || !is_block()) settle_friction_sign(motion_, scale);
 }
 
-/// The rests that the motion still holds, in its own blocks.
-Rests MotionStages::rests_in_motion() const {
-  Rests rests = search_.rests;
+/// The plateaus that the motion still holds, in its own blocks.
+Plateaus MotionStages::plateaus_in_motion() const {
+  Plateaus plateaus = search_.plateaus;
   const std::size_t length = search_.blocks.length;
   const std::size_t cut = (motion_.trimmed + length - 1) / length, kept = motion_.size() / length;
-  std::erase_if(rests.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
-  for (StickPlateau& run : rests.runs) run.begin -= cut, run.end -= cut;
-  return rests;
+  std::erase_if(plateaus.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
+  for (StickPlateau& run : plateaus.runs) run.begin -= cut, run.end -= cut;
+  return plateaus;
 }
 
 void MotionStages::check_health() {
@@ -343,7 +343,7 @@ void MotionStages::check_health() {
       std::move(drop_outs_),
       kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
       kinematics::check_bandwidth(motion_.friction, velocity, motion_.step),
-      kinematics::check_channel_delay(motion_, rests_in_motion(), search_.blocks.length),
+      kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length),
       kinematics::check_revolutions(motion_),
       kinematics::check_speed_ripple(motion_, ripple_),
       kinematics::check_run_up(motion_, options_.trim, run_up_),
@@ -354,7 +354,7 @@ void MotionStages::check_health() {
 
 void MotionStages::compare_plateau() {
   if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
-  const kinematics::PlateauRatio ratio = plateau_ratio(motion_, rests_in_motion(), search_.blocks.length);
+  const kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
   motion_.plateau_ratio = ratio.value;
   motion_.plateau_ratio_std_error = ratio.std_error;
   correct_plateau(motion_, ratio, options_.plateau);

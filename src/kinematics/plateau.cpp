@@ -11,7 +11,7 @@ namespace tribofit::kinematics {
 namespace {
 
 constexpr double band = 0.12;      // of the largest excursion: what still counts as near the level
-constexpr double flatness = 0.10;  // of the band: how far the middle of a rest may stand out from its shoulders
+constexpr double flatness = 0.10;  // of the band: how far the middle of a plateau may stand out from its shoulders
 constexpr std::size_t least_blocks = 4;
 
 // Half-sample mode (Robertson and Cryer 1974; Bickel 2002): halve to the densest half until few remain.
@@ -31,7 +31,7 @@ double half_sample_mode(std::span<const double> sorted) {
   return std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
 }
 
-// A rest is flat when its middle does not stand out from its shoulders.
+// A plateau is flat when its middle does not stand out from its shoulders.
 bool is_flat(std::span<const double> run, double half_band) {
   const std::size_t n = run.size(), eighth = std::max<std::size_t>(1, n / 8);
   if (n < least_blocks) return false;
@@ -57,9 +57,9 @@ double weighted_level(const std::vector<StickPlateau>& runs) {
 
 }  // namespace
 
-Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> range) {
-  Rests rests;
-  if (velocity.size() < least_blocks) return rests;
+Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range) {
+  Plateaus plateaus;
+  if (velocity.size() < least_blocks) return plateaus;
   std::vector<double> sorted = thinned(velocity, std::size_t{1} << 15);
   std::sort(sorted.begin(), sorted.end());
   std::span<const double> candidates = sorted;
@@ -69,11 +69,11 @@ Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> ran
     candidates =
         candidates.subspan(static_cast<std::size_t>(first - sorted.begin()), static_cast<std::size_t>(last - first));
   }
-  if (candidates.size() < least_blocks) return rests;
+  if (candidates.size() < least_blocks) return plateaus;
   const double mode = half_sample_mode(candidates);
   const std::size_t tail = sorted.size() / 1000;
-  rests.depth = std::max(sorted[sorted.size() - 1 - tail] - mode, mode - sorted[tail]);
-  const double half_band = band * rests.depth;
+  plateaus.depth = std::max(sorted[sorted.size() - 1 - tail] - mode, mode - sorted[tail]);
+  const double half_band = band * plateaus.depth;
   for (std::size_t i = 0; i < velocity.size();) {
     if (std::abs(velocity[i] - mode) > half_band) {
       ++i;
@@ -84,10 +84,10 @@ Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> ran
     run.end = i;
     if (!is_flat(velocity.subspan(run.begin, run.size()), half_band)) continue;
     run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
-    rests.runs.push_back(run);
+    plateaus.runs.push_back(run);
   }
-  rests.level = weighted_level(rests.runs);
-  return rests;
+  plateaus.level = weighted_level(plateaus.runs);
+  return plateaus;
 }
 
 std::vector<double> spreads_about_parabolas(std::span<const double> signal, const std::vector<StickPlateau>& stretches,

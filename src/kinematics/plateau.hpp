@@ -19,10 +19,10 @@ struct StickPlateau {
   std::size_t inner_end() const { return end - size() / 5; }
 };
 
-/// All rests of a record.
-struct Rests {
+/// All plateaus of a record.
+struct Plateaus {
   std::vector<StickPlateau> runs;
-  double level = 0;  ///< median over rests, weighted by their duration [m/s]
+  double level = 0;  ///< median over plateaus, weighted by their duration [m/s]
   double depth = 0;  ///< largest excursion from that level (one block in a thousand exceeds it) [m/s]
   bool empty() const { return runs.empty(); }
 };
@@ -37,7 +37,7 @@ struct LevelRange {
 /// A stretch within 12 % of the largest excursion counts when it is flat: a turning point of a smooth oscillation is
 /// a parabola whose middle stands out from its shoulders, a stick is not, whether it is noisy, rings or sags.
 /// Cost: n log n for at most 2^15 of the blocks, linear in the rest.
-Rests find_rests(std::span<const double> velocity, std::optional<LevelRange> range = {});
+Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range = {});
 
 /// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
 /// parabolas through windows in the given stretches of samples, one value a window.

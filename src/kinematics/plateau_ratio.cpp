@@ -17,7 +17,7 @@ namespace {
 
 constexpr double after_high_pass = 1e-3;  // what sampling and the corner leave in the level of a restored plateau
 constexpr double part_of_creep = 0.5;     // of what is taken off: a real contact rings, and mu_s is not known that well
-constexpr std::size_t parts = 6, least_samples = 6 * parts, most_rests = 512;
+constexpr std::size_t parts = 6, least_samples = 6 * parts, most_plateaus = 512;
 
 /// One stick in parts: 1 - v_r/(omega r), friction, and the largest mean friction over a part of it.
 struct Stick {
@@ -94,13 +94,13 @@ Creep creep_of(const std::vector<Stick>& sticks, double above) {
   return creep;
 }
 
-// Mean velocity of the block over the record, from its positions in the middles of the rests: what its integration
+// Mean velocity of the block over the record, from its positions in the middles of the plateaus: what its integration
 // constant is wrong by.
-Estimate net_velocity(const Motion& motion, const Rests& rests, std::size_t factor) {
+Estimate net_velocity(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
   std::vector<double> time, position;
   double x = 0;
   std::size_t i = 0;
-  for (const StickPlateau& run : rests.runs) {
+  for (const StickPlateau& run : plateaus.runs) {
     const std::size_t middle = std::min((run.begin + run.end) / 2 * factor, motion.size() - 1);
     for (; i < middle; ++i) x += motion.step * (motion.disc_velocity_at(i) - motion.relative_velocity[i]);
     time.push_back(static_cast<double>(middle) * motion.step);
@@ -115,13 +115,13 @@ Estimate net_velocity(const Motion& motion, const Rests& rests, std::size_t fact
 
 }  // namespace
 
-PlateauRatio plateau_ratio(const Motion& motion, const Rests& rests, std::size_t factor) {
+PlateauRatio plateau_ratio(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
   PlateauRatio ratio;
   std::vector<Stick> sticks;
-  const std::size_t stride = rests.runs.size() / most_rests + 1;
-  for (std::size_t r = 0; r < rests.runs.size(); r += stride) {
+  const std::size_t stride = plateaus.runs.size() / most_plateaus + 1;
+  for (std::size_t r = 0; r < plateaus.runs.size(); r += stride) {
     Stick stick;
-    if (make_stick(motion, rests.runs[r], factor, stick)) sticks.push_back(stick);
+    if (make_stick(motion, plateaus.runs[r], factor, stick)) sticks.push_back(stick);
   }
   if (sticks.size() < 3) return ratio;
   // Break-away itself is rounded by the creep: mu_s lies somewhat above the highest friction.
@@ -140,7 +140,7 @@ PlateauRatio plateau_ratio(const Motion& motion, const Rests& rests, std::size_t
   const double x = creeps ? median(creep.x) : 0;
   ratio.std_error = std::hypot(level.std_error, x * creep.slope.std_error, part_of_creep * x * creep.slope.value);
   if (motion.high_pass > 0 && motion.constant_disc_velocity != 0) {
-    const Estimate net = net_velocity(motion, rests, factor);
+    const Estimate net = net_velocity(motion, plateaus, factor);
     ratio.value -= net.value / motion.constant_disc_velocity;
     ratio.std_error = std::hypot(ratio.std_error, net.std_error / motion.constant_disc_velocity, after_high_pass);
   }

@@ -16,7 +16,7 @@ struct PlateauRatio {
   bool known() const { return value == value; }
 };
 
-/// Ratio of the plateau of v_b to omega r, from means over parts of every rest between 45 and 80 % of it: re-stick,
+/// Ratio of the plateau of v_b to omega r, from means over parts of every plateau between 45 and 80 % of it: re-stick,
 /// whose ringing makes a contact creep more, is over, break-away has not begun.
 ///
 /// In stick 1 - v_r/(omega r) = ratio - b x with x = 1/(1 - mu/mu_s): a bristle creeps by (dmu/dt)/sigma0 x (Canudas de
@@ -24,9 +24,9 @@ struct PlateauRatio {
 /// mu_s 0.5 to 6 % above the highest friction of each, where the lines fit best. The ratio is taken at x = 0 where b is
 /// four standard errors above zero, else it is the mean. Where a high-pass was undone, the level of v_b is an
 /// integration constant; it then follows from no net displacement of the block: a line through its positions in the
-/// middles of the rests. NaN with fewer than three rests. `rests` in blocks of `factor` samples of the motion. Cost:
-/// one pass over at most 512 rests; behind a high-pass one over the samples.
-PlateauRatio plateau_ratio(const Motion& motion, const Rests& rests, std::size_t factor);
+/// middles of the plateaus. NaN with fewer than three plateaus. `plateaus` in blocks of `factor` samples of the motion.
+/// Cost: one pass over at most 512 plateaus; behind a high-pass one over the samples.
+PlateauRatio plateau_ratio(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
 
 /// Corrects the plateau as asked: `radius` scales omega r, `gain` divides v_b. Says so in the motion's notes.
 void correct_plateau(Motion& motion, const PlateauRatio& ratio, PlateauCorrection correction);

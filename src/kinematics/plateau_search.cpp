@@ -12,8 +12,8 @@
 namespace tribofit::kinematics {
 namespace {
 
-Rests evenly_spaced_windows(std::size_t samples) {
-  Rests windows;
+Plateaus evenly_spaced_windows(std::size_t samples) {
+  Plateaus windows;
   const std::size_t count = 64, length = std::clamp<std::size_t>(samples / 4, 16, 64);
   if (samples < length) return windows;
   for (std::size_t k = 0; k < count; ++k) {
@@ -73,7 +73,7 @@ Disc disc_of(const Trace& trace) {
   return disc;
 }
 
-PlateauSearch survey(const Trace& trace, const Disc& disc, double step) {
+PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step) {
   PlateauSearch s;
   const std::span<const double> velocity(trace.velocity);
   const std::size_t length = block_length(velocity);
@@ -93,78 +93,78 @@ PlateauSearch survey(const Trace& trace, const Disc& disc, double step) {
   const double centre = relative.empty() ? 0 : relative[relative.size() / 2];
   double spread = 0;
   for (double v : relative) spread = std::max(spread, std::abs(v - centre));
-  if (spread <= 8 * roughness) {  // nothing moves: one rest, or steady sliding
+  if (spread <= 8 * roughness) {  // nothing moves: one plateau, or steady sliding
     const double level = fit_line(relative).value;
     const bool rests_on_disc = !block || !disc.varying.empty() ? std::abs(level) <= 3 * roughness
                                : disc.known ? std::abs(std::abs(level) - std::abs(stated)) < 0.5 * std::abs(stated)
                                             : std::abs(level) > 5 * roughness;
     s.noise = roughness;
     s.sticks = rests_on_disc;
-    if (rests_on_disc) s.rests = {{{0, relative.size(), level}}, level, spread};
+    if (rests_on_disc) s.plateaus = {{{0, relative.size(), level}}, level, spread};
     return s;
   }
   if (!block) {
-    const double limit = 0.06 * largest_of(relative);  // a rest of v_r is at zero
-    s.rests = find_rests(relative, LevelRange{-limit, limit});
+    const double limit = 0.06 * largest_of(relative);  // a plateau of v_r is at zero
+    s.plateaus = find_plateaus(relative, LevelRange{-limit, limit});
   } else if (!disc.varying.empty()) {
-    s.rests = find_rests(relative, LevelRange{-0.5 * disc.largest, 0.5 * disc.largest});
+    s.plateaus = find_plateaus(relative, LevelRange{-0.5 * disc.largest, 0.5 * disc.largest});
   } else if (disc.known) {
     // First where it ought to be, then pointing the other way, then anywhere but at rest.
     const double near = 0.5 * std::abs(stated), far = 1.5 * std::abs(stated);
     const LevelRange right = stated > 0 ? LevelRange{near, far} : LevelRange{-far, -near};
-    s.rests = find_rests(relative, right);
-    if (s.rests.empty()) s.rests = find_rests(relative, LevelRange{-right.high, -right.low});
+    s.plateaus = find_plateaus(relative, right);
+    if (s.plateaus.empty()) s.plateaus = find_plateaus(relative, LevelRange{-right.high, -right.low});
   }
-  if (block && s.rests.empty() && disc.varying.empty()) s.rests = find_rests(relative);
-  s.noise = s.rests.empty() ? roughness : spread_about_parabolas(velocity, s.rests.runs, s.blocks.length);
-  if (s.noise == 0) s.noise = s.rests.empty() ? 0 : std::min(roughness, 1e-3 * s.rests.depth);
-  s.sticks = !s.rests.empty() && (!block || !disc.varying.empty() || std::abs(s.rests.level) > 3 * s.noise);
-  if (!s.sticks) s.rests.runs.clear();
+  if (block && s.plateaus.empty() && disc.varying.empty()) s.plateaus = find_plateaus(relative);
+  s.noise = s.plateaus.empty() ? roughness : spread_about_parabolas(velocity, s.plateaus.runs, s.blocks.length);
+  if (s.noise == 0) s.noise = s.plateaus.empty() ? 0 : std::min(roughness, 1e-3 * s.plateaus.depth);
+  s.sticks = !s.plateaus.empty() && (!block || !disc.varying.empty() || std::abs(s.plateaus.level) > 3 * s.noise);
+  if (!s.sticks) s.plateaus.runs.clear();
   return s;
 }
 
 bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& search) {
   if (!search.sticks || trace.velocity_kind != VelocityKind::block || !disc.varying.empty()) return false;
-  if (disc.known) return search.rests.level * disc.constant < 0;
+  if (disc.known) return search.plateaus.level * disc.constant < 0;
   double sum = 0;
-  for (const StickPlateau& run : search.rests.runs) {
+  for (const StickPlateau& run : search.plateaus.runs) {
     const auto part = std::span<const double>(trace.friction).subspan(run.inner_begin() * search.blocks.length);
     sum += part[0] + part[(run.inner_end() - run.inner_begin()) * search.blocks.length - 1];
   }
-  return search.rests.level < 0 && sum > 0;
+  return search.plateaus.level < 0 && sum > 0;
 }
 
 std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind) {
   if (kind != VelocityKind::block || disc.varying.empty() || search.disc.mean.empty()) return std::nullopt;
-  const auto recorded_in = [&](const Rests& rests) {
+  const auto recorded_in = [&](const Plateaus& plateaus) {
     double sum = 0;
     std::size_t count = 0;
-    for (const StickPlateau& run : rests.runs) {
+    for (const StickPlateau& run : plateaus.runs) {
       for (std::size_t b = run.begin; b < run.end; ++b) sum += search.disc.mean[b], ++count;
     }
     return sum / static_cast<double>(std::max<std::size_t>(1, count));
   };
   std::optional<RecordedPlateau> following;
   if (search.sticks) {
-    const double recorded = recorded_in(search.rests);
-    following = {recorded + search.rests.level, recorded};
-    if (std::abs(search.rests.level) <= 0.2 * std::abs(recorded)) return following;
+    const double recorded = recorded_in(search.plateaus);
+    following = {recorded + search.plateaus.level, recorded};
+    if (std::abs(search.plateaus.level) <= 0.2 * std::abs(recorded)) return following;
   }
   const std::span<const double> v(search.blocks.mean);
   const Extremes range = extremes(v);
-  Rests alone =
-      range.high - range.low <= 8 * search.noise ? Rests{{{0, v.size(), fit_line(v).value}}, 0, 0} : find_rests(v);
+  Plateaus alone = range.high - range.low <= 8 * search.noise ? Plateaus{{{0, v.size(), fit_line(v).value}}, 0, 0}
+                                                              : find_plateaus(v);
   if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
   std::size_t resting = 0;
   for (const StickPlateau& run : alone.runs) resting += run.size();
-  const bool rests = 10 * resting > v.size() && std::abs(alone.level) > 3 * search.noise;
-  return rests ? RecordedPlateau{alone.level, recorded_in(alone)} : following;
+  const bool has_plateau = 10 * resting > v.size() && std::abs(alone.level) > 3 * search.noise;
+  return has_plateau ? RecordedPlateau{alone.level, recorded_in(alone)} : following;
 }
 
 std::vector<double> disc_slopes(const PlateauSearch& s) {
   std::vector<double> slopes;
   if (s.disc.mean.empty()) return slopes;
-  for (const StickPlateau& run : s.rests.runs) {
+  for (const StickPlateau& run : s.plateaus.runs) {
     const auto part =
         std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
     slopes.push_back(fit_line(part).slope / s.blocks.step);
@@ -172,23 +172,24 @@ std::vector<double> disc_slopes(const PlateauSearch& s) {
   return slopes;
 }
 
-double final_level(const Rests& rests) {
+double final_level(const Plateaus& plateaus) {
   std::vector<double> levels;
-  for (std::size_t r = rests.runs.size() / 2; r < rests.runs.size(); ++r) levels.push_back(rests.runs[r].level);
+  for (std::size_t r = plateaus.runs.size() / 2; r < plateaus.runs.size(); ++r)
+    levels.push_back(plateaus.runs[r].level);
   return median(std::move(levels));
 }
 
 std::size_t run_up_blocks(const PlateauSearch& s) {
-  if (s.rests.runs.size() < 3) return 0;
-  const double level = final_level(s.rests);
+  if (s.plateaus.runs.size() < 3) return 0;
+  const double level = final_level(s.plateaus);
   const std::span<const double> v(s.blocks.mean);
   struct Piece {
     std::size_t begin;
     double level;
   };
   std::vector<Piece> pieces;
-  for (const StickPlateau& run : s.rests.runs) {
-    // The first rest may be the run-up itself: it is looked at from end to end, and more finely.
+  for (const StickPlateau& run : s.plateaus.runs) {
+    // The first plateau may be the run-up itself: it is looked at from end to end, and more finely.
     const bool first = run.begin == 0;
     const std::size_t begin = first ? 0 : run.inner_begin(), end = first ? run.end - run.size() / 32 : run.inner_end();
     const std::size_t length = std::max<std::size_t>(1, (end - begin) / (first ? 64 : 16));
@@ -199,10 +200,10 @@ std::size_t run_up_blocks(const PlateauSearch& s) {
   const double tolerance = std::max(0.02 * std::abs(level), 4 * s.noise);
   const auto settled = [&](const Piece& p) { return std::abs(p.level - level) <= tolerance; };
   // A disc that starts from rest begins well below its final speed; a disc that ripples does not settle.
-  const std::size_t head = s.rests.runs.front().begin;
+  const std::size_t head = s.plateaus.runs.front().begin;
   std::vector<double> gaps;
-  for (std::size_t r = 1; r < s.rests.runs.size(); ++r) {
-    gaps.push_back(static_cast<double>(s.rests.runs[r].begin - s.rests.runs[r - 1].end));
+  for (std::size_t r = 1; r < s.plateaus.runs.size(); ++r) {
+    gaps.push_back(static_cast<double>(s.plateaus.runs[r].begin - s.plateaus.runs[r - 1].end));
   }
   const bool slow_head =
       static_cast<double>(head) > 3 * median(std::move(gaps)) && std::abs(v[0]) < 0.5 * std::abs(level);
@@ -214,7 +215,7 @@ std::size_t run_up_blocks(const PlateauSearch& s) {
     if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
     // Ringing after a re-stick at the very beginning is no run-up either.
     std::vector<double> durations;
-    for (const StickPlateau& run : s.rests.runs) durations.push_back(static_cast<double>(run.size()));
+    for (const StickPlateau& run : s.plateaus.runs) durations.push_back(static_cast<double>(run.size()));
     const double least = 0.25 * median(std::move(durations));
     return k < pieces.size() && static_cast<double>(pieces[k].begin) > least ? pieces[k].begin : 0;
   }

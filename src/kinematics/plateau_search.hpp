@@ -30,12 +30,12 @@ Disc disc_of(const Trace& trace);
 struct PlateauSearch {
   BlockMeans blocks;  ///< of v_b, or of v_r where that was measured
   BlockMeans disc;    ///< of omega r, where it varies
-  Rests rests;        ///< of blocks minus disc where that varies, else of blocks
+  Plateaus plateaus;  ///< of blocks minus disc where that varies, else of blocks
   double noise = 0;   ///< [m/s]
   bool sticks = false;
 };
 
-PlateauSearch survey(const Trace& trace, const Disc& disc, double step);
+PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step);
 
 /// Whether the plateau runs against the disc, or against friction where the direction of the disc is not known.
 bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& search);
@@ -45,15 +45,16 @@ struct RecordedPlateau {
   double block = 0, disc = 0;
 };
 
-/// Where v_b rests beside a recorded speed; nothing where there is none, or no rest. A record whose rests follow the
-/// recorded speed is compared there; where none do, or far from it, the rests of v_b alone tell what the disc did.
+/// Where v_b rests beside a recorded speed; nothing where there is none, or no plateau. A record whose plateaus follow
+/// the recorded speed is compared there; where none do, or far from it, the plateaus of v_b alone tell what the disc
+/// did.
 std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind);
 
-/// d(omega r)/dt of every rest [m/s^2]; empty where omega r is constant.
+/// d(omega r)/dt of every plateau [m/s^2]; empty where omega r is constant.
 std::vector<double> disc_slopes(const PlateauSearch& s);
 
 /// The level towards which the plateaus tend: median over the second half of the record [m/s].
-double final_level(const Rests& rests);
+double final_level(const Plateaus& plateaus);
 
 /// Blocks before the plateau comes within 2 % of its final value and stays there.
 std::size_t run_up_blocks(const PlateauSearch& s);

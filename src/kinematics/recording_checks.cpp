@@ -135,8 +135,8 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   if (high.at >= 0) tell("friction", high, 1, unit);
   const double range = std::abs(ends.velocity[1].at - ends.velocity[0].at);
   for (const EndRuns& end : ends.velocity) {
-    const bool rests = plateau && std::abs(end.at - *plateau) <= 0.02 * std::abs(*plateau) + 1e-6 * range;
-    if (!rests) tell("velocity", end, 1e3, " mm/s");
+    const bool is_plateau = plateau && std::abs(end.at - *plateau) <= 0.02 * std::abs(*plateau) + 1e-6 * range;
+    if (!is_plateau) tell("velocity", end, 1e3, " mm/s");
   }
   if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
     const double declared = instruments.vibrometer.range->value;

@@ -16,12 +16,12 @@ namespace tribofit::kinematics {
 namespace {
 
 constexpr int largest_order = 6;
-constexpr double least_revolutions = 1.95;  // between the middles of the first and the last rest
-constexpr std::size_t least_rests = 12;
+constexpr double least_revolutions = 1.95;  // between the middles of the first and the last plateau
+constexpr std::size_t least_plateaus = 12;
 constexpr double least_amplitude = 0.005, largest_amplitude = 0.25;
 constexpr double significance = 6;       // standard errors
 constexpr double least_explained = 0.5;  // of the variance of the levels
-constexpr double least_per_period = 4;   // rests in a period
+constexpr double least_per_period = 4;   // plateaus in a period
 
 struct Level {
   double begin = 0, end = 0;  // [s]
@@ -31,13 +31,13 @@ struct Level {
   bool used = true;
 };
 
-std::vector<Level> levels_of(const BlockMeans& velocity, const Rests& rests, std::span<const double> time,
+std::vector<Level> levels_of(const BlockMeans& velocity, const Plateaus& plateaus, std::span<const double> time,
                              std::span<const double> friction) {
   std::vector<double> sizes;
-  for (const StickPlateau& run : rests.runs) sizes.push_back(static_cast<double>(run.size()));
+  for (const StickPlateau& run : plateaus.runs) sizes.push_back(static_cast<double>(run.size()));
   const double least = 0.25 * median(std::move(sizes));
   std::vector<Level> levels;
-  for (const StickPlateau& run : rests.runs) {
+  for (const StickPlateau& run : plateaus.runs) {
     const std::size_t begin = run.inner_begin() * velocity.length, end = run.inner_end() * velocity.length;
     if (static_cast<double>(run.size()) < least || end <= begin || end > time.size()) continue;
     Level level{time[begin], time[end - 1], run.level};
@@ -76,7 +76,7 @@ void standardise(std::vector<Level>& levels, double Level::*member) {
   for (Level& level : levels) level.*member = spread > 0 ? (level.*member - mean) / spread : 0;
 }
 
-// Means of cos(w t) and sin(w t) over a rest, as exp(i w t).
+// Means of cos(w t) and sin(w t) over a plateau, as exp(i w t).
 std::complex<double> mean_phasor(const Level& level, double w) {
   const double half = 0.5 * w * (level.end - level.begin);
   const double part = std::abs(half) > 1e-9 ? std::sin(half) / half : 1;
@@ -87,7 +87,7 @@ using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 using Normal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 /// What is fitted to the levels: 1, time from the middle over half the record, mean cos, mean sin, and where the
-/// contact creeps, friction in the rest and at its end. A creep that follows friction (a runout) then is no ripple.
+/// contact creeps, friction in the plateau and at its end. A creep that follows friction (a runout) then is no ripple.
 struct Design {
   double w = 0;  // [rad/s]
   double middle = 0, half = 1;
@@ -180,7 +180,7 @@ void try_true_angle(std::vector<Level> levels, Design design, double omega, doub
   estimate.true_angle = true;
 }
 
-/// The time between the middles of the first and the last rest.
+/// The time between the middles of the first and the last plateau.
 struct TimeSpan {
   double middle = 0, half = 0;  // [s]
   double turns(double omega) const { return std::abs(omega) * 2 * half / (2 * std::numbers::pi); }
@@ -224,7 +224,7 @@ struct Residuals {
   double with_wave = 0;  // squares of the residuals where the wave is not taken off
 
   double variance_explained() const { return with_wave > 0 ? 1 - left.squares / with_wave : 0; }
-  /// Of one level, enlarged by the correlation from rest to rest.
+  /// Of one level, enlarged by the correlation from plateau to plateau.
   double variance(Eigen::Index parameters) const {
     const double freedom = left.count - static_cast<double>(parameters);
     return left.squares / freedom * variance_inflation(left.correlation(0.95));
@@ -265,12 +265,12 @@ bool is_same_in_both_halves(const std::vector<Level>& levels, const OrderFit& be
 
 }  // namespace
 
-RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, double omega,
+RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plateaus, double omega,
                                std::span<const double> time, std::span<const double> friction) {
   RippleEstimate estimate;
-  std::vector<Level> levels = levels_of(velocity, rests, time, friction);
+  std::vector<Level> levels = levels_of(velocity, plateaus, time, friction);
   estimate.plateaus = levels.size();
-  if (levels.size() < least_rests || omega == 0) return estimate;
+  if (levels.size() < least_plateaus || omega == 0) return estimate;
   const TimeSpan span = time_span_of(levels);
   if (span.turns(omega) < least_revolutions) return estimate;
   estimate.middle = span.middle;
@@ -285,7 +285,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, d
     leave_out_far(levels, best);
   }
   const Residuals residuals = residuals_of(levels, best);
-  const double fewest = std::max(static_cast<double>(least_rests), 0.7 * static_cast<double>(levels.size()));
+  const double fewest = std::max(static_cast<double>(least_plateaus), 0.7 * static_cast<double>(levels.size()));
   if (residuals.left.count < fewest) return estimate;
   estimate.plateaus = static_cast<std::size_t>(residuals.left.count);
   estimate.level = best.fit.x(0);

@@ -23,21 +23,21 @@ struct RippleEstimate {
 
 /// Ripple of the disc's speed from the levels of the plateaus over the angle omega t.
 ///
-/// The level of a rest from t1 to t2 is level (1 + A <cos(n omega t + phase)>), <> the mean over the rest; orders 1 to
-/// 6 are tried by least squares beside a constant and a straight drift, rests far from the line left out. It counts
-/// when two revolutions are recorded, A is at least 0.5 % and six standard errors (for levels correlated from rest to
-/// rest), it explains half of the variance of the levels, and both halves of the record show the same amplitude and
-/// phase: what swings in time, or wanders, does not. Where the plateaus fall towards break-away the contact creeps, and
-/// creep follows friction (a runout): friction in the rest and at its end then take part in the fit, and A must be
-/// larger than that fall over the level.
+/// The level of a plateau from t1 to t2 is level (1 + A <cos(n omega t + phase)>), <> the mean over the plateau; orders
+/// 1 to 6 are tried by least squares beside a constant and a straight drift, plateaus far from the line left out. It
+/// counts when two revolutions are recorded, A is at least 0.5 % and six standard errors (for levels correlated from
+/// plateau to plateau), it explains half of the variance of the levels, and both halves of the record show the same
+/// amplitude and phase: what swings in time, or wanders, does not. Where the plateaus fall towards break-away the
+/// contact creeps, and creep follows friction (a runout): friction in the plateau and at its end then take part in the
+/// fit, and A must be larger than that fall over the level.
 ///
 /// The phase of a real coupling runs with the angle theta that the disc has turned, of which omega t is the mean up to
 /// A^2/2: n theta + phase is the true anomaly of an orbit of eccentricity A, so that the reciprocal of the level is a
 /// sine of nearly the same frequency, n omega sqrt(1-A^2). Both readings are fitted, the better one counts.
 ///
-/// `time`, `friction`: of the samples [s], [1 or N]; `omega` [rad/s]. Cost: linear in the rests, one pass over friction
-/// in them.
-RippleEstimate estimate_ripple(const BlockMeans& velocity, const Rests& rests, double omega,
+/// `time`, `friction`: of the samples [s], [1 or N]; `omega` [rad/s]. Cost: linear in the plateaus, one pass over
+/// friction in them.
+RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plateaus, double omega,
                                std::span<const double> time, std::span<const double> friction);
 
 /// The ripple at given times.

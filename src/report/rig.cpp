@@ -151,7 +151,7 @@ std::string render_rig(const RigIdentification& result, const TerminalOptions& o
     text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
   }
   const RigFit& rig = result.rig;
-  const std::string verdict = rig.determined ? verdict_on(rig) : "No rig can be had: " + rig.reason + ".";
+  const std::string verdict = rig.determined ? verdict_on(rig) : "The rig could not be identified: " + rig.reason + ".";
   text += "  " + wrapped(verdict, style.width, 2) + "\n";
   const Suggestion next = next_of(result, options);
   text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n  " + next.command + "\n";

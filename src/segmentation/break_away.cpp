@@ -16,26 +16,26 @@ namespace {
 /// An onset with the level of its own stick: creep of the contact, a ripple of the disc or a wrong radius is no slip.
 struct Rise {
   Onset onset;
-  double rest = 0;  // v above the plateau in the third quarter of the stick [m/s]
+  double stick_level = 0;  // v above the plateau in the third quarter of the stick [m/s]
 };
 
-double above_rest(const Motion& m, const Rise& r, std::size_t i) {
-  return r.onset.direction * above_plateau(m, i) - r.rest;
+double above_stick(const Motion& m, const Rise& r, std::size_t i) {
+  return r.onset.direction * above_plateau(m, i) - r.stick_level;
 }
 
 Rise rise_of(const Motion& m, const Onset& onset) {
   Rise rise{onset, 0};
   const std::size_t n = onset.slip - onset.stick_begin, begin = onset.stick_begin + n / 2, end = begin + n / 4;
   if (n < 32) return rise;
-  for (std::size_t i = begin; i < end; ++i) rise.rest += above_rest(m, {onset, 0}, i);
-  rise.rest /= static_cast<double>(end - begin);
+  for (std::size_t i = begin; i < end; ++i) rise.stick_level += above_stick(m, {onset, 0}, i);
+  rise.stick_level /= static_cast<double>(end - begin);
   return rise;
 }
 
 // First sample above `level` of the rise that leads to the slip.
 std::size_t rises_above(const Motion& m, const Rise& r, double level) {
   std::size_t i = r.onset.slip;
-  while (i > r.onset.stick_begin && above_rest(m, r, i - 1) > level) --i;
+  while (i > r.onset.stick_begin && above_stick(m, r, i - 1) > level) --i;
   return i;
 }
 
@@ -45,7 +45,7 @@ double growth_time(const Motion& m, const std::vector<Rise>& rises, double level
   for (const Rise& r : rises) {
     const std::size_t low = rises_above(m, r, level);
     std::size_t high = low;
-    while (high + 1 < m.size() && above_rest(m, r, high) < 3 * level) ++high;
+    while (high + 1 < m.size() && above_stick(m, r, high) < 3 * level) ++high;
     times.push_back(static_cast<double>(high - low) / std::log(3.0));
   }
   return std::max(0.5, median(std::move(times)));
@@ -60,10 +60,10 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick / 4))));
   w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
   // In a short stick the window may reach back into the end of the slip before.
-  while (w.begin < crossing && above_rest(m, r, w.begin) > level) ++w.begin;
+  while (w.begin < crossing && above_stick(m, r, w.begin) > level) ++w.begin;
   w.squares.push_back(0);
   for (std::size_t i = w.begin; i <= crossing; ++i) {
-    w.v.push_back(above_rest(m, r, i));
+    w.v.push_back(above_stick(m, r, i));
     w.squares.push_back(w.squares.back() + w.v.back() * w.v.back());
   }
   w.crossing = static_cast<double>(crossing - w.begin);

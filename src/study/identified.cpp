@@ -67,7 +67,7 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
                                      const Segmentation& segmentation) {
   IdentifiedMachine out;
   const Condition& radius = motion.conditions.radius;
-  if (!rig.determined) out.reason = "no rig can be had: " + rig.reason;
+  if (!rig.determined) out.reason = "the rig could not be identified: " + rig.reason;
   if (out.reason.empty() && (!fit.converged || fit.parameters.empty())) {
     out.reason = "no law could be fitted" + (fit.messages.empty() ? "" : ": " + fit.messages.front());
   }
