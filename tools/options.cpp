@@ -188,10 +188,10 @@ static void check_figures(const Settings& s) {
   if (s.figures == s.json || s.figures == s.report) {
     throw CLI::ValidationError("--figures is a folder; name another than the file of --json or --report");
   }
-  if (!can_write_pictures()) {
-    throw CLI::ValidationError(
-        "--figures: gnuplot, which draws the pictures, is not installed; install it (Debian: apt install gnuplot-nox, "
-        "or scripts/setup figures), or save charts from the page of --report");
+  if (!can_write_pictures(picture_format(s))) {
+    throw CLI::ValidationError("--format " + s.picture_format +
+                               ": this build leaves it out; use --format svg, or build where Cairo is installed "
+                               "(scripts/setup figures)");
   }
 }
 

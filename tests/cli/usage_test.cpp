@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/report/pictures.hpp"
 
 namespace {
 
@@ -92,12 +93,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"OptionsBeforeTheVerb", "--radius 15mm effects", "effects"}),
     [](const auto& param_info) { return param_info.param.name; });
 
-TEST(Usage, FiguresNeedGnuplot) {
+TEST(Usage, SomeFormatsOfFiguresNeedCairo) {
+  if (tribofit::can_write_pictures(tribofit::PictureFormat::pdf)) GTEST_SKIP() << "this build has Cairo";
   const Workshop shop;
   shop.write("a.csv", good_trace());
-  const Outcome outcome = shop.shell("PATH=/nowhere; identify --radius 15mm --figures out a.csv");
+  const Outcome outcome = shop.identify("--radius 15mm --figures out --format pdf a.csv");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("gnuplot"), HasSubstr("not installed")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Cairo"), HasSubstr("--format svg")));
 }
 
 TEST(Usage, HelpAndVersion) {

@@ -12,7 +12,7 @@
 
 namespace tribofit {
 
-/// What stands in an SVG that gnuplot wrote.
+/// What stands in an SVG that write_pictures() wrote.
 
 using boost::property_tree::ptree;
 
@@ -34,18 +34,17 @@ struct Word {
   std::string text;
   double x = 0, y = 0;
 };
-/// Every <text> with the place of the group around it.
+inline double node_at(const ptree& node, const char* name) {
+  return node.get<double>(std::string("<xmlattr>.") + name, 0);  // 0: it stands upright, elsewhere
+}
+/// Every <text> with its place.
 inline void collect_words(const ptree& node, std::vector<Word>& words) {
   for (const auto& [name, child] : node) {
     if (name == "text") {
       Word word;
       append_text(child, word.text);
-      const std::string place = node.get<std::string>("<xmlattr>.transform", "");
-      std::smatch match;
-      if (std::regex_search(place, match, std::regex("translate\\(([-0-9.]+),([-0-9.]+)\\)"))) {
-        word.x = std::stod(match[1]);
-        word.y = std::stod(match[2]);
-      }
+      word.x = node_at(child, "x");
+      word.y = node_at(child, "y");
       words.push_back(word);
     }
     collect_words(child, words);
@@ -73,7 +72,7 @@ inline Word word(const std::string& svg, const std::string& text) {
 
 /// What is plotted, without axes and legend.
 inline std::string plotted(const std::string& svg) {
-  const std::string begin = "<g id=\"gnuplot_plot_", end = "</g>\n\t</g>";
+  const std::string begin = "<g class=\"plot\"", end = "</g>";
   std::string found;
   for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at + 1)) {
     found += svg.substr(at, svg.find(end, at) - at);
@@ -81,13 +80,13 @@ inline std::string plotted(const std::string& svg) {
   return found;
 }
 
-/// Points of all that is plotted as lines in this colour, as "rgb(  0, 114, 178)".
+/// Points of all that is plotted as lines in this colour, as "#0072b2".
 inline std::vector<std::array<double, 2>> path_in(const std::string& svg, const std::string& colour) {
-  const std::string drawn = plotted(svg), begin = "<path stroke='" + colour + "'", data = " d='";
+  const std::string drawn = plotted(svg), begin = "<path fill=\"none\" stroke=\"" + colour + "\"", data = " d=\"";
   std::string all;
   for (std::size_t at = drawn.find(begin); at != std::string::npos; at = drawn.find(begin, at + 1)) {
     const std::size_t from = drawn.find(data, at) + data.size();
-    all += drawn.substr(from, drawn.find('\'', from) - from) + " ";
+    all += drawn.substr(from, drawn.find('"', from) - from) + " ";
   }
   for (char& c : all) {
     if (c == 'M' || c == 'L' || c == ',') c = ' ';

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "report/charts/gnuplot_text.hpp"
-#include "report/charts/layout.hpp"
-#include "report/charts/scale.hpp"
-#include "report/charts/thin.hpp"
+#include "report/pictures/layout.hpp"
+#include "report/pictures/scale.hpp"
+#include "report/pictures/text.hpp"
+#include "report/pictures/thin.hpp"
 
 namespace tribofit {
 namespace {
@@ -98,7 +98,7 @@ TEST(Scale, IsThereWhateverTheData) {
 }
 
 TEST(ThinnedLine, StaysWithinItsTolerance) {
-  std::vector<PicturePoint> points;
+  std::vector<Point> points;
   for (int k = 0; k < 20000; ++k) points.push_back({k * 0.004, 2 * std::sin(k * 0.001) + (k == 9000 ? 5.0 : 0.0)});
   const std::vector<std::size_t> kept = thinned_line(points, 0.02);
   EXPECT_LT(kept.size(), 400u);
@@ -108,7 +108,7 @@ TEST(ThinnedLine, StaysWithinItsTolerance) {
   EXPECT_TRUE(std::binary_search(kept.begin(), kept.end(), 9000u));  // the peak
   double farthest = 0;
   for (std::size_t s = 0; s + 1 < kept.size(); ++s) {
-    const PicturePoint &a = points[kept[s]], &b = points[kept[s + 1]];
+    const Point &a = points[kept[s]], &b = points[kept[s + 1]];
     for (std::size_t k = kept[s]; k <= kept[s + 1]; ++k) {
       if (k >= 8990 && k <= 9010) continue;  // upright there, where the distance along the ordinate means nothing
       const double part = b.x > a.x ? (points[k].x - a.x) / (b.x - a.x) : 0;
@@ -126,17 +126,32 @@ TEST(ThinnedLine, OfFewPointsIsAll) {
   EXPECT_THAT(thinned_points({{0, 0}, {0.001, 0.001}, {1, 1}}, 0.1), ElementsAre(0, 2));
 }
 
-TEST(GnuplotText, CannotEndItsQuotes) {
-  EXPECT_EQ(quoted("it's"), "'it''s'");
-  EXPECT_EQ(quoted("a\nb\tc\x7f\xC2\x85"
-                   "d"),
-            "'a b c  d'");
-  EXPECT_EQ(quoted("\xff'\\"), "'\xEF\xBF\xBD''\\'");
-  EXPECT_EQ(quoted_markup("v_{r} [s^{2}] a_b {x} & @ ~ \\"), "'v_{r}\xC2\xA0[s^{2}] a\\_b \\{x\\} \\& \\@ \\~ \\\\'");
-  EXPECT_EQ(quoted_markup("_{open"), "'\\_\\{open'");
+TEST(PictureText, IsOneLineOfValidCharacters) {
+  EXPECT_EQ(one_line("it's \\"), "it's \\");
+  EXPECT_EQ(one_line("a\nb\tc\x7f\xC2\x85"
+                     "d"),
+            "a b c  d");
+  EXPECT_EQ(one_line("\xff'\\"), "\xEF\xBF\xBD'\\");
 }
 
-TEST(GnuplotText, IsShortenedInItsMiddle) {
+TEST(PictureText, IsCutAtWhatIsSetLowAndHigh) {
+  const auto cut = [](const char* text) {
+    std::string out;
+    for (const TextPiece& piece : pieces_of(text)) out += std::to_string(piece.level) + "<" + piece.text + ">";
+    return out;
+  };
+  EXPECT_EQ(cut("v_{r} [s^{2}] a_b {x}"), "0<v>-1<r>0< [s>1<2>0<] a_b {x}>");
+  EXPECT_EQ(cut("_{open"), "0<_{open>");
+  EXPECT_EQ(cut(""), "");
+}
+
+/// Widths of Helvetica as Adobe's metrics have them (AFM): 722 + 556 + 222 = 1500 thousandths of the size.
+TEST(PictureText, HasTheWidthsOfHelvetica) {
+  EXPECT_NEAR(width_of("Hel", 10), 1.5 * 10 * 25.4 / 72, 1e-9);
+  EXPECT_NEAR(width_of("0123456789", 8), 5.56 * 8 * 25.4 / 72, 1e-9);
+}
+
+TEST(PictureText, IsShortenedInItsMiddle) {
   const std::string path(300, 'x');
   const std::string text = shortened("first" + path + "last", 30);
   EXPECT_THAT(text, StartsWith("first"));

@@ -9,7 +9,7 @@
 namespace tribofit {
 
 /// A picture as data: what it shows, in the units people read, and how its parts are told apart. It is drawn by the
-/// page (page/chart.js, with Plotly) and by write_pictures() (with gnuplot), from the same numbers.
+/// page (page/chart.js, with Plotly) and by write_pictures(), from the same numbers and the same styles.
 ///
 /// Texts may hold subscripts and superscripts as "v_{r}" and "s^{2}"; names of lines, categories and files are taken as
 /// they are. Colours are those of Okabe and Ito, told apart by people who do not see colours alike; as a colour alone
@@ -67,8 +67,6 @@ struct Stretch {
   double from = 0, to = 0;
   Shade shade = Shade::stick;
 };
-/// What a shade means, for the legend: "stick", "slip", "beyond the data", "left out".
-std::string meaning_of(Shade shade);
 
 /// A straight line across a panel (upright: over all of them) with a word beside it.
 struct ChartMark {

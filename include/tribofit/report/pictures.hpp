@@ -9,7 +9,8 @@ namespace tribofit {
 
 /// Charts of a report as pictures for a paper: a file of each, as wide as a column of a journal (85 mm), with a
 /// sans-serif face of 8 points and units in the titles of its axes. Their captions belong to the paper: figures.txt
-/// beside them has title and note of each. gnuplot draws them, which must be installed when they are written.
+/// beside them has title and note of each. SVG keeps its texts as text; PDF (letters embedded) and PNG are drawn by
+/// Cairo, which a build may leave out. What is where is the same in all of them, on every machine.
 
 enum class PictureFormat { svg, pdf, png };
 inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
@@ -17,14 +18,14 @@ inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
 /// "svg", "pdf", "png".
 std::string name_of(PictureFormat format);
 
-/// Whether gnuplot is found.
-bool can_write_pictures();
+/// Whether this build writes this format: SVG always, PDF and PNG where Cairo was found.
+bool can_write_pictures(PictureFormat format);
 
 /// Pictures of all charts of a report, made and on the disc but without their names until commit().
 ///
 /// Lines that the page shows only when its legend is used are left out. Names in the charts are shown as they are,
-/// whatever they hold. Throws InputError where gnuplot is missing or fails, or the folder cannot be written; nothing is
-/// left then. Cost: linear in points, and a fraction of a second for each picture.
+/// whatever they hold. Throws InputError where can_write_pictures() is false or the folder cannot be written; nothing is
+/// left then. Cost: linear in points, a few milliseconds for each picture.
 class PictureFiles {
  public:
   PictureFiles(const Report& report, const std::string& folder, PictureFormat format);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "report/campaign_cells.hpp"
-#include "strokes.hpp"
+#include "styles.hpp"
 #include "tribofit/report/campaign.hpp"
 
 namespace tribofit {

@@ -186,7 +186,7 @@ Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fa
       "over a turn of the disc.";
   chart.height = 560;
   chart.x = {"relative velocity |v_{r}|", "mm/s"};
-  chart.panels = {panel(friction_axis(d.trace.motion), 1.35)};
+  chart.panels = {{friction_axis(d.trace.motion), 1.35}};
   const std::vector<double>& friction = d.trace.motion.friction;
   for (const auto& [branch, band] :
        bands_over_speed(d.trace, pieces, fastest, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
@@ -197,7 +197,7 @@ Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fa
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
-  chart.panels.push_back(panel({"residual / floor", "1"}));
+  chart.panels.push_back({{"residual / floor", "1"}});
   add_residuals(d, pieces, fastest, chart);
   for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
   return chart;
@@ -217,12 +217,12 @@ class ErrorChart {
     chart_.half = true;
   }
   void add(const std::string& name, std::size_t k, const DrawnExtremes& errors) {
-    constexpr std::array<Symbol, 3> kSymbols = {Symbol::triangle_up, Symbol::square, Symbol::cross};
+    constexpr std::array<Symbol, 3> kLargest = {Symbol::triangle_up, Symbol::square, Symbol::cross};
     const Colour colour = model_stroke(k).colour;
     const bool shown = k < 2;
     chart_.lines.push_back({name + ", mean", errors.at, errors.mean, {colour, model_stroke(k).dash}});
     chart_.lines.back().shown = shown;
-    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kSymbols[k % 3], 5)});
+    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kLargest[k % 3], 5)});
     chart_.lines.back().shown = shown;
   }
   Chart chart() const { return chart_; }

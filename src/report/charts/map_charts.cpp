@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "report/numbers.hpp"
-#include "strokes.hpp"
 #include "study_parts.hpp"
+#include "styles.hpp"
 
 namespace tribofit {
 namespace {

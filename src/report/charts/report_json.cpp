@@ -4,22 +4,51 @@
 #include <string_view>
 #include <utility>
 
+#include "report/charts/styles.hpp"
 #include "report/page_series.hpp"
 
 namespace tribofit {
 namespace {
 
-template <class Enum, std::size_t N>
-std::string_view name_of(Enum value, const std::array<std::string_view, N>& names) {
-  return names.at(static_cast<std::size_t>(value));
+constexpr std::array<std::string_view, 6> kTexts = {"plain", "soft", "warning", "command", "heading", "item"};
+
+std::string rgba(const Paint& paint) {
+  const auto part = [&](std::size_t at) { return std::stoi(std::string(paint.colour.substr(at, 2)), nullptr, 16); };
+  return fmt::format("rgba({},{},{},{})", part(1), part(3), part(5), paint.opacity);
 }
 
-constexpr std::array<std::string_view, 6> kColours = {"black", "blue", "red", "green", "purple", "grey"};
-constexpr std::array<std::string_view, 5> kDashes = {"solid", "dash", "dot", "dashdot", "longdash"};
-constexpr std::array<std::string_view, 7> kSymbols = {"none",        "circle",        "square", "diamond",
-                                                      "triangle-up", "triangle-down", "x"};
-constexpr std::array<std::string_view, 4> kShades = {"stick", "slip", "beyond", "left-out"};
-constexpr std::array<std::string_view, 6> kTexts = {"plain", "soft", "warning", "command", "heading", "item"};
+/// Corners as an SVG path in a box of 2 by 2 about the origin; a circle where there are none.
+std::string path_of(const SymbolStyle& style) {
+  if (style.count == 0) return "M-1,0a1,1 0 1,0 2,0a1,1 0 1,0 -2,0z";
+  std::string path;
+  for (std::size_t k = 0; k < style.count; ++k) {
+    const bool lifted = k == 0 || (style.name == "x" && k == 2);
+    path += fmt::format("{}{},{}", lifted ? 'M' : 'L', style.corners[k][0], -style.corners[k][1]);
+  }
+  return path + (style.name == "x" ? "" : "z");
+}
+
+/// Everything about styles that the page must know, under the names that lines, bars and stretches use.
+Json styles_json() {
+  Json json;
+  for (std::size_t k = 0; k < kColours.size(); ++k) {
+    json["colours"][kColours[k].name] = kColours[k].rgb;
+    json["pale"][kColours[k].name] = rgba(pale(static_cast<Colour>(k)));
+  }
+  for (const DashStyle& dash : kDashes) {
+    std::string lengths;
+    for (const double length : dash.lengths) {
+      if (length > 0) lengths += fmt::format("{}{}px", lengths.empty() ? "" : ",", length);
+    }
+    json["dashes"][dash.name] = lengths.empty() ? "solid" : lengths;
+  }
+  for (const SymbolStyle& symbol : kSymbols) json["symbols"][symbol.name] = path_of(symbol);
+  for (const ShadeStyle& shade : kShades) {
+    json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
+  }
+  json["heat"] = kHeatColours;
+  return json;
+}
 
 Json axis_json(const ChartAxis& axis) {
   Json json = {{"quantity", axis.quantity}, {"unit", axis.unit}};
@@ -36,12 +65,12 @@ Json line_json(const ChartLine& line, int digits_of_x) {
   const Stroke& stroke = line.stroke;
   Json json = {{"name", line.name},
                {"x", numbers_json(line.x, digits_of_x)},
-               {"colour", name_of(stroke.colour, kColours)},
-               {"dash", name_of(stroke.dash, kDashes)},
+               {"colour", style_of(stroke.colour, kColours).name},
+               {"dash", style_of(stroke.dash, kDashes).name},
                {"width", stroke.width}};
   if (!line.y.empty()) json["y"] = numbers_json(line.y);
   if (stroke.symbol != Symbol::none) {
-    json["symbol"] = name_of(stroke.symbol, kSymbols);
+    json["symbol"] = style_of(stroke.symbol, kSymbols).name;
     json["size"] = stroke.size;
   }
   if (!stroke.joined) json["joined"] = false;
@@ -72,13 +101,11 @@ Json map_json(const HeatMap& map, const ChartAxis& x) {
 void add_annotations(const Chart& chart, Json& json) {
   const int digits = chart.x.digits;
   for (const Stretch& s : chart.stretches) {
-    json["stretches"].push_back({{"from", rounded(s.from, digits)},
-                                 {"to", rounded(s.to, digits)},
-                                 {"shade", name_of(s.shade, kShades)},
-                                 {"meaning", meaning_of(s.shade)}});
+    json["stretches"].push_back(
+        {{"from", rounded(s.from, digits)}, {"to", rounded(s.to, digits)}, {"shade", style_of(s.shade, kShades).name}});
   }
   for (const ChartMark& mark : chart.marks) {
-    Json one = {{"at", rounded(mark.at, kTimeDigits)}, {"dash", name_of(mark.dash, kDashes)}};
+    Json one = {{"at", rounded(mark.at, kTimeDigits)}, {"dash", style_of(mark.dash, kDashes).name}};
     if (mark.upright) one["upright"] = true;
     if (!mark.text.empty()) one["text"] = mark.text;
     if (mark.panel > 0) one["panel"] = mark.panel;
@@ -92,7 +119,7 @@ void add_annotations(const Chart& chart, Json& json) {
 }
 
 Json text_json(const ReportText& text) {
-  return {{"type", "text"}, {"kind", name_of(text.kind, kTexts)}, {"text", text.text}};
+  return {{"type", "text"}, {"kind", style_of(text.kind, kTexts)}, {"text", text.text}};
 }
 
 Json table_json(const ReportTable& table) {
@@ -130,11 +157,6 @@ struct ItemJson {
 
 }  // namespace
 
-std::string meaning_of(Shade shade) {
-  constexpr std::array<std::string_view, 4> kMeanings = {"stick", "slip", "beyond the data", "left out"};
-  return std::string(name_of(shade, kMeanings));
-}
-
 Json chart_json(const Chart& chart) {
   Json json = {{"type", "chart"},        {"id", chart.id},          {"title", chart.title},   {"note", chart.note},
                {"height", chart.height}, {"x", axis_json(chart.x)}, {"panels", Json::array()}};
@@ -146,7 +168,7 @@ Json chart_json(const Chart& chart) {
   for (const ChartBars& bars : chart.bars) {
     json["bars"].push_back({{"name", bars.name},
                             {"values", numbers_json(bars.values)},
-                            {"colour", name_of(bars.colour, kColours)},
+                            {"colour", style_of(bars.colour, kColours).name},
                             {"hatched", bars.hatched}});
   }
   if (chart.map) json["map"] = map_json(*chart.map, chart.x);
@@ -155,9 +177,9 @@ Json chart_json(const Chart& chart) {
 }
 
 Json report_json(const Report& report) {
-  Json json = {{"kind", report.kind},      {"title", report.title},       {"subtitle", report.subtitle},
-               {"lead", report.lead},      {"warnings", report.warnings}, {"facts", Json::array()},
-               {"sections", Json::array()}};
+  Json json = {{"kind", report.kind},       {"title", report.title},       {"subtitle", report.subtitle},
+               {"lead", report.lead},       {"warnings", report.warnings}, {"facts", Json::array()},
+               {"sections", Json::array()}, {"styles", styles_json()}};
   for (const auto& [name, value] : report.facts) json["facts"].push_back(Json::array({name, value}));
   for (const ReportSection& section : report.sections) {
     Json one = {{"id", section.id}, {"title", section.title}, {"items", Json::array()}};

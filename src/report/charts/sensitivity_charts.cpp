@@ -5,8 +5,8 @@
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
-#include "strokes.hpp"
 #include "study_parts.hpp"
+#include "styles.hpp"
 
 namespace tribofit {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
-#include "strokes.hpp"
 #include "study_parts.hpp"
+#include "styles.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kUp = "begun in stick (way up)";
 constexpr const char* kDown = "begun in sliding (way down)";
-constexpr const char* kMeasured = "measured";
+constexpr const char* kOfRecord = "measured";
 constexpr const char* kRange = "95 % range of a critical speed";
 
 /// An upright mark at each critical speed; what happens at one speed shares a mark.
@@ -74,13 +74,13 @@ void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::siz
   if (value == nullptr || !std::isfinite(value->value)) return;
   const double y = value->value / measure.si;
   const double error = std::isfinite(value->std_error) ? 1.96 * value->std_error / measure.si : 0;
-  ChartLine line{kMeasured,  {of.machine.disc_velocity() / kMillimetre}, {y}, marked(0, false), {y - error},
+  ChartLine line{kOfRecord,  {of.machine.disc_velocity() / kMillimetre}, {y}, marked(0, false), {y - error},
                  {y + error}};
   line.stroke.symbol = Symbol::cross;
   line.stroke.size = 9;
   line.bars = true;
   line.panel = panel;
-  for (const ChartLine& other : chart.lines) line.listed &= other.name != kMeasured;
+  for (const ChartLine& other : chart.lines) line.listed &= other.name != kOfRecord;
   chart.lines.push_back(std::move(line));
 }
 

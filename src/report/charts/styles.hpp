@@ -1,12 +1,85 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <string_view>
+#include <utility>
 
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {
 
-/// How the same thing is drawn in every chart.
+/// What colours, dashes, symbols and shades look like, for page and pictures alike; the page gets them as data
+/// (styles_json()).
+
+/// A colour over what lies below it.
+struct Paint {
+  std::string_view colour = "#000000";
+  double opacity = 1;
+};
+
+/// Colours of Okabe and Ito, purple and grey darkened to be read on white; by the value of Colour.
+struct ColourStyle {
+  std::string_view name, rgb;
+};
+inline constexpr std::array<ColourStyle, 6> kColours = {{{"black", "#000000"},
+                                                         {"blue", "#0072b2"},
+                                                         {"red", "#d55e00"},
+                                                         {"green", "#009e73"},
+                                                         {"purple", "#a0508a"},
+                                                         {"grey", "#6b6b6b"}}};
+constexpr Paint ink(Colour colour) {
+  return {kColours[static_cast<std::size_t>(colour)].rgb};
+}
+/// Of a band under its line.
+constexpr Paint pale(Colour colour) {
+  return {ink(colour).colour, colour == Colour::black ? 0.14 : 0.22};
+}
+
+/// Strokes and gaps in turn [CSS pixels]; 0 ends the list. By the value of Dash.
+struct DashStyle {
+  std::string_view name;
+  std::array<double, 4> lengths;
+};
+inline constexpr std::array<DashStyle, 5> kDashes = {
+    {{"solid", {}}, {"dash", {8, 4}}, {"dot", {2, 3}}, {"dashdot", {9, 3, 2, 3}}, {"longdash", {15.5, 4.5}}}};
+
+/// A symbol about as large as a circle of radius 1, ordinates upwards: an area, or strokes from each point to the next
+/// but one (the cross). By the value of Symbol; the names are those of plotly.js.
+struct SymbolStyle {
+  std::string_view name;
+  std::size_t count;
+  std::array<std::array<double, 2>, 4> corners;
+};
+inline constexpr std::array<SymbolStyle, 7> kSymbols = {
+    {{"none", 0, {}},
+     {"circle", 0, {}},
+     {"square", 4, {{{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}}},
+     {"diamond", 4, {{{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}}}},
+     {"triangle-up", 3, {{{-1.25, -0.9}, {1.25, -0.9}, {0, 1.2}}}},
+     {"triangle-down", 3, {{{-1.25, 0.9}, {1.25, 0.9}, {0, -1.2}}}},
+     {"x", 4, {{{-0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}, {0.9, -0.9}}}}}};
+
+/// By the value of Shade.
+struct ShadeStyle {
+  std::string_view name, meaning;
+  Paint paint;
+};
+inline constexpr std::array<ShadeStyle, 4> kShades = {{{"stick", "stick", {"#000000", 0.07}},
+                                                       {"slip", "slip", {"#e69f00", 0.16}},
+                                                       {"beyond", "beyond the data", {"#000000", 0.11}},
+                                                       {"left-out", "left out", {"#a0508a", 0.2}}}};
+
+/// Cividis (Nunez, Anderton & Renslow 2018), made for people who do not see colours alike: lightness rises evenly.
+inline constexpr std::array<std::string_view, 10> kHeatColours = {
+    "#00204c", "#00336f", "#39486b", "#575c6d", "#707173", "#8a8779", "#a69d75", "#c4b56c", "#e4cf5b", "#ffe945"};
+
+template <class Enum, class Styles>
+constexpr const auto& style_of(Enum value, const Styles& styles) {
+  return styles[static_cast<std::size_t>(value)];
+}
+
+// How the same thing is drawn in every chart.
 
 inline constexpr Stroke kMeasured = {Colour::blue, Dash::solid, Symbol::none, 1.1};
 inline constexpr Stroke kDisc = {Colour::red, Dash::dashed, Symbol::none, 1.5};
@@ -21,13 +94,26 @@ inline Stroke model_stroke(std::size_t k) {
   return kModels[k < 4 ? k : 3];
 }
 
+/// The k-th of several lines: distinguished by colour and by dash, so that black and white will do.
+inline Stroke stroke_of(std::size_t k) {
+  constexpr std::size_t kCount = kDashes.size();
+  return {.colour = static_cast<Colour>(k % kColours.size()),
+          .dash = static_cast<Dash>((k + k / kColours.size()) % kCount)};
+}
+
+/// The same for points that stand for something each, joined or not.
+inline Stroke marked(std::size_t k, bool joined = true) {
+  constexpr std::array kOrder = {Symbol::circle,  Symbol::square,        Symbol::triangle_up,
+                                 Symbol::diamond, Symbol::triangle_down, Symbol::cross};
+  Stroke out = stroke_of(k);
+  out.symbol = kOrder[k % kOrder.size()];
+  out.joined = joined;
+  return out;
+}
+
 /// Points that are not joined.
 constexpr Stroke dots(Colour colour, Symbol symbol, double size = 5) {
   return {colour, Dash::solid, symbol, 1.6, size, false};
-}
-
-inline ChartPanel panel(ChartAxis axis, double part = 1) {
-  return {std::move(axis), part};
 }
 
 }  // namespace tribofit

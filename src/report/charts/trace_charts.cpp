@@ -77,7 +77,7 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   Chart chart;
   chart.x = {"time", "s"};
   chart.x.digits = kTimeDigits;
-  chart.panels = {panel(friction_axis(motion), 1.3), panel({velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"})};
+  chart.panels = {{friction_axis(motion), 1.3}, {{velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"}}};
   chart.lines.push_back(line_of(d, w, "measured", motion.friction, kMeasured));
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
     chart.lines.push_back(line_of(d, w, d.models[k].name, d.predictions[k], model_stroke(k)));

@@ -6,8 +6,8 @@
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "report/twin_sentences.hpp"
-#include "strokes.hpp"
 #include "study_parts.hpp"
+#include "styles.hpp"
 #include "tribofit/report/twin.hpp"
 
 namespace tribofit {
@@ -31,9 +31,9 @@ std::vector<NamedMotion> motions_of(const Twin& twin) {
 }
 
 Stroke stroke_for(std::size_t k) {
-  constexpr Colour kColours[] = {Colour::black, Colour::red, Colour::blue};
-  constexpr Dash kDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
-  return {.colour = kColours[k % 3], .dash = kDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
+  constexpr Colour kThree[] = {Colour::black, Colour::red, Colour::blue};
+  constexpr Dash kThreeDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
+  return {.colour = kThree[k % 3], .dash = kThreeDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
 }
 
 /// Differences in standard errors; within the marks they may be chance.

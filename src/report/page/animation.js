@@ -8,13 +8,6 @@ const slowness = [["10 times as fast", 10], ["as it is", 1], ["half as fast", 0.
 const scene = { width: 420, height: 242, wall: 14, rest: 170, block: 64, deck: 96, reach: 150, plotTop: 138,
   plotBottom: 212, plotLeft: 44, plotRight: 410 };
 
-function svgPart(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
-
 /** Index of the last sample at or before a time. */
 function sampleAt(time, t) {
   let low = 0, high = time.length - 1;
@@ -52,20 +45,20 @@ function blockScene(block, animation, bounds) {
   const toX = (t) => s.plotLeft + (t / loop) * (s.plotRight - s.plotLeft);
   const toY = (x) => s.plotBottom - ((x - bounds.low) / Math.max(bounds.high - bounds.low, 1e-12)) *
     (s.plotBottom - s.plotTop);
-  const spring = svgPart("path", { fill: "none", stroke: ink.black, "stroke-width": 1.6 });
-  const body = svgPart("rect", { y: s.deck - 34, width: s.block, height: 34, stroke: ink.black, "stroke-width": 1.6 });
+  const spring = svgPart("path", { fill: "none", stroke: styles.colours.black, "stroke-width": 1.6 });
+  const body = svgPart("rect", { y: s.deck - 34, width: s.block, height: 34, stroke: styles.colours.black, "stroke-width": 1.6 });
   const word = svgPart("text", { y: s.deck - 13, "text-anchor": "middle", "font-size": 13 });
-  const marks = svgPart("path", { stroke: ink.black, "stroke-width": 1.4 });
-  const dot = svgPart("circle", { r: 4.5, fill: ink.red, stroke: "#fff" });
+  const marks = svgPart("path", { stroke: styles.colours.black, "stroke-width": 1.4 });
+  const dot = svgPart("circle", { r: 4.5, fill: styles.colours.red, stroke: "#fff" });
   const small = { "font-size": 12, fill: "#1b1b1b" };
   const element = svgPart("svg", { viewBox: `0 0 ${s.width} ${s.height}`, role: "img", "aria-label":
       `${block.name}: block on its disc, displacement from ${shortNumber(bounds.low)} to ${shortNumber(bounds.high)} mm` },
   svgPart("text", { x: s.wall, y: 20, "font-size": 14, "font-weight": 600 }, block.name),
-  svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: ink.black, "stroke-width": 4 }), spring, body, word,
-  svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: ink.black }), marks,
+  svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: styles.colours.black, "stroke-width": 4 }), spring, body, word,
+  svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: styles.colours.black }), marks,
   svgPart("text", { x: s.width - 4, y: s.deck + 28, "text-anchor": "end", ...small },
     `disc ${shortNumber(animation.disc_velocity)} mm/s \u2192`),
-  svgPart("path", { d: loopPath(block, toX, toY), fill: "none", stroke: ink.blue, "stroke-width": 1.4 }),
+  svgPart("path", { d: loopPath(block, toX, toY), fill: "none", stroke: styles.colours.blue, "stroke-width": 1.4 }),
   svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: "#444" }),
   svgPart("text", { x: s.plotLeft - 4, y: s.plotTop + 6, "text-anchor": "end", ...small }, shortNumber(bounds.high)),
   svgPart("text", { x: s.plotLeft - 4, y: s.plotBottom, "text-anchor": "end", ...small }, shortNumber(bounds.low)),

@@ -1,14 +1,15 @@
 // Makes page_parts.cpp: the page as string literals, with every script known to its Content-Security-Policy by hash.
-// usage: node assemble.mjs OUTPUT.cpp LIBRARY.js index.html page.css SCRIPT.js...
+// usage: node assemble.mjs OUTPUT.cpp LIBRARY.js index.html STYLE.css... SCRIPT.js...
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 
-const [output, libraryPath, htmlPath, cssPath, ...scriptPaths] = process.argv.slice(2);
+const [output, libraryPath, htmlPath, ...others] = process.argv.slice(2);
 const read = (path) => readFileSync(path, "utf8");
+const all = (ending) => others.filter((path) => path.endsWith(ending)).map(read).join("\n");
 
 // Within a page a script ends at the first "</script", wherever that stands.
 const library = read(libraryPath).replace(/<(?=\/script|!--)/gi, "\\x3c");
-const own = '"use strict";\n' + scriptPaths.map(read).join("\n");
+const own = '"use strict";\n' + all(".js");
 if (/<\/script|<!--/i.test(own)) throw new Error("a script of the page holds '</script' or '<!--'");
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
@@ -23,7 +24,7 @@ const policy = [
 
 const parts = {
   "@POLICY@": policy,
-  "@STYLE@": read(cssPath),
+  "@STYLE@": all(".css"),
   "@LIBRARY@": library,
   "@SCRIPT@": own,
 };

@@ -1,11 +1,7 @@
 // Draws a chart as the program describes it (include/tribofit/report/chart.hpp), with its title, legend, tools and
-// numbers. Colours are those of Okabe and Ito, told apart by people who do not see colours alike.
+// numbers.
 
-const ink = { black: "#000000", blue: "#0072b2", red: "#d55e00", green: "#009e73", purple: "#a0508a", grey: "#6b6b6b" };
-const pale = { blue: "rgba(0,114,178,0.22)", red: "rgba(213,94,0,0.22)", black: "rgba(0,0,0,0.14)",
-  green: "rgba(0,158,115,0.2)", purple: "rgba(160,80,138,0.2)", grey: "rgba(107,107,107,0.2)" };
-const shades = { stick: "rgba(0,0,0,0.07)", slip: "rgba(230,159,0,0.16)", beyond: "rgba(0,0,0,0.09)",
-  "left-out": "rgba(160,80,138,0.2)" };
+const styles = {}; // colours, dashes, symbols and shades of the report that is shown
 
 /** Text that a chart takes as text: no tags, no entities. */
 function plain(text) {
@@ -19,11 +15,7 @@ function marked(text) {
 }
 
 const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
-
-function titleOf(axis) {
-  return axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity;
-}
-
+const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
 const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
 
 function axisOf(axis, more = {}) {
@@ -37,8 +29,7 @@ function axisOf(axis, more = {}) {
   if (axis.logarithmic) layout.type = "log";
   if (axis.from_zero) layout.rangemode = "tozero";
   if (axis.low !== undefined && axis.high !== undefined) {
-    const ends = axis.logarithmic ? [Math.log10(axis.low), Math.log10(axis.high)] : [axis.low, axis.high];
-    layout.range = ends;
+    layout.range = axis.logarithmic ? [Math.log10(axis.low), Math.log10(axis.high)] : [axis.low, axis.high];
   }
   if (axis.falling && layout.range) layout.range = [...layout.range].reverse();
   else if (axis.falling) layout.autorange = "reversed";
@@ -58,7 +49,7 @@ function hoverOf(chart, panel, bars) {
 /** A band under its line, switched together with it. */
 function bandOf(line, edge) {
   return [{ ...edge, name: `${plain(line.name)}, lower edge`, y: line.low },
-    { ...edge, name: `${plain(line.name)}, upper edge`, y: line.high, fill: "tonexty", fillcolor: pale[line.colour] }];
+    { ...edge, name: `${plain(line.name)}, upper edge`, y: line.high, fill: "tonexty", fillcolor: styles.pale[line.colour] }];
 }
 
 function tracesOfLine(chart, line) {
@@ -67,7 +58,7 @@ function tracesOfLine(chart, line) {
   const traces = [];
   if (line.low && !line.bars) {
     traces.push(...bandOf(line, { ...common, mode: "lines", showlegend: false, hoverinfo: "skip",
-      line: { width: 0, color: ink[line.colour] } }));
+      line: { width: 0, color: styles.colours[line.colour] } }));
   }
   if (!line.y) {
     if (traces.length > 0 && line.listed !== false) traces[traces.length - 1].showlegend = true;
@@ -75,13 +66,13 @@ function tracesOfLine(chart, line) {
   }
   const joined = line.joined !== false;
   const trace = { ...common, mode: line.symbol ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
-    y: line.y, line: { color: ink[line.colour], dash: line.dash, width: line.width },
-    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: ink[line.colour] },
+    y: line.y, line: { color: styles.colours[line.colour], dash: styles.dashes[line.dash], width: line.width },
+    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: styles.colours[line.colour] },
     showlegend: line.listed !== false, ...hoverOf(chart, line.panel, line.bars) };
   if (chart.x.names) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
   if (line.bars) {
     trace.error_y = { type: "data", symmetric: false, array: line.y.map((y, k) => line.high[k] - y),
-      arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color: ink[line.colour] };
+      arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color: styles.colours[line.colour] };
     trace.text = line.y.map((_, k) => `from ${number(line.low[k], 5)} to ${number(line.high[k], 5)}`);
   }
   traces.push(trace);
@@ -92,7 +83,7 @@ function tracesOfBars(chart, bars) {
   const y = chart.panels[0].axis;
   return { type: "bar", orientation: "h", name: plain(bars.name), legendgroup: bars.name, x: bars.values,
     y: bars.values.map((_, k) => k), customdata: y.names.map(plain),
-    marker: { color: ink[bars.colour], line: { color: "#000", width: 1 },
+    marker: { color: styles.colours[bars.colour], line: { color: "#000", width: 1 },
       pattern: { shape: bars.hatched ? "/" : "", fillmode: "overlay", fgcolor: "#fff", size: 6, solidity: 0.35 } },
     hovertemplate: `%{customdata}: %{x:.4g}${plain(unitOf(chart.x))}<extra>%{fullData.name}</extra>` };
 }
@@ -100,7 +91,7 @@ function tracesOfBars(chart, bars) {
 function traceOfMap(chart) {
   const map = chart.map, x = chart.x, y = chart.panels[0].axis;
   return { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low, zmax: map.high,
-    zauto: map.low === undefined, colorscale: "Cividis", hoverongaps: false,
+    zauto: map.low === undefined, colorscale: styles.heat.map((colour, k) => [k / (styles.heat.length - 1), colour]), hoverongaps: false,
     colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12 },
     hovertemplate: `${marked(x.quantity)} %{x}${plain(unitOf(x))}<br>${marked(y.quantity)} %{y}${plain(unitOf(y))}` +
       `<br>%{z:.5g}${plain(unitOf(map))}<extra></extra>` };
@@ -108,16 +99,20 @@ function traceOfMap(chart) {
 
 function tracesOf(chart) {
   const traces = chart.map ? [traceOfMap(chart)] : [];
-  for (const line of chart.lines || []) traces.push(...tracesOfLine(chart, line));
+  const listed = new Set(); // the legend names each once
+  for (const line of chart.lines || []) {
+    traces.push(...tracesOfLine(chart, listed.has(line.name) ? { ...line, listed: false } : line));
+    if (line.listed !== false) listed.add(line.name);
+  }
   for (const bars of chart.bars || []) traces.push(tracesOfBars(chart, bars));
   return traces;
 }
 
 function shapesOf(chart) {
   const shapes = (chart.stretches || []).map((s) => ({ type: "rect", layer: "below", xref: "x", yref: "paper", x0: s.from,
-    x1: s.to, y0: 0, y1: 1, line: { width: 0 }, fillcolor: shades[s.shade] }));
+    x1: s.to, y0: 0, y1: 1, line: { width: 0 }, fillcolor: styles.shades[s.shade].fill }));
   for (const mark of chart.marks || []) {
-    const line = { color: "#444", width: 1.3, dash: mark.dash };
+    const line = { color: "#444", width: 1.3, dash: styles.dashes[mark.dash] };
     shapes.push(mark.upright
       ? { type: "line", xref: "x", yref: "paper", x0: mark.at, x1: mark.at, y0: 0, y1: 1, line }
       : { type: "line", xref: "paper", x0: 0, x1: 1, yref: nth("y", mark.panel), y0: mark.at, y1: mark.at, line });
@@ -127,12 +122,12 @@ function shapesOf(chart) {
 
 function annotationsOf(chart) {
   const log = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
-  const words = (chart.marks || []).filter((mark) => mark.text).map((mark) => (mark.upright
-    ? { xref: "x", x: log(chart.x, mark.at), xanchor: "left", yref: "paper", y: 1, yanchor: "top", textangle: 0 }
-    : { xref: "paper", x: 0, xanchor: "left", yref: nth("y", mark.panel), y: log(chart.panels[mark.panel || 0].axis, mark.at),
-      yanchor: "bottom" })).map((place, k) => ({ ...place, text: marked((chart.marks || []).filter((m) => m.text)[k].text),
-    yshift: place.yref === "paper" ? -15 * (k % 3) : 0, // words of upright marks that are close stand below each other
-    showarrow: false, font: { size: 11 }, bgcolor: "rgba(255,255,255,0.7)" }));
+  const named = (chart.marks || []).filter((mark) => mark.text);
+  const words = named.map((mark, k) => ({ text: marked(mark.text), showarrow: false, font: { size: 11 },
+    bgcolor: "rgba(255,255,255,0.7)", xanchor: "left", textangle: 0, ...(mark.upright
+      ? { xref: "x", x: log(chart.x, mark.at), yref: "paper", y: 1, yanchor: "top", yshift: -15 * (k % 3) } // close ones
+      : { xref: "paper", x: 0, yref: nth("y", mark.panel), y: log(chart.panels[mark.panel || 0].axis, mark.at),
+        yanchor: "bottom" }) }));
   for (const label of chart.labels || []) {
     words.push({ x: log(chart.x, label.x), y: log(chart.panels[label.panel || 0].axis, label.y), yref: nth("y", label.panel),
       text: marked(label.text), showarrow: false, yanchor: "bottom", yshift: 14, font: { size: 11 }, bgcolor: "#fff" });
@@ -179,7 +174,7 @@ function rowsOf(chart) {
     chart.map.z.forEach((row, i) => row.forEach((z, k) => z !== null && rows.push([
       `${unmarked(titleOf(chart.panels[0].axis))} = ${chart.map.y[i]}`, chart.map.x[k], quantity, z, null, null])));
   }
-  for (const stretch of chart.stretches || []) rows.push([stretch.meaning, stretch.from, "end", stretch.to, null, null]);
+  for (const stretch of chart.stretches || []) rows.push([styles.shades[stretch.shade].meaning, stretch.from, "end", stretch.to, null, null]);
   return rows;
 }
 
@@ -187,32 +182,23 @@ const headerOf = (chart) => ["line", unmarked(chart.bars ? "name" : titleOf(char
 
 /** What a line looks like, for the legend. */
 function swatch(trace) {
-  const space = "http://www.w3.org/2000/svg";
-  const draw = (tag, attributes) => {
-    const element = document.createElementNS(space, tag);
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-    return element;
-  };
-  const svg = draw("svg", { width: 34, height: 12, "aria-hidden": "true" });
+  const svg = svgPart("svg", { width: 34, height: 12, "aria-hidden": "true" });
   if (trace.type === "bar" || trace.fill) {
     const fill = trace.fill ? trace.fillcolor : trace.marker.color;
-    svg.append(draw("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : "#000" }));
+    svg.append(svgPart("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : "#000" }));
     if (!trace.fill && trace.marker.pattern.shape) {
-      svg.append(draw("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: "#fff", "stroke-width": 1.5 }));
+      svg.append(svgPart("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: "#fff", "stroke-width": 1.5 }));
     }
     return svg;
   }
-  const dashes = { solid: "", dash: "7 4", dot: "2 3", dashdot: "7 3 2 3", longdash: "12 4" };
   const colour = trace.line.color;
   if (trace.mode.includes("lines")) {
-    svg.append(draw("line", { x1: 0, x2: 34, y1: 6, y2: 6, stroke: colour, "stroke-width": trace.line.width + 0.6,
-      "stroke-dasharray": dashes[trace.line.dash] || "" }));
+    svg.append(svgPart("line", { x1: 0, x2: 34, y1: 6, y2: 6, stroke: colour, "stroke-width": trace.line.width + 0.6,
+      "stroke-dasharray": trace.line.dash === "solid" ? "" : trace.line.dash.replace(/px/g, "") }));
   }
   if (trace.mode.includes("markers")) {
-    const shapes = { circle: "M17,2a4,4 0 1,0 0.01,0z", "triangle-up": "M17,1L22,10L12,10z",
-      "triangle-down": "M17,11L22,2L12,2z", square: "M13,2h8v8h-8z", diamond: "M17,1l5,5l-5,5l-5,-5z",
-      x: "M13,2l8,8m0,-8l-8,8" };
-    svg.append(draw("path", { d: shapes[trace.marker.symbol] || shapes.circle, fill: colour, stroke: colour }));
+    svg.append(svgPart("path", { d: styles.symbols[trace.marker.symbol], fill: colour, stroke: colour,
+      transform: "translate(17 6) scale(4)", "vector-effect": "non-scaling-stroke" }));
   }
   return svg;
 }
@@ -288,18 +274,14 @@ function drawWaiting() {
 
 /** One button for each name: a line and its band go together. */
 function fillLegend(item) {
-  const named = item.traces.filter((trace) => trace.showlegend !== false && trace.legendgroup);
   const parts = [];
-  const seen = new Set();
-  for (const trace of named) {
-    if (seen.has(trace.legendgroup)) continue;
-    seen.add(trace.legendgroup);
+  for (const trace of item.traces.filter((one) => one.showlegend !== false && one.legendgroup)) {
     const on = trace.visible !== "legendonly";
     parts.push(make("button", { type: "button", "aria-pressed": String(on), title: "Show or hide",
       onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), trace.legendgroup));
   }
   const stretches = item.chart.stretches || [];
-  const keys = new Map(stretches.map((stretch) => [stretch.meaning, shades[stretch.shade]]));
+  const keys = new Map(stretches.map(({ shade }) => [styles.shades[shade].meaning, styles.shades[shade].fill]));
   if (parts.length < 2 && keys.size === 0) parts.length = 0;
   for (const [name, fill] of keys) {
     const key = make("span", { className: "key" });

@@ -54,6 +54,7 @@ function headerItems(report) {
 
 /** Shows a report; what stands there already is brought up to date. */
 function showReport(main, report) {
+  Object.assign(styles, report.styles);
   document.title = `${report.title} – ${report.kind}`;
   const before = new Map([...main.querySelectorAll(":scope > section")].map((element) => [element.id, element]));
   const sections = report.sections.map((section) => {

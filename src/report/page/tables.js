@@ -11,6 +11,13 @@ function make(tag, properties = {}, ...children) {
   return element;
 }
 
+function svgPart(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
 /** A number with up to `digits` significant digits, as a person writes it; "-" where it is not known. */
 function number(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";

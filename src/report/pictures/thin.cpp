@@ -1,4 +1,4 @@
-#include "report/charts/thin.hpp"
+#include "report/pictures/thin.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace tribofit {
 namespace {
 
-double distance_from(const PicturePoint& p, const PicturePoint& a, const PicturePoint& b) {
+double distance_from(const Point& p, const Point& a, const Point& b) {
   const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
   const double t = square > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0;
   return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
@@ -16,7 +16,7 @@ double distance_from(const PicturePoint& p, const PicturePoint& a, const Picture
 
 /// Of neighbours within one column of the paper the first, the lowest, the highest and the last: noise of many samples
 /// a column looks the same, and the search below need not look at all of them.
-std::vector<std::size_t> by_columns(const std::vector<PicturePoint>& points, double column) {
+std::vector<std::size_t> by_columns(const std::vector<Point>& points, double column) {
   std::vector<std::size_t> kept;
   for (std::size_t begin = 0; begin < points.size();) {
     std::size_t end = begin, low = begin, high = begin;
@@ -34,7 +34,7 @@ std::vector<std::size_t> by_columns(const std::vector<PicturePoint>& points, dou
 }  // namespace
 
 /// Douglas and Peucker 1973, with a stack of its own.
-std::vector<std::size_t> thinned_line(const std::vector<PicturePoint>& points, double tolerance) {
+std::vector<std::size_t> thinned_line(const std::vector<Point>& points, double tolerance) {
   const std::vector<std::size_t> candidates = by_columns(points, tolerance);
   if (candidates.size() < 3) return candidates;
   std::vector<bool> keep(candidates.size(), false);
@@ -64,7 +64,7 @@ std::vector<std::size_t> thinned_line(const std::vector<PicturePoint>& points, d
   return out;
 }
 
-std::vector<std::size_t> thinned_points(const std::vector<PicturePoint>& points, double cell) {
+std::vector<std::size_t> thinned_points(const std::vector<Point>& points, double cell) {
   std::set<std::pair<double, double>> taken;
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < points.size(); ++k) {

@@ -1,4 +1,4 @@
-#include "report/charts/scale.hpp"
+#include "report/pictures/scale.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "report/charts/scale.hpp"
+#include "report/pictures/canvas.hpp"
+#include "report/pictures/scale.hpp"
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {
@@ -16,15 +17,10 @@ inline constexpr double kPictureWidth = 85;
 /// Height of a line of text; distance between an axis and its numbers.
 inline constexpr double kTextLine = 3.4, kTicGap = 1.2;
 
-struct Area {
-  double left = 0, bottom = 0, width = 0, height = 0;
-};
-
 /// What an entry of the legend shows left of its name.
 struct Key {
-  std::string name;  ///< as it is
-  const ChartLine* line = nullptr;
-  const ChartLine* band = nullptr;
+  std::string name = {};  ///< as it is
+  const ChartLine *line = nullptr, *band = nullptr;
   const ChartBars* bars = nullptr;
   const Stretch* stretch = nullptr;
   double x = 0, y = 0;  ///< of the left end of its sample, half-way up

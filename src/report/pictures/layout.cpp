@@ -1,10 +1,10 @@
-#include "report/charts/layout.hpp"
+#include "report/pictures/layout.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "report/charts/gnuplot_text.hpp"
+#include "report/charts/styles.hpp"
 
 namespace tribofit {
 namespace {
@@ -13,10 +13,6 @@ constexpr double kMillimetresPerPixel = 0.16;  // of the height a chart has on t
 constexpr double kEdge = 1;                    // blank at the edges
 constexpr double kBetweenPanels = 2.2, kLeastPanel = 14;
 constexpr double kColourBox = 2.5;
-
-bool drawn(const ChartLine& line) {
-  return line.shown;
-}
 
 /// Adds what a line shows at its k-th point where its abscissa is within the range (any where `within` is null).
 template <class Add>
@@ -36,7 +32,7 @@ void each_ordinate(const ChartLine& line, const Scale* within, Add add) {
 Extent extent_of_abscissa(const Chart& chart) {
   Extent extent(chart.x.logarithmic);
   for (const ChartLine& line : chart.lines) {
-    if (!drawn(line)) continue;
+    if (!line.shown) continue;
     for (std::size_t k = 0; k < line.x.size(); ++k) {
       const bool there =
           (k < line.y.size() && std::isfinite(line.y[k])) || (k < line.low.size() && std::isfinite(line.low[k]));
@@ -57,7 +53,7 @@ Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
   const bool logarithmic = chart.panels[panel].axis.logarithmic;
   Extent extent(logarithmic);
   for (const ChartLine& line : chart.lines) {
-    if (drawn(line) && line.panel == panel) each_ordinate(line, &x, [&](double value) { extent.add(value); });
+    if (line.shown && line.panel == panel) each_ordinate(line, &x, [&](double value) { extent.add(value); });
   }
   for (const ChartMark& mark : chart.marks) {
     if (!mark.upright && mark.panel == panel) extent.add(mark.at);
@@ -72,15 +68,15 @@ Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
 double margin_of_abscissa(const Chart& chart) {
   if (!chart.bars.empty()) return 0.04;
   for (const ChartLine& line : chart.lines) {
-    if (drawn(line) && (!line.stroke.joined || line.stroke.symbol != Symbol::none)) return 0.03;
+    if (line.shown && (!line.stroke.joined || line.stroke.symbol != Symbol::none)) return 0.03;
   }
   return 0;
 }
 
 void add_key(std::vector<Key>& keys, const ChartLine& line) {
-  if (!line.listed || !drawn(line)) return;
+  if (!line.listed || !line.shown) return;
   auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == line.name; });
-  if (at == keys.end()) at = keys.insert(keys.end(), {line.name, nullptr, nullptr, nullptr, nullptr, 0, 0});
+  if (at == keys.end()) at = keys.insert(keys.end(), {.name = line.name});
   if (!line.low.empty() && !line.bars && at->band == nullptr) at->band = &line;
   if (!line.y.empty() && at->line == nullptr) at->line = &line;
 }
@@ -88,12 +84,12 @@ void add_key(std::vector<Key>& keys, const ChartLine& line) {
 std::vector<Key> keys_of(const Chart& chart) {
   std::vector<Key> keys;
   for (const ChartLine& line : chart.lines) add_key(keys, line);
-  for (const ChartBars& bars : chart.bars) keys.push_back({bars.name, nullptr, nullptr, &bars, nullptr, 0, 0});
+  for (const ChartBars& bars : chart.bars) keys.push_back({.name = bars.name, .bars = &bars});
   if (keys.size() == 1) keys.clear();  // one alone needs no name
   std::set<Shade> shades;
   for (const Stretch& stretch : chart.stretches) {
     if (!shades.insert(stretch.shade).second) continue;
-    keys.push_back({meaning_of(stretch.shade), nullptr, nullptr, nullptr, &stretch, 0, 0});
+    keys.push_back({.name = std::string(style_of(stretch.shade, kShades).meaning), .stretch = &stretch});
   }
   return keys;
 }
@@ -173,8 +169,8 @@ void add_colours(const Chart& chart, PictureLayout& layout, double height) {
   layout.colours = scale_of(axis, extent, 0, static_cast<int>(height / 8));
 }
 
-/// Margins left and right; sets where titles go. Returns the right edge of the data.
-double place_across(const Chart& chart, PictureLayout& layout, const std::vector<double>& heights) {
+/// Margins left and right; sets where titles go.
+void place_across(const Chart& chart, PictureLayout& layout, const std::vector<double>& heights) {
   double tics = 0;
   std::size_t lines = 0;
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
@@ -184,7 +180,7 @@ double place_across(const Chart& chart, PictureLayout& layout, const std::vector
     lines = std::max(lines, layout.titles.back().size());
   }
   layout.title_x = kEdge + kTextLine / 2;
-  const double left = kEdge + static_cast<double>(lines) * kTextLine + tics + kTicGap + 0.4;
+  const double left = kEdge + static_cast<double>(lines) * kTextLine + tics + kTicGap + 0.8;
   double right = kPictureWidth - kEdge - 1.5;
   if (chart.map) {
     const bool titled = !layout.colours.title.empty();
@@ -198,7 +194,6 @@ double place_across(const Chart& chart, PictureLayout& layout, const std::vector
     area.left = left;
     area.width = right - left;
   }
-  return right;
 }
 
 /// Number of tics that have room beside each other.

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/charts/styles.hpp"
+#include "report/pictures/text.hpp"
+#include "tribofit/report/pictures.hpp"
+
+namespace tribofit {
+
+/// What a picture is drawn on. Places are in mm from the lower left corner; widths of lines and sizes of text in
+/// points.
+
+struct Point {
+  double x = 0, y = 0;
+};
+using Path = std::vector<Point>;
+
+struct Area {
+  double left = 0, bottom = 0, width = 0, height = 0;
+};
+
+struct Pen {
+  Paint paint = {};
+  double width = 0.5;
+  std::vector<double> dashes = {};  ///< [pt]
+};
+
+enum class Anchor { left, centre, right };
+
+struct Words {
+  std::string text;
+  Point at;  ///< half-way up the letters
+  Anchor anchor = Anchor::left;
+  double points = kTextPoints;
+  bool upright = false;  ///< read from below
+  bool markup = true;    ///< "v_{r}" has a subscript
+};
+
+class Canvas {
+ public:
+  virtual ~Canvas() = default;
+  /// Lines with round ends where a path is one point: a dot as wide as the pen.
+  virtual void stroke(std::span<const Path> paths, const Pen& pen) = 0;
+  virtual void fill(std::span<const Path> polygons, const Paint& paint) = 0;
+  virtual void write(const Words& words) = 0;
+  /// What is drawn until end_plot() is seen within `area` only.
+  virtual void begin_plot(const Area& area) = 0;
+  virtual void end_plot() = 0;
+  /// The file. Throws InputError.
+  virtual std::string finish() = 0;
+
+  void stroke_path(const Path& path, const Pen& pen) { stroke({&path, 1}, pen); }
+  void fill_path(const Path& path, const Paint& paint) { fill({&path, 1}, paint); }
+};
+
+/// A sheet of this size [mm].
+std::unique_ptr<Canvas> make_svg(double width, double height, const std::string& title);
+/// PDF or PNG; throws InputError in a build without Cairo.
+std::unique_ptr<Canvas> make_cairo(PictureFormat format, double width, double height, const std::string& title);
+bool has_cairo();
+
+}  // namespace tribofit
