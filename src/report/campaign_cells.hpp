@@ -30,6 +30,9 @@ std::vector<std::string> trend_sentences(const Trends& trends);
 /// The pooled value of that name of the base law or a measure; null where there is none.
 const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name);
 
+/// Mean of a value of each run, and its standard error where there is more than one.
+ResultMeasure mean_over_runs(std::span<const double> values);
+
 /// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
 ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of);
 

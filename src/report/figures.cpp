@@ -4,49 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "campaign_cells.hpp"
 #include "conditions_cells.hpp"
 #include "csv_cells.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/whole_file.hpp"
+#include "whole_folder.hpp"
 
 namespace tribofit {
 namespace {
 
-/// The files of the folder, committed together.
-class FigureFiles {
- public:
-  explicit FigureFiles(const std::string& results) : folder_(std::filesystem::path(results) / "figures") {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) {
-      throw InputError("the folder cannot be made: " + error.message(), "make room for it, or name another folder",
-                       {folder_.string(), 0, ""});
-    }
-    remove_abandoned_files(folder_.string());
-  }
-  WholeFile& add(const std::string& name, const std::string& header) {
-    WholeFile& file = files_.emplace_back((folder_ / name).string());
-    file.write(header + "\n");
-    return file;
-  }
-  void commit() {
-    for (WholeFile& file : files_) file.finish();
-    for (WholeFile& file : files_) file.commit();
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::deque<WholeFile> files_;
-};
+/// A file that begins with a header.
+WholeFile& add_file(WholeFolder& folder, const std::string& name, const std::string& header) {
+  WholeFile& file = folder.add(name);
+  file.write(header + "\n");
+  return file;
+}
 
 void write_line(WholeFile& file, const std::string& front, std::initializer_list<double> values) {
   std::string line = front;
@@ -54,14 +30,14 @@ void write_line(WholeFile& file, const std::string& front, std::initializer_list
   file.write(line + "\n");
 }
 
-void write_groups(FigureFiles& files, const ConditionCells& conditions, std::span<const RunResult> runs,
+void write_groups(WholeFolder& files, const ConditionCells& conditions, std::span<const RunResult> runs,
                   std::span<const PooledGroup> groups) {
-  WholeFile& rms = files.add("05-rms-velocity.csv",
-                             "runs," + conditions.header() + ",rms_velocity_mm_s,rms_velocity_std_error_mm_s");
-  WholeFile& levels =
-      files.add("09-static-kinetic.csv", "runs," + conditions.header() +
-                                             ",law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,"
-                                             "mu_s_minus_mu_k,mu_s_minus_mu_k_std_error");
+  WholeFile& rms = add_file(files, "05-rms-velocity.csv",
+                            "runs," + conditions.header() + ",rms_velocity_mm_s,rms_velocity_std_error_mm_s");
+  WholeFile& levels = add_file(files, "09-static-kinetic.csv",
+                               "runs," + conditions.header() +
+                                   ",law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,"
+                                   "mu_s_minus_mu_k,mu_s_minus_mu_k_std_error");
   for (const PooledGroup& group : groups) {
     const std::string front = std::to_string(group.runs.size()) + "," + conditions.of(group.conditions, group.others);
     if (const PooledValue* v = pooled_value(group.measures, "rms_velocity"))
@@ -80,18 +56,18 @@ void write_groups(FigureFiles& files, const ConditionCells& conditions, std::spa
 /// The files with rows of single runs.
 class RunFiles {
  public:
-  RunFiles(FigureFiles& files, const std::string& conditions)
-      : cycles_(files.add("06-08-three-cycles.csv", "run," + conditions + ",time_s,v_r_mm_s,friction,unit")),
-        spectrum_(files.add("07-spectrum.csv", "run," + conditions + ",frequency_hz,amplitude_mm_s")),
-        harmonics_(files.add("07-harmonics.csv", "run," + conditions + ",harmonic,frequency_hz,amplitude_mm_s")),
-        bins_(files.add("10-12-over-velocity.csv",
-                        "run," + conditions +
-                            ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
-                            "relative_error_of_mean,mean_relative_error,largest_relative_error")),
-        errors_(files.add("12-relative-error.csv",
-                          "run," + conditions +
-                              ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
-                              "mean_relative_error,largest_relative_error")) {}
+  RunFiles(WholeFolder& files, const std::string& conditions)
+      : cycles_(add_file(files, "06-08-three-cycles.csv", "run," + conditions + ",time_s,v_r_mm_s,friction,unit")),
+        spectrum_(add_file(files, "07-spectrum.csv", "run," + conditions + ",frequency_hz,amplitude_mm_s")),
+        harmonics_(add_file(files, "07-harmonics.csv", "run," + conditions + ",harmonic,frequency_hz,amplitude_mm_s")),
+        bins_(add_file(files, "10-12-over-velocity.csv",
+                       "run," + conditions +
+                           ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
+                           "relative_error_of_mean,mean_relative_error,largest_relative_error")),
+        errors_(add_file(files, "12-relative-error.csv",
+                         "run," + conditions +
+                             ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
+                             "mean_relative_error,largest_relative_error")) {}
 
   void write(const RunFigures& f, const std::string& front, const std::string& unit) {
     for (std::size_t k = 0; k < f.time.size(); ++k) {
@@ -135,7 +111,18 @@ const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::str
   return found == values.end() ? nullptr : &*found;
 }
 
-/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
+ResultMeasure mean_over_runs(std::span<const double> values) {
+  ResultMeasure out;
+  if (values.empty()) return out;
+  const double n = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  out.value = sum / n;
+  for (const double value : values) squares += (value - out.value) * (value - out.value);
+  if (values.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
+  return out;
+}
+
 ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
   std::vector<double> drops;
   for (const std::size_t k : group.runs) {
@@ -144,19 +131,13 @@ ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group,
       drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
     }
   }
-  ResultMeasure out;
-  if (drops.empty()) return out;
-  const double n = static_cast<double>(drops.size());
-  double sum = 0, squares = 0;
-  for (const double drop : drops) sum += drop;
-  out.value = sum / n;
-  for (const double drop : drops) squares += (drop - out.value) * (drop - out.value);
-  if (drops.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
-  return out;
+  return mean_over_runs(drops);
 }
 
 void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
-  FigureFiles files(results.folder());
+  const std::string folder = (std::filesystem::path(results.folder()) / "figures").string();
+  WholeFolder files(folder);
+  remove_abandoned_files(folder);
   const ConditionCells conditions(runs);
   write_groups(files, conditions, runs, groups);
   RunFiles of_runs(files, conditions.header());

@@ -30,17 +30,4 @@ inline Json numbers_json(std::span<const double> values, int digits = kDigits) {
   return list;
 }
 
-/// A line to draw: {"x": [...], "y": [...]}.
-class Series {
- public:
-  void add(double x, double y) {
-    x_.push_back(x);
-    y_.push_back(y);
-  }
-  Json json(int digits_of_x = kDigits) const { return {{"x", numbers_json(x_, digits_of_x)}, {"y", numbers_json(y_)}}; }
-
- private:
-  std::vector<double> x_, y_;
-};
-
 }  // namespace tribofit

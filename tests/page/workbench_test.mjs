@@ -68,14 +68,19 @@ const shownError = async (page) => Number.parseFloat(await page.textContent("#sh
 async function watchTheErrorFall(address, width) {
   const { page, complaints, close } = await open(address, width);
   const before = await shownError(page);
-  const rungsBefore = await page.locator("#bench-rungs tbody tr").count();
   if (!await page.isVisible("#effect-frictional-lag")) await page.locator("summary", { hasText: "What the contact does" }).click();
   await change(page, () => page.check("#effect-frictional-lag"));
   const after = await shownError(page);
   console.log(`at ${width} px the held-out error falls from ${before} to ${after}; answered after ` +
     `${await page.evaluate(() => document.documentElement.dataset.answerMs)} ms`);
   assert.ok(after < 0.75 * before, `the error fell from ${before} to ${after} only`);
-  assert.ok(await page.locator("#bench-rungs tbody tr").count() >= rungsBefore);
+  // The ladder: the row of this model is marked, has its error, and its bar is as much shorter as the error is smaller.
+  const rows = await page.evaluate(() => [...document.querySelectorAll("#bench-rungs tbody tr")].map((row) => ({
+    current: row.className === "current", model: row.querySelector("button").textContent,
+    error: Number.parseFloat(row.cells[2].textContent), bar: row.querySelector(".bar").getBoundingClientRect().width })));
+  const [shown, ...others] = rows.filter((row) => row.current), bare = rows.find((row) => row.error === before);
+  assert.ok(shown && others.length === 0 && /frictional-lag/.test(shown.model) && shown.error === after, JSON.stringify(rows));
+  assert.ok(Math.abs(shown.bar / bare.bar - after / before) < 0.03, `bars of ${shown.bar} and ${bare.bar} px`);
   await page.screenshot({ path: join(folder, `lag-${width}.png`), fullPage: false });
 
   // The command shown gives the same number.

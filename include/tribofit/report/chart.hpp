@@ -43,7 +43,7 @@ struct ChartAxis {
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
 struct ChartLine {
-  std::string name = {};               ///< in the legend, which switches all of one name together
+  std::string name = {};               ///< in the legend, which names and switches all of one name together
   std::vector<double> x = {}, y = {};  ///< NaN: a gap. y may be empty where there is a band only
   Stroke stroke = {};
   std::vector<double> low = {}, high = {};  ///< of each y: a band, or bars where `bars`
@@ -51,6 +51,17 @@ struct ChartLine {
   bool listed = true;  ///< has an entry in the legend
   bool shown = true;   ///< false: switched off until the legend is used, and left out of pictures
   std::size_t panel = 0;
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  /// With its error to either side; one that is not known has no length.
+  void add(double at, double value, double error) {
+    add(at, value);
+    low.push_back(error > 0 ? value - error : value);
+    high.push_back(error > 0 ? value + error : value);
+  }
 };
 
 /// Bars that lie beside the names of the vertical axis (ChartAxis::names of the only panel), one a name.

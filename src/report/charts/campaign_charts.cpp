@@ -133,20 +133,17 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
   for (std::size_t p = 0; p < 3; ++p) {
     std::string name, unit;
     for (std::size_t k = 0; k < of.shown.size(); ++k) {
-      ChartLine line{of.name_of(of.shown[k]), {}, {}, marked(k, false)};
-      line.bars = true;
-      line.panel = chart.panels.size();
-      line.listed = line.panel == 0;
+      ChartLine line{
+          .name = of.name_of(of.shown[k]), .stroke = marked(k, false), .bars = true, .panel = chart.panels.size()};
       const std::vector<std::size_t>& runs = of.groups()[of.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
-        const std::size_t r = runs[i];
-        const ResultFit* fit = of.runs[r].fit(law, "joint");
+        const RunResult& run = of.runs[runs[i]];
+        const ResultFit* fit = run.fit(law, "joint");
         if (fit == nullptr || fit->parameters.size() <= p) continue;
         const ResultParameter& value = fit->parameters[p];
         name = value.name, unit = value.unit;
-        line.x.push_back(static_cast<double>(of.runs[r].position + 1));
-        line.y.push_back(value.value);
         const bool known = std::isfinite(value.lower95) && std::isfinite(value.upper95);
+        line.add(static_cast<double>(run.position + 1), value.value);
         line.low.push_back(known ? value.lower95 : value.value);
         line.high.push_back(known ? value.upper95 : value.value);
       }

@@ -28,24 +28,44 @@ Maybe mean_of(const PooledValue* value) {
   return ResultMeasure{value->mean, value->standard_error_of_mean};
 }
 
-Chart over_conditions(const OverConditions& over, const std::string& id, const std::string& title) {
-  Chart chart;
-  chart.id = id;
-  chart.title = title;
-  chart.note = "Means over repeats; bars: one standard error.";
-  chart.x = over.axis();
-  return chart;
-}
+/// A chart over the conditions: a line of means with their standard errors for each add().
+class MeansChart {
+ public:
+  MeansChart(const DrawnCampaign& of, const OverConditions& over, std::string id, std::string title)
+      : of_(of), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
+    chart_.note = "Means over repeats; bars: one standard error.";
+    chart_.x = over.axis();
+    chart_.panels.clear();
+  }
+  /// What add() draws from now on stands in a panel of its own.
+  MeansChart& panel(std::string quantity, std::string unit) {
+    chart_.panels.push_back({.axis = {.quantity = std::move(quantity), .unit = std::move(unit)}});
+    return *this;
+  }
+  template <class Value>
+  MeansChart& add(const std::string& name, std::size_t kind, Value value) {
+    add_over_conditions(over_, name, marked(kind), chart_.panels.size() - 1, value, chart_);
+    return *this;
+  }
+  MeansChart& measure(const std::string& name, const char* measure) {
+    return add(name, 0, [&](std::size_t g) { return mean_of(pooled_value(of_.groups()[g].measures, measure)); });
+  }
+  MeansChart& earlier(const std::string& name) {
+    add_earlier(of_, over_, name, chart_.panels.size() - 1, chart_);
+    return *this;
+  }
+  Chart chart(int height, const char* note = "") const {
+    Chart out = chart_;
+    out.height = height;
+    out.note += note;
+    return out;
+  }
 
-/// Fig 5 of [D].
-Chart rms_chart(const DrawnCampaign& of, const OverConditions& over) {
-  Chart chart = over_conditions(over, "fig05-rms-velocity", "RMS velocity of the block");
-  chart.panels[0].axis = {.quantity = "RMS of v_{b}", .unit = "mm/s"};
-  add_over_conditions(
-      over, "RMS of v_b", marked(0), 0,
-      [&](std::size_t g) { return mean_of(pooled_value(of.groups()[g].measures, "rms_velocity")); }, chart);
-  return chart;
-}
+ private:
+  const DrawnCampaign& of_;
+  const OverConditions& over_;
+  Chart chart_;
+};
 
 /// Amplitude of the fundamental over the runs of a group [mm/s].
 Maybe fundamental_of(const DrawnCampaign& of, std::size_t group) {
@@ -55,110 +75,78 @@ Maybe fundamental_of(const DrawnCampaign& of, std::size_t group) {
     if (figures && !figures->harmonics.empty()) values.push_back(figures->harmonics.front().amplitude);
   }
   if (values.empty()) return std::nullopt;
-  ResultMeasure out{0, std::numeric_limits<double>::quiet_NaN()};
-  const auto n = static_cast<double>(values.size());
-  for (const double v : values) out.value += v / n;
-  double squares = 0;
-  for (const double v : values) squares += (v - out.value) * (v - out.value);
-  if (values.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
-  return out;
+  return mean_over_runs(values);
 }
 
-/// Fundamental frequency, its amplitude, and the peaks of v_r.
-Chart fundamental_chart(const DrawnCampaign& of, const OverConditions& over) {
-  Chart chart = over_conditions(over, "fig07-fundamental", "Stick-slip frequency and amplitude");
-  chart.panels = {{.axis = {.quantity = "frequency", .unit = "Hz"}},
-                  {.axis = {.quantity = "fundamental", .unit = "mm/s"}},
-                  {.axis = {.quantity = "peak of v_{r}", .unit = "mm/s"}}};
-  const auto measure = [&](const char* name, std::size_t panel) {
-    add_over_conditions(
-        over, "this campaign", marked(0), panel,
-        [&, name](std::size_t g) { return mean_of(pooled_value(of.groups()[g].measures, name)); }, chart);
-    add_earlier(of, over, name, panel, chart);
-  };
-  measure("frequency", 0);
-  add_over_conditions(
-      over, "this campaign", marked(0), 1, [&](std::size_t g) { return fundamental_of(of, g); }, chart);
-  measure("amplitude", 2);
-  chart.note += " The fundamental is the amplitude of the sine of that frequency in v_r.";
-  chart.height = 600;
-  return chart;
+const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol) {
+  const auto found = std::find_if(group.fits.begin(), group.fits.end(),
+                                  [&](const auto& fit) { return fit.law == law && fit.protocol == protocol; });
+  return found == group.fits.end() ? nullptr : &*found;
 }
 
-/// Fig 9 of [D]: both protocols, as the joint one has neither bias.
-Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
-  Chart chart = over_conditions(over, "fig09-static-kinetic", "Static and kinetic friction and their difference");
-  const std::string unit = of.friction_unit();
-  chart.panels = {{.axis = {.quantity = "mu_{s}", .unit = unit}},
-                  {.axis = {.quantity = "mu_{k}", .unit = unit}},
-                  {.axis = {.quantity = "mu_{s} - mu_{k}", .unit = unit}}};
-  std::vector<std::pair<std::string, std::string>> kinds;  // law, protocol
-  for (const PooledGroup& group : of.groups()) {
+/// Law and protocol of every line of levels; the published protocol has the same levels whatever the law.
+std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
+  std::vector<std::pair<std::string, std::string>> kinds;
+  for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
-      const bool published = fit.protocol == "published";  // the same levels whatever the law
+      const bool published = fit.protocol == "published";
       const auto same = [&](const auto& k) { return k.second == fit.protocol && (published || k.first == fit.law); };
       if (std::none_of(kinds.begin(), kinds.end(), same)) kinds.emplace_back(fit.law, fit.protocol);
     }
   }
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    const auto& [law, protocol] = kinds[k];
-    const std::string name = protocol == "published" ? "published protocol" : law + " law";
-    const auto fit_of = [&](std::size_t g) -> const PooledGroup::OfFit* {
-      for (const PooledGroup::OfFit& fit : of.groups()[g].fits) {
-        if (fit.law == law && fit.protocol == protocol) return &fit;
-      }
-      return nullptr;
-    };
-    for (std::size_t panel = 0; panel < 2; ++panel) {
-      add_over_conditions(
-          over, name, marked(k), panel,
-          [&](std::size_t g) {
-            const PooledGroup::OfFit* fit = fit_of(g);
-            return fit == nullptr ? Maybe{} : mean_of(pooled_value(fit->parameters, panel == 0 ? "mu_s" : "mu_k"));
-          },
-          chart);
-    }
-    add_over_conditions(
-        over, name, marked(k), 2,
-        [&](std::size_t g) {
-          const PooledGroup::OfFit* fit = fit_of(g);
-          return fit == nullptr ? Maybe{} : Maybe{drop_of(of.runs, of.groups()[g], *fit)};
-        },
-        chart);
-  }
-  add_earlier(of, over, "mu_s", 0, chart);
-  add_earlier(of, over, "mu_k", 1, chart);
-  chart.height = 560;
-  return chart;
+  return kinds;
 }
 
-/// alpha and beta, the rest of Table 4 of [D]: a panel a law, both protocols.
+/// Fig 9 of [D]: both protocols, as the joint one has neither bias.
+Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
+  MeansChart chart(of, over, "fig09-static-kinetic", "Static and kinetic friction and their difference");
+  const auto kinds = kinds_of_levels(of.groups());
+  const auto add_kinds = [&](auto value) {
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      const auto& [law, protocol] = kinds[k];
+      chart.add(protocol == "published" ? "published protocol" : law + " law", k, [&](std::size_t g) {
+        const PooledGroup::OfFit* fit = fit_of(of.groups()[g], law, protocol);
+        return fit == nullptr ? Maybe{} : value(of.groups()[g], *fit);
+      });
+    }
+  };
+  const auto add_level = [&](const char* name) {
+    add_kinds([&](const PooledGroup&, const auto& fit) { return mean_of(pooled_value(fit.parameters, name)); });
+    chart.earlier(name);
+  };
+  const std::string unit = of.friction_unit();
+  chart.panel("mu_{s}", unit);
+  add_level("mu_s");
+  chart.panel("mu_{k}", unit);
+  add_level("mu_k");
+  chart.panel("mu_{s} - mu_{k}", unit);
+  add_kinds([&](const PooledGroup& group, const auto& fit) { return Maybe{drop_of(of.runs, group, fit)}; });
+  return chart.chart(560);
+}
+
+/// What the laws have besides levels (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
 Chart decay_chart(const DrawnCampaign& of, const OverConditions& over) {
-  Chart chart = over_conditions(over, "table4-decay", "Decay factors of the laws");
-  chart.panels.clear();
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
-    std::string name, unit;
-    const auto value_of_group = [&](std::size_t g, const char* protocol) {
-      for (const PooledGroup::OfFit& fit : of.groups()[g].fits) {
-        if (fit.law != to_string(law) || fit.protocol != protocol || fit.parameters.size() < 3) continue;
-        name = fit.parameters[2].name, unit = fit.parameters[2].unit;
-        return mean_of(&fit.parameters[2]);
+  MeansChart chart(of, over, "table4-decay", "Decay factors of the laws");
+  std::vector<std::string> drawn;
+  for (const PooledGroup& group : of.groups()) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      for (const PooledValue& v : fit.parameters) {
+        const bool is_level = v.name == "mu_s" || v.name == "mu_k",
+                   known = std::count(drawn.begin(), drawn.end(), v.name) > 0;
+        if (is_level || known || !v.effect.empty()) continue;
+        drawn.push_back(v.name);
+        const auto value_by = [&](const char* protocol) {
+          return [&, protocol](std::size_t g) {
+            const PooledGroup::OfFit* own = fit_of(of.groups()[g], fit.law, protocol);
+            return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, v.name));
+          };
+        };
+        chart.panel(v.name, v.unit).add("joint fit", 0, value_by("joint"));
+        chart.add("published protocol", 1, value_by("published")).earlier(v.name);
       }
-      return Maybe{};
-    };
-    const std::size_t panel = chart.panels.size();
-    const auto add = [&](const char* line, const char* protocol, std::size_t k) {
-      add_over_conditions(
-          over, line, marked(k), panel, [&](std::size_t g) { return value_of_group(g, protocol); }, chart);
-    };
-    add("joint fit", "joint", 0);
-    add("published protocol", "published", 1);
-    if (name.empty()) continue;
-    add_earlier(of, over, name, panel, chart);
-    chart.panels.push_back({.axis = {.quantity = name, .unit = unit}});
+    }
   }
-  chart.height = 110 + 180 * static_cast<int>(std::max<std::size_t>(1, chart.panels.size()));
-  return chart;
+  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())));
 }
 
 /// A chart with a panel for each of the groups shown.
@@ -188,18 +176,12 @@ Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std
   return chart;
 }
 
-Chart cycles_chart(const DrawnCampaign& of, bool of_velocity) {
-  return panels_of_groups(of, of_velocity ? "fig06-velocity" : "fig08-friction",
-                          of_velocity ? "Relative velocity over three cycles" : "Friction over three cycles",
-                          {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7},
-                          of_velocity ? ChartAxis{.quantity = "v_{r}", .unit = "mm/s"}
-                                      : ChartAxis{.quantity = "mu", .unit = of.friction_unit()},
+Chart cycles_chart(const DrawnCampaign& of, const char* id, const char* title, ChartAxis y,
+                   std::vector<double> RunFigures::*channel) {
+  return panels_of_groups(of, id, title, {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7}, y,
                           [&](const RunFigures& f, ChartLine& line) {
-                            line.x = f.time;
-                            if (!line.x.empty()) {
-                              for (double& t : line.x) t -= f.time.front();
-                            }
-                            line.y = of_velocity ? f.velocity : f.friction;
+                            for (const double t : f.time) line.x.push_back(t - f.time.front());
+                            line.y = f.*channel;
                           });
 }
 
@@ -209,56 +191,58 @@ Chart spectrum_chart(const DrawnCampaign& of) {
                           {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true},
                           [](const RunFigures& f, ChartLine& line) {
                             for (std::size_t k = 0; k < f.spectrum.size(); ++k) {
-                              line.x.push_back(static_cast<double>(k) * f.spectrum_step);
-                              line.y.push_back(f.spectrum[k]);
+                              line.add(static_cast<double>(k) * f.spectrum_step, f.spectrum[k]);
                             }
                           });
 }
 
-void add_drawn(Chart chart, ReportSection& section) {
-  if (!chart.lines.empty()) section.items.emplace_back(std::move(chart));
+/// Over v_r in bins of a run, a line a fit; those of the published protocol are switched off at first.
+template <class Value>
+void add_fits(const RunFigures& f, bool with_symbols, Value value, Chart& chart) {
+  chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
+  chart.half = true;
+  std::size_t k = 1;
+  for (const ErrorCurve& curve : f.errors) {
+    const bool published = curve.protocol == "published";
+    ChartLine line{.name = curve.law + (published ? ", published protocol" : ""),
+                   .stroke = with_symbols ? marked(k) : stroke_of(k),
+                   .shown = !published};
+    line.stroke.size = 4;
+    for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
+      line.add((static_cast<double>(b) + 0.5) * f.bin_width, value(curve, b));
+    }
+    chart.lines.push_back(std::move(line));
+    ++k;
+  }
 }
 
 /// Measured and fitted friction of a run over v_r (Fig 10 and 11 of [D]).
 Chart friction_chart(const RunFigures& f, const std::string& unit) {
-  Chart chart;
-  chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
-  chart.panels[0].axis = {.quantity = "mu", .unit = unit};
-  std::vector<double> middle;
-  for (std::size_t k = 0; k < f.bin_samples.size(); ++k) middle.push_back((static_cast<double>(k) + 0.5) * f.bin_width);
-  ChartLine measured{"measured", middle, f.bin_friction, {.symbol = Symbol::circle, .size = 5}};
-  measured.stroke.joined = false;
-  chart.lines.push_back(std::move(measured));
-  std::size_t k = 1;
-  for (const ErrorCurve& curve : f.errors) {
-    const bool published = curve.protocol == "published";
-    ChartLine line{curve.law + (published ? ", published protocol" : ""), middle, curve.fitted, stroke_of(k++)};
-    line.shown = !published;
-    chart.lines.push_back(std::move(line));
+  Chart chart{.panels = {{.axis = {.quantity = "mu", .unit = unit}}}};
+  ChartLine measured{.name = "measured", .y = f.bin_friction, .stroke = dots(Colour::black, Symbol::circle)};
+  for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
+    measured.x.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
   }
+  chart.lines.push_back(std::move(measured));
+  add_fits(
+      f, false, [](const ErrorCurve& curve, std::size_t b) { return curve.fitted[b]; }, chart);
   return chart;
 }
 
 /// Relative error of the mean friction of a bin (Fig 12 of [D]).
 Chart error_chart(const RunFigures& f) {
-  Chart chart;
-  chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
-  chart.panels[0].axis = {.quantity = "relative error", .unit = "1", .from_zero = true};
-  std::size_t k = 1;
-  for (const ErrorCurve& curve : f.errors) {
-    const bool published = curve.protocol == "published";
-    Stroke stroke = marked(k++);
-    stroke.size = 4;
-    ChartLine line{curve.law + (published ? ", published protocol" : ""), {}, {}, stroke};
-    line.shown = !published;
-    for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
-      line.x.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
-      line.y.push_back(std::abs((f.bin_friction[b] - curve.fitted[b]) / f.bin_friction[b]));
-    }
-    chart.lines.push_back(std::move(line));
-  }
-  chart.marks.push_back({published_error_limit, false, Dash::dashed, "0.08 of [D]", 0});
+  Chart chart{.note = "Of the mean friction of each bin.",
+              .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
+              .marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]", 0}}};
+  const auto error = [&](const ErrorCurve& curve, std::size_t b) {
+    return std::abs((f.bin_friction[b] - curve.fitted[b]) / f.bin_friction[b]);
+  };
+  add_fits(f, true, error, chart);
   return chart;
+}
+
+void add_drawn(Chart chart, ReportSection& section) {
+  if (!chart.lines.empty()) section.items.emplace_back(std::move(chart));
 }
 
 }  // namespace
@@ -266,11 +250,30 @@ Chart error_chart(const RunFigures& f) {
 ReportSection motion_figures(const DrawnCampaign& of) {
   ReportSection section{"motion", "Motion and friction under each of the conditions", {}};
   const OverConditions over(of.groups());
-  add_drawn(rms_chart(of, over), section);
-  add_drawn(cycles_chart(of, true), section);
+  add_drawn(MeansChart(of, over, "fig05-rms-velocity", "RMS velocity of the block")
+                .panel("RMS of v_{b}", "mm/s")
+                .measure("RMS of v_b", "rms_velocity")
+                .chart(340),
+            section);
+  add_drawn(cycles_chart(of, "fig06-velocity", "Relative velocity over three cycles",
+                         {.quantity = "v_{r}", .unit = "mm/s"}, &RunFigures::velocity),
+            section);
   add_drawn(spectrum_chart(of), section);
-  add_drawn(fundamental_chart(of, over), section);
-  add_drawn(cycles_chart(of, false), section);
+  const std::string own = "this campaign";
+  add_drawn(MeansChart(of, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
+                .panel("frequency", "Hz")
+                .measure(own, "frequency")
+                .earlier("frequency")
+                .panel("fundamental", "mm/s")
+                .add(own, 0, [&](std::size_t g) { return fundamental_of(of, g); })
+                .panel("peak of v_{r}", "mm/s")
+                .measure(own, "amplitude")
+                .earlier("amplitude")
+                .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."),
+            section);
+  add_drawn(cycles_chart(of, "fig08-friction", "Friction over three cycles",
+                         {.quantity = "mu", .unit = of.friction_unit()}, &RunFigures::friction),
+            section);
   add_drawn(levels_chart(of, over), section);
   add_drawn(decay_chart(of, over), section);
   return section;
@@ -293,8 +296,6 @@ ReportSection law_figures(const DrawnCampaign& of) {
     friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
     error.title = "Relative error (Eq 5), " + of.name_of(of.shown[k]);
-    error.note = "Of the mean friction of each bin.";
-    friction.half = error.half = true;
     section.items.emplace_back(std::move(friction));
     section.items.emplace_back(std::move(error));
   }

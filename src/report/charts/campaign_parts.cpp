@@ -100,23 +100,18 @@ OverConditions::OverConditions(std::span<const PooledGroup> groups) {
 
 void add_over_conditions(const OverConditions& over, const std::string& name, const Stroke& stroke, std::size_t panel,
                          const std::function<std::optional<ResultMeasure>(std::size_t group)>& value, Chart& chart) {
+  const bool alone = over.series().size() == 1;
   std::size_t k = 0;
   for (const OverConditions::Series& series : over.series()) {
-    const bool alone = over.series().size() == 1;
-    ChartLine line{alone || series.name.empty() ? name : name + ", " + series.name, {}, {}, stroke};
+    ChartLine line{.name = alone || series.name.empty() ? name : name + ", " + series.name,
+                   .stroke = stroke,
+                   .bars = true,
+                   .panel = panel};
     if (!alone) line.stroke.dash = stroke_of(k++).dash;
-    line.panel = panel;
-    line.bars = true;
     for (std::size_t i = 0; i < series.groups.size(); ++i) {
       const auto measure = value(series.groups[i]);
-      if (!measure || !std::isfinite(measure->value)) continue;
-      const double error = std::isfinite(measure->std_error) ? measure->std_error : 0;
-      line.x.push_back(series.x[i]);
-      line.y.push_back(measure->value);
-      line.low.push_back(measure->value - error);
-      line.high.push_back(measure->value + error);
+      if (measure && std::isfinite(measure->value)) line.add(series.x[i], measure->value, measure->std_error);
     }
-    for (const ChartLine& other : chart.lines) line.listed &= other.name != line.name;
     if (!line.x.empty()) chart.lines.push_back(std::move(line));
   }
 }
@@ -124,21 +119,14 @@ void add_over_conditions(const OverConditions& over, const std::string& name, co
 void add_earlier(const DrawnCampaign& of, const OverConditions& over, const std::string& name, std::size_t panel,
                  Chart& chart) {
   if (of.comparison == nullptr) return;
-  ChartLine line{of.earlier_name(), {}, {}, {.colour = Colour::red, .symbol = Symbol::cross, .size = 9}};
-  line.stroke.joined = false;
-  line.panel = panel;
-  line.bars = true;
+  ChartLine line{
+      .name = of.earlier_name(), .stroke = dots(Colour::red, Symbol::cross, 9), .bars = true, .panel = panel};
   std::vector<bool> met(of.groups().size(), false);
   for (const ComparedValue& v : of.comparison->values.values) {
     if (v.earlier.name != name || met[v.group]) continue;
     met[v.group] = true;
-    const double error = std::isfinite(v.earlier.std_error) ? v.earlier.std_error : 0;
-    line.x.push_back(over.x_of(v.group));
-    line.y.push_back(v.earlier.value);
-    line.low.push_back(v.earlier.value - error);
-    line.high.push_back(v.earlier.value + error);
+    line.add(over.x_of(v.group), v.earlier.value, v.earlier.std_error);
   }
-  for (const ChartLine& other : chart.lines) line.listed &= other.name != line.name;
   if (!line.x.empty()) chart.lines.push_back(std::move(line));
 }
 

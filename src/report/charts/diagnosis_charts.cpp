@@ -16,7 +16,7 @@ namespace {
 /// Axis of errors.
 ChartAxis error_axis(const DiagnosedTraces& result) {
   const bool force = !result.traces.empty() && friction_unit(result.traces.front().motion) == "N";
-  return {"RMSE on data not seen", force ? "N" : "1"};
+  return {"held-out RMSE", force ? "N" : "1"};
 }
 
 std::vector<std::string> rung_names(const Diagnosis& d) {
@@ -29,38 +29,36 @@ Chart ladder_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart;
   chart.id = "ladder";
-  chart.title = "The ladder: error on data not seen, as effects are added";
-  chart.note = "Bars are one standard error. At the floor only noise and scatter from cycle to cycle are left.";
+  chart.title = "The ladder: held-out error, as effects are added";
+  chart.note = "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.";
   chart.x.names = rung_names(d);
   chart.panels[0].axis = error_axis(result);
   chart.panels[0].axis.from_zero = true;
   const auto above = [&](const Rung& rung) { return std::pow(rung.held_out_rmse, 2) - std::pow(d.floor_rmse, 2); };
-  ChartLine line{"error on data not seen", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
+  ChartLine line{"held-out error", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
   line.bars = true;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
     const auto x = static_cast<double>(k);
-    line.x.push_back(x);
-    line.y.push_back(rung.held_out_rmse);
-    line.low.push_back(rung.held_out_rmse - rung.held_out_std_error);
-    line.high.push_back(rung.held_out_rmse + rung.held_out_std_error);
+    line.add(x, rung.held_out_rmse, rung.held_out_std_error);
     const double first = above(d.ladder.front());
     if (k == 0 || !(first > 0)) continue;
     chart.labels.push_back({x, rung.held_out_rmse, share_text(std::min(1.0, 1 - above(rung) / first)) + " gone"});
   }
   chart.lines.push_back(std::move(line));
-  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "floor " + significant(d.floor_rmse, 3)});
+  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "noise floor " + significant(d.floor_rmse, 3)});
   chart.half = true;
   return chart;
 }
 
 /// Shares of the law and of the final model beside the same variables.
 Chart where_chart(const Diagnosis& d) {
-  Chart chart;
-  chart.id = "where";
-  chart.title = "Where the error above the floor goes";
-  chart.note = where_sentence(d.where) + " Shares overlap where variables go together.";
-  chart.x = {"share", "%", 0, 105};
+  Chart chart{.id = "where",
+              .title = "Where the error above the noise floor goes",
+              .note = where_sentence(d.where) + " Shares overlap where variables go together.",
+              .x = {"share", "%", 0, 105},
+              .height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size())),
+              .half = true};
   ChartAxis& names = chart.panels[0].axis;
   ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
   for (const Share& share : d.where) {
@@ -75,8 +73,6 @@ Chart where_chart(const Diagnosis& d) {
   std::reverse(after.values.begin(), after.values.end());
   chart.bars.push_back(std::move(before));
   if (d.ladder.size() > 1) chart.bars.push_back(std::move(after));
-  chart.height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size()));
-  chart.half = true;
   return chart;
 }
 
@@ -95,9 +91,9 @@ Chart candidates_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart;
   chart.id = "candidates";
-  chart.title = "Each candidate: error on data not seen with it";
+  chart.title = "Each candidate: held-out error with it";
   chart.note =
-      "At the rung where it was judged last; bars are one standard error, from cycle to cycle. Dashed: the "
+      "At the rung where it was judged last; bars are one standard error, from cycle to cycle. Dashed: the noise "
       "floor; dotted: the bare law.";
   ChartAxis error = error_axis(result);
   error.digits = 6;
@@ -115,16 +111,12 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     ChartLine line{std::string(to_string(status)), {}, {}, stroke};
     line.bars = true;
     for (const EffectFinding* finding : own) {
-      const double e = std::isfinite(finding->held_out_std_error) ? finding->held_out_std_error : 0;
-      line.x.push_back(static_cast<double>(chart.x.names.size()));
-      line.y.push_back(finding->held_out_rmse);
-      line.low.push_back(finding->held_out_rmse - e);
-      line.high.push_back(finding->held_out_rmse + e);
+      line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
       chart.x.names.push_back(finding->key);
     }
     chart.lines.push_back(std::move(line));
   }
-  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "floor"});
+  chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "noise floor"});
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
   chart.height = 420;
   return chart;

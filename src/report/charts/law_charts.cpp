@@ -136,10 +136,7 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
   }
   if (levels.empty()) return;
   ChartLine line{"break-away of each cycle", {}, {}, dots(Colour::grey, Symbol::diamond)};
-  for (const std::size_t k : drawn_samples(levels, d.bins(kBreakAways))) {
-    line.x.push_back(0);
-    line.y.push_back(levels[k]);
-  }
+  for (const std::size_t k : drawn_samples(levels, d.bins(kBreakAways))) line.add(0, levels[k]);
   chart.lines.push_back(std::move(line));
 }
 
@@ -176,17 +173,15 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
 }
 
 Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fastest) {
-  Chart chart;
-  chart.id = d.id + "-law";
-  chart.title = "Friction over relative velocity";
-  chart.note =
-      "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what each law "
-      "leaves, in units of the floor of noise and scatter. Laws are those of steady sliding at the start of the "
-      "record, "
-      "over a turn of the disc.";
-  chart.height = 560;
-  chart.x = {"relative velocity |v_{r}|", "mm/s"};
-  chart.panels = {{friction_axis(d.trace.motion), 1.35}};
+  Chart chart{.id = d.id + "-law",
+              .title = "Friction over relative velocity",
+              .note =
+                  "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what "
+                  "each law leaves, in units of the noise floor. Laws are those of steady sliding at the start of "
+                  "the record, over a turn of the disc.",
+              .x = {"relative velocity |v_{r}|", "mm/s"},
+              .panels = {{friction_axis(d.trace.motion), 1.35}},
+              .height = 560};
   const std::vector<double>& friction = d.trace.motion.friction;
   for (const auto& [branch, band] :
        bands_over_speed(d.trace, pieces, fastest, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
@@ -204,32 +199,31 @@ Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fa
 }
 
 /// Relative error ([D] Eq 5): the mean of each bin as a line, its largest as points.
-class ErrorChart {
- public:
-  ErrorChart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
-    chart_.id = d.id + "-" + id;
-    chart_.title = title;
-    chart_.note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.";
-    chart_.x = std::move(x);
-    chart_.panels[0].axis = {"relative error", "1"};
-    chart_.panels[0].axis.from_zero = true;
-    chart_.marks.push_back({published_error_limit, false, Dash::dashed, "0.08 of [D]"});
-    chart_.half = true;
-  }
-  void add(const std::string& name, std::size_t k, const DrawnExtremes& errors) {
-    constexpr std::array<Symbol, 3> kLargest = {Symbol::triangle_up, Symbol::square, Symbol::cross};
-    const Colour colour = model_stroke(k).colour;
-    const bool shown = k < 2;
-    chart_.lines.push_back({name + ", mean", errors.at, errors.mean, {colour, model_stroke(k).dash}});
-    chart_.lines.back().shown = shown;
-    chart_.lines.push_back({name + ", largest", errors.at, errors.largest, dots(colour, kLargest[k % 3], 5)});
-    chart_.lines.back().shown = shown;
-  }
-  Chart chart() const { return chart_; }
+Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
+  return {.id = d.id + "-" + id,
+          .title = title,
+          .note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.",
+          .x = std::move(x),
+          .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
+          .marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]"}},
+          .half = true};
+}
 
- private:
-  Chart chart_;
-};
+void add_errors(const std::string& name, std::size_t k, const DrawnExtremes& errors, Chart& chart) {
+  constexpr std::array<Symbol, 3> kLargest = {Symbol::triangle_up, Symbol::square, Symbol::cross};
+  const Stroke stroke = model_stroke(k);
+  const bool shown = k < 2;
+  chart.lines.push_back({.name = name + ", mean",
+                         .x = errors.at,
+                         .y = errors.mean,
+                         .stroke = {stroke.colour, stroke.dash},
+                         .shown = shown});
+  chart.lines.push_back({.name = name + ", largest",
+                         .x = errors.at,
+                         .y = errors.largest,
+                         .stroke = dots(stroke.colour, kLargest[k % 3]),
+                         .shown = shown});
+}
 
 /// Mean residual in units of the floor over cycles (neighbours together where there are many) and the phase of the
 /// slip, from break-away (0) to re-stick (1); NaN where nothing is.
@@ -275,19 +269,16 @@ HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
 }
 
 Chart map_chart(const DrawnTrace& d, std::size_t model) {
-  Chart chart;
-  chart.id = d.id + "-map-" + std::to_string(model + 1);
-  chart.title = "What " + d.models[model].name + " leaves over cycle and phase of the slip";
-  chart.note =
-      "Mean residual in units of the floor. Upright stripes: the law has the wrong shape. Changes from cycle "
-      "to "
-      "cycle: something moves with time or angle.";
-  chart.x = {"phase of the slip, 0 break-away to 1 re-stick", "1"};
-  chart.panels[0].axis = {"cycle", ""};
-  chart.map = residual_map(d, model);
-  chart.height = 360;
-  chart.half = true;
-  return chart;
+  return {.id = d.id + "-map-" + std::to_string(model + 1),
+          .title = "What " + d.models[model].name + " leaves over cycle and phase of the slip",
+          .note =
+              "Mean residual in units of the noise floor. Upright stripes: the law has the wrong shape. Changes from "
+              "cycle to cycle: something moves with time or angle.",
+          .x = {"phase of the slip, 0 break-away to 1 re-stick", "1"},
+          .panels = {{{"cycle", ""}}},
+          .map = residual_map(d, model),
+          .height = 360,
+          .half = true};
 }
 
 }  // namespace
@@ -304,8 +295,9 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
   const double fastest = fastest_of(d.trace, pieces);
   if (!(fastest > 0) || d.models.empty()) return {};
   const Motion& m = d.trace.motion;
-  ErrorChart over_speed(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"});
-  ErrorChart over_time(d, "error-time", "Relative error over time", {"time", "s"});
+  std::vector<Chart> charts = {
+      error_chart(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"}),
+      error_chart(d, "error-time", "Relative error over time", {"time", "s"})};
   for (std::size_t k = 0; k < d.models.size(); ++k) {
     ExtremesInBins speed(0, fastest, kErrorBins), time(m.time.front(), m.time.back(), kTimeBins);
     for (const Piece& piece : pieces) {
@@ -315,10 +307,9 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
         time.add(m.time[i], error);
       }
     }
-    over_speed.add(d.models[k].name, k, speed.result());
-    over_time.add(d.models[k].name, k, time.result());
+    add_errors(d.models[k].name, k, speed.result(), charts[0]);
+    add_errors(d.models[k].name, k, time.result(), charts[1]);
   }
-  std::vector<Chart> charts = {over_speed.chart(), over_time.chart()};
   if (d.trace.segmentation.kind == MotionKind::stick_slip) {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k));
   }
@@ -330,29 +321,23 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
   for (const FitParameter& p : fit.parameters) {
     if (p.profile.empty()) continue;
     const std::string name = p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
-    Chart chart;
-    chart.id = id + "-profile-" + name;
+    Chart chart{
+        .id = id + "-profile-" + name,
+        .title = "Profile likelihood of " + name,
+        .note =
+            "Rise of the squares with this parameter held and all others refitted, in units of the rise at which "
+            "the 95 % interval ends. Dotted: best value. A parabola means that the interval from the curvature is "
+            "right.",
+        .x = {.quantity = name, .unit = shown_unit(p, motion), .digits = 9},
+        .panels = {{.axis = {.quantity = "rise / that of 95 %", .unit = "1", .from_zero = true}}},
+        .marks = {{1, false, Dash::dashed, "95 %"}, {shown(p, p.value), true, Dash::dotted, ""}},
+        .height = 280,
+        .half = true};
     std::replace_if(
         chart.id.begin(), chart.id.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '-');
-    chart.title = "Profile likelihood of " + name;
-    chart.note =
-        "Rise of the squares with this parameter held and all others refitted, in units of the rise at which "
-        "the 95 % interval ends. Dotted: best value. A parabola means that the interval from the curvature is "
-        "right.";
-    chart.x = {name, shown_unit(p, motion)};
-    chart.x.digits = 9;
-    chart.panels[0].axis = {"rise / that of 95 %", "1"};
-    chart.panels[0].axis.from_zero = true;
     ChartLine line{"profile", {}, {}, {Colour::blue, Dash::solid, Symbol::circle}};
-    for (const ProfilePoint& point : p.profile) {
-      line.x.push_back(shown(p, point.value));
-      line.y.push_back(point.rise);
-    }
+    for (const ProfilePoint& point : p.profile) line.add(shown(p, point.value), point.rise);
     chart.lines.push_back(std::move(line));
-    chart.marks.push_back({1, false, Dash::dashed, "95 %"});
-    chart.marks.push_back({shown(p, p.value), true, Dash::dotted, ""});
-    chart.height = 280;
-    chart.half = true;
     charts.push_back(std::move(chart));
   }
   return charts;

@@ -46,13 +46,11 @@ double largest(const Rows& rows, std::size_t measure, std::size_t y_begin, std::
 
 /// Where stick-slip begins or ends along a row, halfway between the cells.
 ChartLine edge_of(const MapRequest& request, const Rows& rows) {
-  ChartLine line{"edge of stick-slip", {}, {}, {.colour = Colour::black, .symbol = Symbol::circle, .size = 3}};
-  line.stroke.joined = false;
+  ChartLine line{.name = "edge of stick-slip", .stroke = dots(Colour::black, Symbol::circle, 3)};
   const auto sticks = [](const MapCell& cell) { return cell.regime == Regime::stick_slip; };
   const std::vector<double>&x = request.x.values, &y = request.y.values;
   const auto add = [&](double at_x, double at_y) {
-    line.x.push_back(at_x / request.x.variable.si);
-    line.y.push_back(at_y / request.y.variable.si);
+    line.add(at_x / request.x.variable.si, at_y / request.y.variable.si);
   };
   const std::size_t every = 1 + std::max(x.size(), y.size()) / kMostCells;
   for (std::size_t j = 0; j < rows.size(); ++j) {
@@ -77,12 +75,13 @@ ChartAxis axis_for(const MapAxis& axis) {
 
 Chart map_chart(const StudiedMachine& of, const MapRequest& request, const Rows& rows, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart;
-  chart.id = "map-" + info.name;
-  chart.title = fmt::format("{} over {} and {}", info.name, request.x.variable.name, request.y.variable.name);
+  Chart chart{.id = "map-" + info.name,
+              .title = fmt::format("{} over {} and {}", info.name, request.x.variable.name, request.y.variable.name),
+              .x = axis_for(request.x),
+              .panels = {{axis_for(request.y)}},
+              .height = 420,
+              .half = true};
   chart.title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(chart.title[0])));
-  chart.x = axis_for(request.x);
-  chart.panels[0].axis = axis_for(request.y);
   const std::vector<std::size_t> across = blocks_of(request.x.values.size()), down = blocks_of(request.y.values.size());
   HeatMap map{middles(request.x, across), middles(request.y, down), {}, info.name, info.unit};
   for (std::size_t j = 0; j + 1 < down.size(); ++j) {
@@ -101,12 +100,8 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const Rows&
   const double x = value_of(of.machine, request.x.variable.name) / request.x.variable.si;
   const double y = value_of(of.machine, request.y.variable.name) / request.y.variable.si;
   if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {
-    ChartLine own{"the machine", {x}, {y}, {.colour = Colour::red, .symbol = Symbol::cross, .size = 11}};
-    own.stroke.joined = false;
-    chart.lines.push_back(std::move(own));
+    chart.lines.push_back({"the machine", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
   }
-  chart.height = 420;
-  chart.half = true;
   return chart;
 }
 

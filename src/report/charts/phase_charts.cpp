@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion_charts.hpp"
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
 #include "study_parts.hpp"
-#include "styles.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
@@ -25,118 +25,68 @@ bool is_own(const StudiedMachine& of, const Portrait& portrait) {
   return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSame;
 }
 
-/// motion: simulated or measured, in the plane of displacement and velocity.
-template <class AnyMotion>
-void add_loop(const std::string& name, const AnyMotion& motion, std::size_t bins, const Stroke& stroke, Chart& chart) {
-  const std::vector<std::size_t> kept = kept_samples({motion.displacement, motion.velocity}, motion.sticks, bins);
-  chart.lines.push_back(
-      {name, picked(motion.displacement, kept, kMillimetre), picked(motion.velocity, kept, kMillimetre), stroke});
-}
-
-/// A settled cycle, closed by the sample it began with.
-void add_cycle(const std::string& name, const SimulatedMotion& cycle, const Stroke& stroke, Chart& chart) {
-  add_loop(name, cycle, kCycleBins, stroke, chart);
-  ChartLine& line = chart.lines.back();
-  line.x.push_back(line.x.front());
-  line.y.push_back(line.y.front());
-}
-
-Chart plane(const std::string& id, const std::string& title) {
-  Chart chart;
-  chart.id = id;
-  chart.title = title;
-  chart.x = {.quantity = "displacement of the block", .unit = "mm"};
-  chart.panels[0].axis = {.quantity = "velocity of the block", .unit = "mm/s"};
-  return chart;
+/// What was measured at this speed, if anything.
+BlockMotion measured_at(const StudiedMachine& of, const Portrait& portrait) {
+  return is_own(of, portrait) ? measured_motion(of) : BlockMotion{};
 }
 
 Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
-  Chart chart = plane(fmt::format("phase-{}", number),
-                      fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)));
-  const Stroke start = {.colour = Colour::grey, .dash = Dash::dotted, .width = 1};
-  add_loop("from the start", portrait.start, kStartBins, start, chart);
+  Chart chart = portrait_plane(
+      fmt::format("phase-{}", number),
+      fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
+  add_loop({"from the start", portrait.start}, kStartBins, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1},
+           chart);
   if (portrait.cycle.size() > 0) {
-    add_cycle("settled cycle", portrait.cycle, {.colour = Colour::black, .width = 2}, chart);
+    add_loop({"settled cycle", portrait.cycle}, kCycleBins, {.colour = Colour::black, .width = 2}, chart, true);
   }
-  if (is_own(of, portrait)) {
-    const BlockMotion measured = measured_motion(of);
-    if (measured.size() > 0) {
-      add_loop(fmt::format("measured, {} cycles", measured.cycles), measured, kCycleBins,
-               {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
-    }
+  const BlockMotion measured = measured_at(of, portrait);
+  if (measured.size() > 0) {
+    add_loop({fmt::format("measured, {} cycles", measured.cycles), measured}, kCycleBins,
+             {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
   }
-  chart.marks.push_back({portrait.velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
   chart.height = 380;
   chart.half = true;
   return chart;
 }
 
 Chart all_portraits(const std::vector<const Portrait*>& drawn) {
-  Chart chart = plane("phase-all", "Settled cycles at all speeds");
-  std::size_t k = 0;
-  for (const Portrait* portrait : drawn) {
-    const Stroke stroke = stroke_of(k++);
-    if (portrait->cycle.size() == 0) continue;
-    add_cycle(speed_text(*portrait), portrait->cycle, stroke, chart);
+  Chart chart = portrait_plane("phase-all", "Settled cycles at all speeds", 0);
+  chart.marks.clear();
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    const Portrait& portrait = *drawn[k];
+    if (portrait.cycle.size() == 0) continue;
+    add_loop({speed_text(portrait), portrait.cycle}, kCycleBins, stroke_of(k), chart, true);
   }
-  chart.height = 420;
   return chart;
 }
 
-std::vector<Stretch> sticks_of(const SimulatedMotion& motion) {
-  std::vector<Stretch> out;
-  constexpr std::size_t kMost = 60;
-  for (std::size_t i = 0; i < motion.size() && out.size() < kMost;) {
-    std::size_t end = i;
-    while (end < motion.size() && motion.sticks[end] == motion.sticks[i]) ++end;
-    if (motion.sticks[i] != 0) {
-      out.push_back({motion.time[i], motion.time[std::min(end, motion.size() - 1)], Shade::stick});
-    }
-    i = end;
-  }
-  return out;
-}
-
 Chart time_chart(const Portrait& portrait, std::size_t number) {
-  Chart chart;
-  chart.id = fmt::format("motion-{}", number);
-  chart.title = "Motion at " + speed_text(portrait) + " over time, from the start";
-  chart.x = {.quantity = "time", .unit = "s", .digits = 7};
-  chart.panels = {{.axis = {.quantity = "displacement", .unit = "mm"}},
-                  {.axis = {.quantity = "velocity v_{b}", .unit = "mm/s"}},
-                  {.axis = {.quantity = "friction", .unit = "1"}}};
-  const SimulatedMotion& m = portrait.start;
-  const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity, m.friction}, m.sticks, kStartBins);
-  const std::vector<double> time = picked(m.time, kept, 1);
-  const auto add = [&](const char* name, const std::vector<double>& channel, double unit, std::size_t panel) {
-    ChartLine line{name, time, picked(channel, kept, unit), stroke_of(0)};
-    line.panel = panel;
-    line.listed = false;
-    chart.lines.push_back(std::move(line));
-  };
-  add("displacement", m.displacement, kMillimetre, 0);
-  add("velocity", m.velocity, kMillimetre, 1);
-  add("friction", m.friction, 1, 2);
-  chart.marks.push_back({portrait.velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 1});
-  chart.stretches = sticks_of(m);
-  chart.height = 520;
+  Chart chart{.id = fmt::format("motion-{}", number),
+              .title = "Motion at " + speed_text(portrait) + " over time, from the start",
+              .x = {.quantity = "time", .unit = "s", .digits = 7},
+              .marks = {disc_mark(portrait.velocity, 1)},
+              .height = 520};
+  const DrawnMotion motion("motion", portrait.start);
+  add_over_time(motion,
+                {{{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre},
+                 {{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
+                 {{.quantity = "friction", .unit = "1"}, &DrawnMotion::friction, 1}},
+                kStartBins, stroke_of(0), chart);
+  shade_sticks(motion, chart);
   return chart;
 }
 
 /// The block at one speed, and as it was measured where it was.
 Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
-  Animation out;
-  out.id = fmt::format("block-{}", number);
-  out.title = "The block on its disc at " + speed_text(portrait);
-  out.disc_velocity = portrait.velocity / kMillimetre;
-  const BlockMotion measured = is_own(of, portrait) ? measured_motion(of) : BlockMotion{};
+  Animation out{.id = fmt::format("block-{}", number),
+                .title = "The block on its disc at " + speed_text(portrait),
+                .disc_velocity = portrait.velocity / kMillimetre};
+  const BlockMotion measured = measured_at(of, portrait);
   if (measured.size() > 0) {
-    out.blocks.push_back(
-        animated("measured", measured.time, measured.displacement, measured.friction, measured.sticks));
+    out.blocks.push_back(animated({"measured", measured}));
     out.note = "Measured (three cycles) beside simulated (one settled cycle).";
   }
-  const SimulatedMotion& m = portrait.cycle;
-  out.blocks.push_back(animated("simulated", m.time, m.displacement, m.friction, m.sticks));
+  out.blocks.push_back(animated({"simulated", portrait.cycle}));
   return out;
 }
 
@@ -162,13 +112,14 @@ std::string regimes_sentence(const std::vector<Portrait>& study) {
     if (at.empty()) continue;
     std::sort(at.begin(), at.end());
     text += (text.empty() ? "" : "; ") + std::string(to_string(regime)) + " at ";
-    text += at.size() > 4 ? fmt::format("{} speeds from {} to {} mm/s", at.size(), significant(at.front(), 4),
-                                        significant(at.back(), 4))
-                          : "";
-    for (std::size_t k = 0; k < at.size() && at.size() <= 4; ++k) {
+    if (at.size() > 4) {
+      text += fmt::format("{} speeds from {} to ", at.size(), significant(at.front(), 4));
+      at = {at.back()};
+    }
+    for (std::size_t k = 0; k < at.size(); ++k) {
       text += (k == 0 ? "" : k + 1 == at.size() ? " and " : ", ") + significant(at[k], 4);
     }
-    if (at.size() <= 4) text += " mm/s";
+    text += " mm/s";
   }
   if (!text.empty() && text[0] >= 'a') text[0] = static_cast<char>(text[0] - 32);
   return text + ".";

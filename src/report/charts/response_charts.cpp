@@ -12,64 +12,56 @@
 namespace tribofit {
 namespace {
 
+void mark_natural(const Response& study, Chart& chart) {
+  const double f = study.damped_natural_frequency;
+  if (!(f > 0)) return;
+  chart.marks.push_back({f, true, Dash::dashed, "damped natural " + significant(f, 3) + " Hz", 0});
+}
+
 Chart curve_chart(const Response& study) {
-  Chart chart;
-  chart.id = "response-curve";
-  chart.title = "Amplitude that a force of each frequency would give";
-  chart.note =
-      fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.", significant(study.force, 4));
-  chart.x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true};
-  chart.panels[0].axis = {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true};
-  chart.lines.push_back({"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)});
-  ChartLine lines{"lines of the settled motion", {}, {}, marked(1, false)};
-  const double first = study.frequency.empty() ? 0 : study.frequency.front();
-  const double last = study.frequency.empty() ? 0 : study.frequency.back();
-  const double least =
-      study.amplitude.empty() ? 0 : 0.1 * *std::min_element(study.amplitude.begin(), study.amplitude.end());
+  Chart chart{.id = "response-curve",
+              .title = "Amplitude that a force of each frequency would give",
+              .note = fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.",
+                                  significant(study.force, 4)),
+              .x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true},
+              .panels = {{.axis = {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true}}},
+              .lines = {{"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)}},
+              .height = 400};
+  if (study.frequency.empty() || study.amplitude.empty()) return chart;
+  const double least = 0.1 * *std::min_element(study.amplitude.begin(), study.amplitude.end());  // else off the paper
+  ChartLine lines{.name = "lines of the settled motion", .stroke = marked(1, false)};
   for (const ResponseLine& h : study.harmonics) {
-    if (h.frequency < first || h.frequency > last || h.displacement < least) continue;
-    lines.x.push_back(h.frequency);
-    lines.y.push_back(h.displacement / kMillimetre);
+    const bool there = h.frequency >= study.frequency.front() && h.frequency <= study.frequency.back();
+    if (there && h.displacement >= least) lines.add(h.frequency, h.displacement / kMillimetre);
   }
   if (!lines.x.empty()) chart.lines.push_back(std::move(lines));
-  if (study.damped_natural_frequency > 0) {
-    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed,
-                           "damped natural " + significant(study.damped_natural_frequency, 3) + " Hz", 0});
-  }
+  mark_natural(study, chart);
   if (!study.harmonics.empty()) {
-    chart.marks.push_back({study.settled.frequency, true, Dash::dotted,
-                           "response " + significant(study.settled.frequency, 3) + " Hz", 0});
+    const double f = study.settled.frequency;
+    chart.marks.push_back({f, true, Dash::dotted, "response " + significant(f, 3) + " Hz", 0});
   }
-  chart.height = 400;
   return chart;
 }
 
 /// Upright lines with a point at their ends.
-Chart spectrum_chart(const Response& study, const std::string& id, const std::string& title, const ChartAxis& axis,
+Chart spectrum_chart(const Response& study, const char* id, const char* title, ChartAxis axis,
                      double ResponseLine::*amplitude, double unit) {
-  Chart chart;
-  chart.id = id;
-  chart.title = title;
-  chart.x = {.quantity = "frequency", .unit = "Hz", .from_zero = true};
-  chart.panels[0].axis = axis;
-  chart.panels[0].axis.from_zero = true;
-  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-  ChartLine stems{"lines", {}, {}, {.colour = Colour::blue, .width = 2}}, ends{"amplitude", {}, {}, marked(1, false)};
-  ends.stroke.size = 5;
-  stems.listed = false;
+  axis.from_zero = true;
+  Chart chart{.id = id,
+              .title = title,
+              .x = {.quantity = "frequency", .unit = "Hz", .from_zero = true},
+              .panels = {{std::move(axis)}},
+              .half = true};
+  ChartLine stems{.name = "lines", .stroke = {.colour = Colour::blue, .width = 2}, .listed = false};
+  ChartLine ends{.name = "amplitude", .stroke = dots(Colour::blue, Symbol::square)};
   for (const ResponseLine& h : study.harmonics) {
-    const double y = h.*amplitude / unit;
-    stems.x.insert(stems.x.end(), {h.frequency, h.frequency, kGap});
-    stems.y.insert(stems.y.end(), {0, y, kGap});
-    ends.x.push_back(h.frequency);
-    ends.y.push_back(y);
+    stems.add(h.frequency, 0);
+    stems.add(h.frequency, h.*amplitude / unit);
+    stems.add(h.frequency, std::numeric_limits<double>::quiet_NaN());
+    ends.add(h.frequency, h.*amplitude / unit);
   }
   chart.lines = {std::move(stems), std::move(ends)};
-  if (study.damped_natural_frequency > 0) {
-    chart.marks.push_back({study.damped_natural_frequency, true, Dash::dashed,
-                           "damped natural " + significant(study.damped_natural_frequency, 3) + " Hz", 0});
-  }
-  chart.half = true;
+  mark_natural(study, chart);
   return chart;
 }
 

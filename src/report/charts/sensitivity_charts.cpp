@@ -16,11 +16,13 @@ constexpr std::size_t kShown = 6;  // sweeps that are not switched off at first
 /// A measure over each variable, those that matter most first.
 Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart;
-  chart.id = "sweep-" + info.name;
-  chart.title = "The " + info.name + " over each number of the machine";
-  chart.x = {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true};
-  chart.panels[0].axis = axis_of(info);
+  Chart chart{.id = "sweep-" + info.name,
+              .title = "The " + info.name + " over each number of the machine",
+              .x = {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true},
+              .panels = {{axis_of(info)}},
+              .marks = {{1, true, Dash::dotted, "the machine", 0}},
+              .height = 380,
+              .half = true};
   std::size_t k = 0;
   for (const std::size_t i : ranked(study, measure)) {
     const Sensitivity& one = study[i];
@@ -30,18 +32,15 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
     line.shown = k++ < kShown;
     chart.lines.push_back(std::move(line));
   }
-  chart.marks.push_back({1, true, Dash::dotted, "the machine", 0});
-  chart.height = 380;
-  chart.half = true;
   return chart;
 }
 
 Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart;
-  chart.id = "elasticity-" + info.name;
-  chart.title = "What moves the " + info.name;
-  chart.x = {.quantity = "change of the " + info.name + " for 1 % of the number", .unit = "%"};
+  Chart chart{.id = "elasticity-" + info.name,
+              .title = "What moves the " + info.name,
+              .x = {.quantity = "change of the " + info.name + " for 1 % of the number", .unit = "%"},
+              .half = true};
   ChartAxis& names = chart.panels[0].axis;
   names.falling = true;  // the largest stands on top
   ChartBars bars{info.name, {}};
@@ -53,7 +52,6 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   }
   chart.bars.push_back(std::move(bars));
   chart.height = 110 + 26 * static_cast<int>(names.names.size());
-  chart.half = true;
   return chart;
 }
 

@@ -12,11 +12,6 @@
 namespace tribofit {
 namespace {
 
-constexpr const char* kUp = "begun in stick (way up)";
-constexpr const char* kDown = "begun in sliding (way down)";
-constexpr const char* kOfRecord = "measured";
-constexpr const char* kRange = "95 % range of a critical speed";
-
 /// An upright mark at each critical speed; what happens at one speed shares a mark.
 void add_critical(const SpeedStudy& study, Chart& chart) {
   constexpr double kSame = 1e-3;
@@ -40,27 +35,24 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
 /// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
 void add_range(const Range& range, std::size_t panel, Chart& chart) {
   if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
-  ChartLine line{kRange, in_unit(std::vector{range.lower95, range.upper95}, kMillimetre), {0, 0}};
-  line.stroke = {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4};
-  line.panel = panel;
-  for (const ChartLine& other : chart.lines) line.listed &= other.name != kRange;
-  chart.lines.push_back(std::move(line));
+  chart.lines.push_back({.name = "95 % range of a critical speed",
+                         .x = {range.lower95 / kMillimetre, range.upper95 / kMillimetre},
+                         .y = {0, 0},
+                         .stroke = {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4},
+                         .panel = panel});
 }
 
 void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
   const std::vector<double> velocity = in_unit(study.velocity, kMillimetre);
-  const auto add = [&](const char* name, const std::vector<Settled>& settled, const Stroke& stroke) {
-    ChartLine line{name, velocity, {}, stroke};
+  const auto add = [&](const char* name, const std::vector<Settled>& settled, std::size_t kind, Dash dash) {
+    ChartLine line{.name = name, .x = velocity, .stroke = marked(kind), .panel = panel};
+    line.stroke.dash = dash;
+    line.stroke.size = 5;
     for (const Settled& s : settled) line.y.push_back(s.*measure.value / measure.si);
-    line.panel = panel;
-    line.listed = panel == 0;
     chart.lines.push_back(std::move(line));
   };
-  Stroke up = marked(1), down = marked(2);
-  up.dash = Dash::solid, down.dash = Dash::dashed;
-  up.size = down.size = 5;
-  add(kUp, study.up, up);
-  add(kDown, study.down, down);
+  add("begun in stick (way up)", study.up, 1, Dash::solid);
+  add("begun in sliding (way down)", study.down, 2, Dash::dashed);
 }
 
 /// What the record says at its own speed; nothing where it does not.
@@ -72,15 +64,8 @@ void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::siz
                           : measure.name == "peak-speed" ? &s.amplitude
                                                          : nullptr;
   if (value == nullptr || !std::isfinite(value->value)) return;
-  const double y = value->value / measure.si;
-  const double error = std::isfinite(value->std_error) ? 1.96 * value->std_error / measure.si : 0;
-  ChartLine line{kOfRecord,  {of.machine.disc_velocity() / kMillimetre}, {y}, marked(0, false), {y - error},
-                 {y + error}};
-  line.stroke.symbol = Symbol::cross;
-  line.stroke.size = 9;
-  line.bars = true;
-  line.panel = panel;
-  for (const ChartLine& other : chart.lines) line.listed &= other.name != kOfRecord;
+  ChartLine line{.name = "measured", .stroke = dots(Colour::black, Symbol::cross, 9), .bars = true, .panel = panel};
+  line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si, 1.96 * value->std_error / measure.si);
   chart.lines.push_back(std::move(line));
 }
 
@@ -92,10 +77,13 @@ ChartAxis speed_axis(const SpeedStudy& study) {
   return {.quantity = "speed of the disc", .unit = "mm/s", .logarithmic = wide};
 }
 
-Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const std::vector<std::string>& names) {
-  Chart chart;
-  chart.x = speed_axis(study);
-  chart.panels.clear();
+Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const char* id, const char* title,
+                 const std::vector<std::string>& names) {
+  Chart chart{.id = id,
+              .title = title,
+              .x = speed_axis(study),
+              .panels = {},
+              .height = 150 + 170 * static_cast<int>(names.size())};
   for (const std::string& name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
@@ -114,18 +102,16 @@ Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const std::v
     }
   }
   add_critical(study, chart);
-  chart.height = 150 + 170 * static_cast<int>(names.size());
   return chart;
 }
 
 Chart growth_chart(const SpeedStudy& study) {
-  Chart chart;
-  chart.id = "growth-rate";
-  chart.title = "Growth of a small vibration about steady sliding";
-  chart.note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.";
-  chart.x = speed_axis(study);
-  chart.panels[0].axis = {.quantity = "growth rate", .unit = "1/s"};
-  chart.lines.push_back({"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)});
+  Chart chart{.id = "growth-rate",
+              .title = "Growth of a small vibration about steady sliding",
+              .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
+              .x = speed_axis(study),
+              .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
+              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}}};
   add_range(study.linear_range, 0, chart);
   chart.marks.push_back({0, false, Dash::solid, "", 0});
   add_critical(study, chart);
@@ -187,15 +173,12 @@ Report report_of(const StudiedMachine& of, const SpeedStudy& study, const Report
   if (study.own.regime == Regime::not_settled) report.warnings.push_back(seen_sentence(study.own));
 
   ReportSection& section = report.sections.emplace_back(ReportSection{"speed", "Over the speed of the disc", {}});
-  Chart motion = over_speed(of, study, {"frequency", "stick-time", "peak-to-peak"});
-  motion.id = "speed-motion";
-  motion.title = "Frequency, stick and amplitude over speed";
+  Chart motion = over_speed(of, study, "speed-motion", "Frequency, stick and amplitude over speed",
+                            {"frequency", "stick-time", "peak-to-peak"});
   motion.note = "Where the two ways differ, both motions go on where they have begun.";
-  Chart energy = over_speed(of, study, {"energy", "peak-speed"});
-  energy.id = "speed-energy";
-  energy.title = "Energy before break-away and fastest slip over speed";
   section.items.emplace_back(std::move(motion));
-  section.items.emplace_back(std::move(energy));
+  section.items.emplace_back(over_speed(
+      of, study, "speed-energy", "Energy before break-away and fastest slip over speed", {"energy", "peak-speed"}));
   section.items.emplace_back(growth_chart(study));
   section.items.emplace_back(own_table(of, study));
   section.items.emplace_back(speed_table(study));

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <utility>
 
-#include "report/drawing.hpp"
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "report/study_sentences.hpp"
@@ -127,47 +125,6 @@ std::vector<double> in_unit(std::span<const double> values, double unit) {
   std::vector<double> out(values.begin(), values.end());
   for (double& value : out) value /= unit;
   return out;
-}
-
-std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels,
-                                      std::span<const std::uint8_t> sticks, std::size_t bins) {
-  std::vector<SampleRange> phases;
-  for (std::size_t i = 0; i < sticks.size(); i = phases.back().end) {
-    std::size_t end = i;
-    while (end < sticks.size() && sticks[end] == sticks[i]) ++end;
-    phases.push_back({i, end});
-  }
-  if (phases.size() > bins / 4) phases = {{0, sticks.size()}};  // too many to be told apart
-  const std::size_t of_phase = std::max<std::size_t>(2, 2 * bins / std::max<std::size_t>(1, phases.size()));
-  std::set<std::size_t> kept;
-  for (const SampleRange& phase : phases) {
-    const bool stick = sticks[phase.begin] != 0 && phases.size() > 1;
-    const std::size_t here = phases.size() == 1 ? bins : stick ? of_phase / 4 : of_phase - of_phase / 4;
-    for (const std::span<const double> channel : channels) {
-      for (const std::size_t i : drawn_samples(channel.subspan(phase.begin, phase.size()), here)) {
-        kept.insert(phase.begin + i);
-      }
-    }
-  }
-  return {kept.begin(), kept.end()};
-}
-
-std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit) {
-  std::vector<double> out;
-  out.reserve(samples.size());
-  for (const std::size_t i : samples) out.push_back(values[i] / unit);
-  return out;
-}
-
-Animation::Block animated(const std::string& name, std::span<const double> time, std::span<const double> displacement,
-                          std::span<const double> friction, std::span<const std::uint8_t> sticks) {
-  constexpr std::size_t kBins = 250;
-  const std::vector<std::size_t> kept = kept_samples({displacement, friction}, sticks, kBins);
-  Animation::Block block{
-      name, picked(time, kept, 1), picked(displacement, kept, kMillimetre), picked(friction, kept, 1), {}};
-  for (double& t : block.time) t -= time.front();
-  for (const std::size_t i : kept) block.sticks.push_back(sticks[i] != 0);
-  return block;
 }
 
 }  // namespace tribofit

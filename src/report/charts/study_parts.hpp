@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "styles.hpp"
 #include "tribofit/report/study.hpp"
 #include "tribofit/study/block_motion.hpp"
 
@@ -34,15 +33,5 @@ BlockMotion measured_motion(const StudiedMachine& of);
 
 /// `values` in a unit.
 std::vector<double> in_unit(std::span<const double> values, double unit);
-
-/// Motions in the plane of displacement and velocity, or over time, keep these samples: the extremes of each channel in
-/// each of about `bins` stretches, three quarters of which lie in the slips, where things happen fast.
-std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels,
-                                      std::span<const std::uint8_t> sticks, std::size_t bins);
-std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit);
-
-/// A block that is drawn in motion.
-Animation::Block animated(const std::string& name, std::span<const double> time, std::span<const double> displacement,
-                          std::span<const double> friction, std::span<const std::uint8_t> sticks);
 
 }  // namespace tribofit

@@ -46,11 +46,9 @@ ChartLine line_of(const DrawnTrace& d, const Window& w, std::string name, const 
                   std::size_t panel = 0) {
   std::vector<double> values(w.end - w.begin);
   for (std::size_t i = w.begin; i < w.end; ++i) values[i - w.begin] = channel[i];
-  ChartLine line{std::move(name), {}, {}, stroke};
-  line.panel = panel;
+  ChartLine line{.name = std::move(name), .stroke = stroke, .panel = panel};
   for (const std::size_t k : drawn_samples(values, w.bins)) {
-    line.x.push_back((d.trace.motion.time[w.begin + k] - w.origin) / w.unit);
-    line.y.push_back(values[k]);
+    line.add((d.trace.motion.time[w.begin + k] - w.origin) / w.unit, values[k]);
   }
   return line;
 }
@@ -65,26 +63,21 @@ ChartLine disc_line(const DrawnTrace& d, const Window& w) {
   }
   const double level = motion.constant_disc_velocity / kMillimetre;
   const auto shown = [&](std::size_t i) { return (motion.time[i] - w.origin) / w.unit; };
-  ChartLine line{name, {shown(w.begin), shown(w.end - 1)}, {level, level}, kDisc};
-  line.panel = 1;
-  return line;
+  return {.name = name, .x = {shown(w.begin), shown(w.end - 1)}, .y = {level, level}, .stroke = kDisc, .panel = 1};
 }
 
 /// Friction with its models above, velocity with the disc below.
 Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const Motion& motion = d.trace.motion;
   const VelocityChannel velocity(motion);
-  Chart chart;
-  chart.x = {"time", "s"};
-  chart.x.digits = kTimeDigits;
-  chart.panels = {{friction_axis(motion), 1.3}, {{velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"}}};
+  Chart chart{.x = {.quantity = "time", .unit = "s", .digits = kTimeDigits},
+              .panels = {{friction_axis(motion), 1.3}, {{velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"}}}};
   chart.lines.push_back(line_of(d, w, "measured", motion.friction, kMeasured));
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
     chart.lines.push_back(line_of(d, w, d.models[k].name, d.predictions[k], model_stroke(k)));
     chart.lines.back().shown = k < 2;
   }
   chart.lines.push_back(line_of(d, w, "measured", velocity, kMeasured, 1));
-  chart.lines.back().listed = false;
   if (velocity.of_block()) chart.lines.push_back(disc_line(d, w));
   return chart;
 }
@@ -138,8 +131,7 @@ std::vector<Chart> zoom_chart(const DrawnTrace& d, double at, const char* id, co
   chart.id = d.id + "-" + id;
   chart.title = title;
   chart.note = "±5 ms about " + significant(at, 6) + " s.";
-  chart.x = {"time from the event", "ms"};
-  chart.x.digits = kTimeDigits;
+  chart.x = {.quantity = "time from the event", .unit = "ms", .digits = kTimeDigits};
   chart.marks.push_back({0, true, Dash::dotted, ""});
   chart.height = 400;
   chart.half = true;
@@ -166,62 +158,54 @@ std::vector<Chart> spectrum_chart(const DrawnTrace& d) {
   const Spectrum spectrum = amplitude_spectrum(reduced, motion.step * static_cast<double>(every));
   std::vector<double> amplitude = spectrum.amplitude;
   amplitude.resize(std::min(amplitude.size(), static_cast<std::size_t>(top / spectrum.bin_width) + 1));
-  Chart chart;
-  chart.id = d.id + "-spectrum";
-  chart.title = "Spectrum of the relative velocity";
-  chart.note = "Hann window over the whole record.";
+  Chart chart{.id = d.id + "-spectrum",
+              .title = "Spectrum of the relative velocity",
+              .note = "Hann window over the whole record.",
+              .x = {"frequency", "Hz"},
+              .panels = {{.axis = {.quantity = "amplitude of v_{r}", .unit = "mm/s", .from_zero = true}}},
+              .height = 290,
+              .half = true};
   if (peak > 0) {
     chart.note = "Strongest line at " + significant(peak, 4) + " Hz (dotted). " + chart.note;
     chart.marks.push_back({peak, true, Dash::dotted, ""});
   }
-  chart.x = {"frequency", "Hz"};
-  chart.panels[0].axis = {"amplitude of v_{r}", "mm/s"};
-  chart.panels[0].axis.from_zero = true;
-  ChartLine line{"amplitude", {}, {}, kMeasured};
+  ChartLine line{.name = "amplitude", .stroke = kMeasured};
   for (const std::size_t k : drawn_samples(amplitude, d.bins(kLineBins))) {
-    line.x.push_back(static_cast<double>(k) * spectrum.bin_width);
-    line.y.push_back(amplitude[k]);
+    line.add(static_cast<double>(k) * spectrum.bin_width, amplitude[k]);
   }
   chart.lines.push_back(std::move(line));
-  chart.height = 290;
-  chart.half = true;
   return {chart};
 }
 
-/// Measures of each cycle as points over time.
-class CycleChart {
- public:
-  CycleChart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis) : d_(d) {
-    chart_.id = d.id + "-" + id;
-    chart_.title = title;
-    chart_.x = {"time of break-away", "s"};
-    chart_.x.digits = kTimeDigits;
-    chart_.panels[0].axis = std::move(axis);
-    chart_.height = 290;
-    chart_.half = true;
-  }
-  CycleChart& add(const char* name, double Cycle::*which, double unit, Colour colour, Symbol symbol) {
-    const std::vector<Cycle>& cycles = d_.trace.segmentation.cycles;
-    std::vector<double> values;
-    for (const Cycle& c : cycles) values.push_back(c.*which / unit);
-    ChartLine line{name, {}, {}, dots(colour, symbol)};
-    for (const std::size_t k : drawn_samples(values, d_.bins(kMeasureBins))) {
-      line.x.push_back(cycles[k].break_away_time);
-      line.y.push_back(values[k]);
-    }
-    chart_.lines.push_back(std::move(line));
-    return *this;
-  }
-  Chart chart() const {
-    Chart chart = chart_;
-    shade_left_out(d_, chart);
-    return chart;
-  }
-
- private:
-  const DrawnTrace& d_;
-  Chart chart_;
+struct CycleMeasure {
+  const char* name;
+  double Cycle::*value;
+  Colour colour;
+  Symbol symbol;
 };
+
+/// Measures of each cycle as points over time.
+Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis, double unit,
+                  std::initializer_list<CycleMeasure> measures) {
+  Chart chart{.id = d.id + "-" + id,
+              .title = title,
+              .x = {.quantity = "time of break-away", .unit = "s", .digits = kTimeDigits},
+              .panels = {{std::move(axis)}},
+              .height = 290,
+              .half = true};
+  const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
+  for (const CycleMeasure& measure : measures) {
+    std::vector<double> values;
+    for (const Cycle& c : cycles) values.push_back(c.*measure.value / unit);
+    ChartLine line{.name = measure.name, .stroke = dots(measure.colour, measure.symbol)};
+    for (const std::size_t k : drawn_samples(values, d.bins(kMeasureBins))) {
+      line.add(cycles[k].break_away_time, values[k]);
+    }
+    chart.lines.push_back(std::move(line));
+  }
+  shade_left_out(d, chart);
+  return chart;
+}
 
 }  // namespace
 
@@ -280,19 +264,16 @@ Chart record_chart(const DrawnTrace& d) {
 std::vector<Chart> measure_charts(const DrawnTrace& d) {
   std::vector<Chart> charts;
   if (d.trace.segmentation.cycles.size() > 1) {
-    charts.push_back(CycleChart(d, "levels", "Friction levels of each cycle", friction_axis(d.trace.motion))
-                         .add("break-away", &Cycle::break_away_friction, 1, Colour::blue, Symbol::circle)
-                         .add("largest in stick", &Cycle::stick_maximum, 1, Colour::red, Symbol::triangle_up)
-                         .add("least in slip", &Cycle::slip_minimum, 1, Colour::green, Symbol::triangle_down)
-                         .chart());
-    charts.push_back(CycleChart(d, "peaks", "Fastest of each slip", {"peak |v_{r}|", "mm/s"})
-                         .add("peak velocity", &Cycle::peak_velocity, kMillimetre, Colour::blue, Symbol::circle)
-                         .chart());
-    charts.push_back(CycleChart(d, "times", "Durations of each cycle", {"duration", "ms"})
-                         .add("stick", &Cycle::stick_time, kMillisecond, Colour::blue, Symbol::circle)
-                         .add("slip", &Cycle::slip_time, kMillisecond, Colour::red, Symbol::triangle_up)
-                         .add("period", &Cycle::period, kMillisecond, Colour::green, Symbol::square)
-                         .chart());
+    charts = {cycle_chart(d, "levels", "Friction levels of each cycle", friction_axis(d.trace.motion), 1,
+                          {{"break-away", &Cycle::break_away_friction, Colour::blue, Symbol::circle},
+                           {"largest in stick", &Cycle::stick_maximum, Colour::red, Symbol::triangle_up},
+                           {"least in slip", &Cycle::slip_minimum, Colour::green, Symbol::triangle_down}}),
+              cycle_chart(d, "peaks", "Fastest of each slip", {"peak |v_{r}|", "mm/s"}, kMillimetre,
+                          {{"peak velocity", &Cycle::peak_velocity, Colour::blue, Symbol::circle}}),
+              cycle_chart(d, "times", "Durations of each cycle", {"duration", "ms"}, kMillisecond,
+                          {{"stick", &Cycle::stick_time, Colour::blue, Symbol::circle},
+                           {"slip", &Cycle::slip_time, Colour::red, Symbol::triangle_up},
+                           {"period", &Cycle::period, Colour::green, Symbol::square}})};
   }
   for (Chart& chart : spectrum_chart(d)) charts.push_back(std::move(chart));
   return charts;

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion_charts.hpp"
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "report/twin_sentences.hpp"
-#include "study_parts.hpp"
-#include "styles.hpp"
 #include "tribofit/report/twin.hpp"
 
 namespace tribofit {
@@ -16,16 +15,11 @@ namespace {
 constexpr std::size_t kBins = 400;
 
 /// The measured motion and those of the twins, under their names.
-struct NamedMotion {
-  std::string name;
-  const BlockMotion* motion;
-};
-
-std::vector<NamedMotion> motions_of(const Twin& twin) {
-  std::vector<NamedMotion> out;
-  if (twin.measured.size() > 0) out.push_back({"measured", &twin.measured});
+std::vector<DrawnMotion> motions_of(const Twin& twin) {
+  std::vector<DrawnMotion> out;
+  if (twin.measured.size() > 0) out.emplace_back("measured", twin.measured);
   for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() > 0) out.push_back({"simulated, " + column_name(twin, c), &twin.simulated[c]});
+    if (twin.simulated[c].size() > 0) out.emplace_back("simulated, " + column_name(twin, c), twin.simulated[c]);
   }
   return out;
 }
@@ -54,8 +48,7 @@ Chart differences_chart(const Twin& twin) {
     for (std::size_t k = 0; k < twin.measures.size(); ++k) {
       const double d = twin.measures[k].simulated.at(c).difference;
       if (!std::isfinite(d)) continue;
-      line.x.push_back(d);
-      line.y.push_back(static_cast<double>(k));
+      line.add(d, static_cast<double>(k));
       largest = std::max(largest, 1.1 * std::abs(d));
     }
     chart.lines.push_back(std::move(line));
@@ -70,76 +63,41 @@ Chart differences_chart(const Twin& twin) {
 }
 
 Chart motion_chart(const Twin& twin, const std::string& friction_unit) {
-  Chart chart;
-  chart.id = "twin-motion";
-  chart.title = "Three cycles, measured and simulated";
-  chart.note =
-      "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within the "
-      "errors and a scatter of its own. Shaded: stick as measured.";
-  chart.x = {.quantity = "time since break-away", .unit = "s", .digits = 7};
-  chart.panels = {{.axis = {.quantity = "velocity v_{b}", .unit = "mm/s"}},
-                  {.axis = {.quantity = friction_unit == "N" ? "friction" : "mu", .unit = friction_unit}},
-                  {.axis = {.quantity = "displacement", .unit = "mm"}}};
+  Chart chart{
+      .id = "twin-motion",
+      .title = "Three cycles, measured and simulated",
+      .note =
+          "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within "
+          "the errors and a scatter of its own. Shaded: stick as measured.",
+      .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
+      .height = 640};
   std::size_t k = 0;
-  for (const NamedMotion& one : motions_of(twin)) {
-    const BlockMotion& m = *one.motion;
-    const std::vector<std::size_t> kept = kept_samples({m.velocity, m.friction}, m.sticks, kBins);
-    const std::vector<double> time = picked(m.time, kept, 1);
-    const Stroke stroke = stroke_for(k++);
-    const auto add = [&](const std::vector<double>& channel, double unit, std::size_t panel) {
-      ChartLine line{one.name, time, picked(channel, kept, unit), stroke};
-      line.panel = panel;
-      line.listed = panel == 0;
-      chart.lines.push_back(std::move(line));
-    };
-    add(m.velocity, kMillimetre, 0);
-    add(m.friction, 1, 1);
-    add(m.displacement, kMillimetre, 2);
+  for (const DrawnMotion& motion : motions_of(twin)) {
+    add_over_time(
+        motion,
+        {{{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
+         {{.quantity = friction_unit == "N" ? "friction" : "mu", .unit = friction_unit}, &DrawnMotion::friction, 1},
+         {{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre}},
+        kBins, stroke_for(k++), chart);
   }
-  const BlockMotion& measured = twin.measured;
-  for (std::size_t i = 0; i < measured.size();) {
-    std::size_t end = i;
-    while (end < measured.size() && measured.sticks[end] == measured.sticks[i]) ++end;
-    if (measured.sticks[i] != 0) {
-      chart.stretches.push_back({measured.time[i], measured.time[std::min(end, measured.size() - 1)], Shade::stick});
-    }
-    i = end;
-  }
-  if (measured.size() > 0) {
-    chart.marks.push_back({measured.disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
-  }
-  chart.height = 640;
+  shade_sticks({"measured", twin.measured}, chart);
+  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(twin.measured.disc_velocity));
   return chart;
 }
 
 Chart portrait_chart(const Twin& twin) {
-  Chart chart;
-  chart.id = "twin-portrait";
-  chart.title = "Portraits, measured and simulated";
-  chart.x = {.quantity = "displacement of the block", .unit = "mm"};
-  chart.panels[0].axis = {.quantity = "velocity of the block", .unit = "mm/s"};
+  Chart chart = portrait_plane("twin-portrait", "Portraits, measured and simulated", twin.measured.disc_velocity);
   std::size_t k = 0;
-  for (const NamedMotion& one : motions_of(twin)) {
-    const BlockMotion& m = *one.motion;
-    const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity}, m.sticks, kBins);
-    chart.lines.push_back(
-        {one.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke_for(k++)});
-  }
-  chart.marks.push_back({twin.measured.disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", 0});
-  chart.height = 420;
+  for (const DrawnMotion& motion : motions_of(twin)) add_loop(motion, kBins, stroke_for(k++), chart);
   return chart;
 }
 
 Animation animation_of(const Twin& twin) {
-  Animation out;
-  out.id = "twin-block";
-  out.title = "The block on its disc";
-  out.note = "Three cycles each, from break-away to break-away.";
-  out.disc_velocity = twin.measured.disc_velocity / kMillimetre;
-  for (const NamedMotion& one : motions_of(twin)) {
-    const BlockMotion& m = *one.motion;
-    out.blocks.push_back(animated(one.name, m.time, m.displacement, m.friction, m.sticks));
-  }
+  Animation out{.id = "twin-block",
+                .title = "The block on its disc",
+                .note = "Three cycles each, from break-away to break-away.",
+                .disc_velocity = twin.measured.disc_velocity / kMillimetre};
+  for (const DrawnMotion& motion : motions_of(twin)) out.blocks.push_back(animated(motion));
   return out;
 }
 

@@ -99,6 +99,20 @@ function usualSpeed(loop) {
   return best;
 }
 
+/** Moves every block to a time; returns what they do there, in words. */
+function showBlocks(scenes, blocks, at) {
+  return scenes.map((one, k) => {
+    const now = one.show(at), name = blocks.length > 1 ? `${blocks[k].name}: ` : "";
+    return `${name}${now.displacement.toFixed(3)} mm, ${now.sticks ? "sticks" : "slips"}`;
+  }).join("; ");
+}
+
+/** Says when an element comes into view or leaves it. */
+function watchView(element, say) {
+  if (typeof IntersectionObserver !== "function") return;
+  new IntersectionObserver((entries) => say(entries[entries.length - 1].isIntersecting)).observe(element);
+}
+
 /** An animation: blocks side by side, play and pause, a slider of the time, the speed. */
 function animationFigure(animation) {
   const blocks = animation.blocks.filter((block) => block.time.length > 1);
@@ -125,13 +139,9 @@ function animationFigure(animation) {
 
   function show(at) {
     time = at;
-    const words = scenes.map((one, k) => {
-      const now = one.show(at);
-      return `${blocks.length > 1 ? blocks[k].name + ": " : ""}${now.displacement.toFixed(3)} mm, ` +
-        (now.sticks ? "sticks" : "slips");
-    });
+    const words = showBlocks(scenes, blocks, at);
     slider.value = String(Math.round(((at % loop) / loop) * 1000));
-    shown.textContent = `${(at % loop).toFixed(4)} s; ${words.join("; ")}`;
+    shown.textContent = `${(at % loop).toFixed(4)} s; ${words}`;
   }
 
   function step(now) {
@@ -150,14 +160,12 @@ function animationFigure(animation) {
     if (on) requestAnimationFrame(step);
   }
 
-  if (typeof IntersectionObserver === "function") {
-    new IntersectionObserver((entries) => {
-      const was = seen;
-      seen = entries[entries.length - 1].isIntersecting;
-      before = null;
-      if (playing && seen && !was) requestAnimationFrame(step);
-    }).observe(figure);
-  }
+  watchView(figure, (now) => {
+    const was = seen;
+    seen = now;
+    before = null;
+    if (playing && seen && !was) requestAnimationFrame(step);
+  });
   show(0);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
   addEventListener("beforeprint", () => play(false));

@@ -282,7 +282,7 @@ function fillLegend(item) {
   }
   const stretches = item.chart.stretches || [];
   const keys = new Map(stretches.map(({ shade }) => [styles.shades[shade].meaning, styles.shades[shade].fill]));
-  if (parts.length < 2 && keys.size === 0) parts.length = 0;
+  if (parts.length < 2) parts.length = 0; // one alone needs no name
   for (const [name, fill] of keys) {
     const key = make("span", { className: "key" });
     key.style.background = fill;

@@ -198,7 +198,7 @@ std::string heat_colour(double part) {
 /// Cells of one row that have the same colour are one box. A box reaches a little under its neighbours to the right and
 /// above, which are drawn after it, or viewers show seams.
 void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours) {
-  constexpr double kUnder = 0.05;  // [mm]
+  constexpr double kUnder = 0.4;  // [mm]: more than a dot of a screen
   constexpr int kColourSteps = 64;
   const std::vector<double> x = cell_edges(map.x, frame.x.logarithmic), y = cell_edges(map.y, frame.y.logarithmic);
   const auto step = [&](double z) {
@@ -215,8 +215,10 @@ void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours)
       for (end = c + 1; end < count && step(z[end]) == colour;) ++end;
       if (colour < 0) continue;
       const Point low = frame.at(x[c], y[r]), high = frame.at(x[end], y[r + 1]);
-      const Area box{low.x, low.y, high.x - low.x + (end < count ? kUnder : 0),
-                     high.y - low.y + (r + 2 < y.size() ? kUnder : 0)};
+      const bool beside = end < count && step(z[end]) >= 0;
+      bool above = r + 2 < y.size() && r + 1 < map.z.size() && map.z[r + 1].size() >= end;
+      for (std::size_t k = c; above && k < end; ++k) above = step(map.z[r + 1][k]) >= 0;
+      const Area box{low.x, low.y, high.x - low.x + (beside ? kUnder : 0), high.y - low.y + (above ? kUnder : 0)};
       frame.canvas.fill_path(corners_of(box), {heat_colour((colour + 0.5) / kColourSteps)});
     }
   }
