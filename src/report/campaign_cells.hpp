@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/report/comparison.hpp"
 #include "tribofit/report/pooled.hpp"
@@ -26,14 +27,5 @@ CellRows error_cells(const Statements& statements, std::span<const PooledGroup> 
 std::vector<std::string> preference_sentences(const Statements& statements, std::span<const PooledGroup> groups);
 /// Trends that are no chance, and what is not said in the warnings.
 std::vector<std::string> trend_sentences(const Trends& trends);
-
-/// The pooled value of that name of the base law or a measure; null where there is none.
-const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name);
-
-/// Mean of a value of each run, and its standard error where there is more than one.
-ResultMeasure mean_over_runs(std::span<const double> values);
-
-/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of);
 
 }  // namespace tribofit

@@ -105,35 +105,6 @@ class RunFiles {
 
 }  // namespace
 
-const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
-  return found == values.end() ? nullptr : &*found;
-}
-
-ResultMeasure mean_over_runs(std::span<const double> values) {
-  ResultMeasure out;
-  if (values.empty()) return out;
-  const double n = static_cast<double>(values.size());
-  double sum = 0, squares = 0;
-  for (const double value : values) sum += value;
-  out.value = sum / n;
-  for (const double value : values) squares += (value - out.value) * (value - out.value);
-  if (values.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
-  return out;
-}
-
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
-  std::vector<double> drops;
-  for (const std::size_t k : group.runs) {
-    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
-    if (fit != nullptr && fit->parameters.size() > 1) {
-      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
-    }
-  }
-  return mean_over_runs(drops);
-}
-
 void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
   const std::string folder = (std::filesystem::path(results.folder()) / "figures").string();
   WholeFolder files(folder);

@@ -68,4 +68,24 @@ void compute_map(const MapRequest& request, const std::vector<bool>& done, int t
   });
 }
 
+std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request,
+                                                          const std::vector<std::vector<MapCell>>& rows,
+                                                          std::size_t every) {
+  std::vector<std::pair<double, double>> edge;
+  const auto sticks = [](const MapCell& cell) { return cell.regime == Regime::stick_slip; };
+  const std::vector<double>&x = request.x.values, &y = request.y.values;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    for (std::size_t i = 0; i < rows[j].size(); ++i) {
+      const bool here = sticks(rows[j][i]);
+      if (j % every == 0 && i + 1 < rows[j].size() && here != sticks(rows[j][i + 1])) {
+        edge.emplace_back(0.5 * (x[i] + x[i + 1]), y[j]);
+      }
+      if (i % every == 0 && j + 1 < rows.size() && i < rows[j + 1].size() && here != sticks(rows[j + 1][i])) {
+        edge.emplace_back(x[i], 0.5 * (y[j] + y[j + 1]));
+      }
+    }
+  }
+  return edge;
+}
+
 }  // namespace tribofit

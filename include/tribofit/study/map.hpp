@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tribofit/study/settled.hpp"
@@ -39,5 +40,10 @@ void check_map(const MapRequest& request);
 /// number of threads, so that a map that was interrupted ends the same to the last bit.
 void compute_map(const MapRequest& request, const std::vector<bool>& done, int threads,
                  const std::function<bool(std::size_t row, const std::vector<MapCell>& cells)>& on_row);
+
+/// Where stick-slip begins or ends [SI, x then y], halfway between the cells along every `every`-th row and column.
+std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request,
+                                                          const std::vector<std::vector<MapCell>>& rows,
+                                                          std::size_t every = 1);
 
 }  // namespace tribofit

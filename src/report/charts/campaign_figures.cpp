@@ -67,23 +67,6 @@ class MeansChart {
   Chart chart_;
 };
 
-/// Amplitude of the fundamental over the runs of a group [mm/s].
-Maybe fundamental_of(const DrawnCampaign& of, std::size_t group) {
-  std::vector<double> values;
-  for (const std::size_t k : of.groups()[group].runs) {
-    const auto figures = of.results.figures(of.runs[k].position);
-    if (figures && !figures->harmonics.empty()) values.push_back(figures->harmonics.front().amplitude);
-  }
-  if (values.empty()) return std::nullopt;
-  return mean_over_runs(values);
-}
-
-const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol) {
-  const auto found = std::find_if(group.fits.begin(), group.fits.end(),
-                                  [&](const auto& fit) { return fit.law == law && fit.protocol == protocol; });
-  return found == group.fits.end() ? nullptr : &*found;
-}
-
 /// Law and protocol of every line of levels; the published protocol has the same levels whatever the law.
 std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
   std::vector<std::pair<std::string, std::string>> kinds;
@@ -265,7 +248,7 @@ ReportSection motion_figures(const DrawnCampaign& of) {
                 .measure(own, "frequency")
                 .earlier("frequency")
                 .panel("fundamental", "mm/s")
-                .add(own, 0, [&](std::size_t g) { return fundamental_of(of, g); })
+                .add(own, 0, [&](std::size_t g) { return fundamental_of(of.results, of.runs, of.groups()[g]); })
                 .panel("peak of v_{r}", "mm/s")
                 .measure(own, "amplitude")
                 .earlier("amplitude")

@@ -11,17 +11,14 @@
 #include "report/measures.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/campaign/figures.hpp"
+#include "tribofit/diagnosis/residual_map.hpp"
+#include "tribofit/segmentation/slip_branches.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t kSpeedBins = 48, kErrorBins = 80, kTimeBins = 400, kCurvePoints = 161, kBreakAways = 200;
-/// Rows and columns of the map of residuals.
-constexpr std::size_t kMapRows = 120, kMapColumns = 50;
-constexpr std::size_t kFewestPieces = 20;
 
-/// A part of a slip in which the speed only rises or only falls; both where the block never sticks.
-enum class Branch { accelerating, decelerating, both };
 struct BranchStyle {
   std::string_view name;
   Stroke stroke;
@@ -31,60 +28,20 @@ constexpr std::array<BranchStyle, 3> kBranches = {
     BranchStyle{"slowing down", {Colour::red, Dash::dashed, Symbol::triangle_down, 1.6, 5}},
     BranchStyle{"slip", {Colour::blue, Dash::solid, Symbol::circle, 1.6, 5}}};
 
-/// A slip cut at its fastest sample. Slips that never stop are cut into pieces instead, which stand for cycles.
-struct Piece {
-  Branch branch;
-  std::size_t begin, end;
-  int direction;
-};
-
-std::vector<Piece> pieces_of(const Identification& trace) {
-  std::vector<Piece> pieces;
-  const Segmentation& s = trace.segmentation;
-  const std::vector<double>& v = trace.motion.relative_velocity;
-  for (const Cycle& c : s.cycles) {
-    const std::size_t end = std::min(c.slip.end, v.size());
-    if (c.slip.begin >= end) continue;
-    if (s.kind == MotionKind::stick_slip && !s.is_selected(c)) continue;
-    if (s.kind == MotionKind::always_slipping) {
-      const std::size_t n = end - c.slip.begin, count = std::min(n, kFewestPieces);
-      for (std::size_t k = 0; k < count; ++k) {
-        const SampleRange part{c.slip.begin + n * k / count, c.slip.begin + n * (k + 1) / count};
-        if (s.is_selected(part)) pieces.push_back({Branch::both, part.begin, part.end, c.direction});
-      }
-      continue;
-    }
-    const auto first = v.begin() + static_cast<std::ptrdiff_t>(c.slip.begin);
-    const auto last = v.begin() + static_cast<std::ptrdiff_t>(end);
-    const auto fastest = std::max_element(first, last, [](double a, double b) { return std::abs(a) < std::abs(b); });
-    const auto peak = static_cast<std::size_t>(fastest - v.begin());
-    pieces.push_back({Branch::accelerating, c.slip.begin, peak, c.direction});
-    pieces.push_back({Branch::decelerating, peak, end, c.direction});
-  }
-  return pieces;
-}
-
 double speed_at(const Identification& trace, std::size_t i) {
   return std::abs(trace.motion.relative_velocity[i]) / kMillimetre;
-}
-
-double fastest_of(const Identification& trace, const std::vector<Piece>& pieces) {
-  double fastest = 0;
-  for (const Piece& piece : pieces) {
-    for (std::size_t i = piece.begin; i < piece.end; ++i) fastest = std::max(fastest, speed_at(trace, i));
-  }
-  return fastest;
 }
 
 /// Bands of value(sample, direction) over speed, one for each branch that there is.
 template <class Value>
 std::vector<std::pair<Branch, DrawnBand>> bands_over_speed(const Identification& trace,
-                                                           const std::vector<Piece>& pieces, double fastest,
+                                                           const std::vector<SlipBranch>& pieces, double fastest,
                                                            Value value) {
   std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, fastest, kSpeedBins));
-  for (const Piece& piece : pieces) {
+  for (const SlipBranch& piece : pieces) {
     BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
-    for (std::size_t i = piece.begin; i < piece.end; ++i) band.add(speed_at(trace, i), value(i, piece.direction));
+    for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i)
+      band.add(speed_at(trace, i), value(i, piece.direction));
     band.end_cycle();
   }
   std::vector<std::pair<Branch, DrawnBand>> out;
@@ -106,7 +63,7 @@ double unit_of(const Fit& fit) {
 }
 
 /// Residuals of each model on both branches, switched with the line of their model.
-void add_residuals(const DrawnTrace& d, const std::vector<Piece>& pieces, double fastest, Chart& chart) {
+void add_residuals(const DrawnTrace& d, const std::vector<SlipBranch>& pieces, double fastest, Chart& chart) {
   const std::vector<double>& friction = d.trace.motion.friction;
   for (std::size_t m = 0; m < d.models.size(); ++m) {
     const std::vector<double>& prediction = d.predictions[m];
@@ -172,7 +129,7 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
   if (slowest > 0 && slowest < fastest) chart.stretches.push_back({-fastest, slowest, Shade::beyond});
 }
 
-Chart law_chart(const DrawnTrace& d, const std::vector<Piece>& pieces, double fastest) {
+Chart law_chart(const DrawnTrace& d, const std::vector<SlipBranch>& pieces, double fastest) {
   Chart chart{.id = d.id + "-law",
               .title = "Friction over relative velocity",
               .note =
@@ -225,47 +182,14 @@ void add_errors(const std::string& name, std::size_t k, const DrawnExtremes& err
                          .shown = shown});
 }
 
-/// Mean residual in units of the floor over cycles (neighbours together where there are many) and the phase of the
-/// slip, from break-away (0) to re-stick (1); NaN where nothing is.
-HeatMap residual_map(const DrawnTrace& d, std::size_t model) {
-  const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
-  const std::vector<double>& prediction = d.predictions[model];
-  const double floor = unit_of(*d.models[model].fit);
-  const std::size_t rows = std::min(kMapRows, cycles.size());
-  HeatMap map;
-  map.z.assign(rows, std::vector<double>(kMapColumns, 0.0));
-  auto count = map.z;
-  for (std::size_t c = 0; c < cycles.size(); ++c) {
-    const Cycle& cycle = cycles[c];
-    if (!cycle.slip_complete || !d.trace.segmentation.is_selected(cycle)) continue;
-    const std::size_t row = c * rows / cycles.size();
-    for (std::size_t i = cycle.slip.begin; i < std::min(cycle.slip.end, prediction.size()); ++i) {
-      const double phase = static_cast<double>(i - cycle.slip.begin) / static_cast<double>(cycle.slip.size());
-      const auto column = std::min(kMapColumns - 1, static_cast<std::size_t>(phase * static_cast<double>(kMapColumns)));
-      if (!std::isfinite(prediction[i])) continue;
-      map.z[row][column] += cycle.direction * (d.trace.motion.friction[i] - prediction[i]) / floor;
-      count[row][column] += 1;
-    }
+/// Mean residual in units of the noise floor.
+HeatMap map_of(const DrawnTrace& d, std::size_t model) {
+  ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
+  const double floor = unit_of(*d.models[model].fit), most = std::max(1.0, map.usual / floor);
+  for (std::vector<double>& row : map.mean) {
+    for (double& residual : row) residual /= floor;
   }
-  std::vector<double> sizes;
-  for (std::size_t row = 0; row < rows; ++row) {
-    map.y.push_back(static_cast<double>((row * cycles.size() + rows - 1) / rows));
-    for (std::size_t k = 0; k < kMapColumns; ++k) {
-      map.z[row][k] /= count[row][k];
-      if (std::isfinite(map.z[row][k])) sizes.push_back(std::abs(map.z[row][k]));
-    }
-  }
-  for (std::size_t k = 0; k < kMapColumns; ++k) {
-    map.x.push_back((static_cast<double>(k) + 0.5) / static_cast<double>(kMapColumns));
-  }
-  std::sort(sizes.begin(), sizes.end());
-  const double most =
-      sizes.empty() ? 1 : std::max(1.0, sizes[static_cast<std::size_t>(0.995 * static_cast<double>(sizes.size() - 1))]);
-  map.low = -most;
-  map.high = most;
-  map.quantity = "residual / floor";
-  map.unit = "1";
-  return map;
+  return {map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
 }
 
 Chart map_chart(const DrawnTrace& d, std::size_t model) {
@@ -276,7 +200,7 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
               "cycle to cycle: something moves with time or angle.",
           .x = {"phase of the slip, 0 break-away to 1 re-stick", "1"},
           .panels = {{{"cycle", ""}}},
-          .map = residual_map(d, model),
+          .map = map_of(d, model),
           .height = 360,
           .half = true};
 }
@@ -284,15 +208,15 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
 }  // namespace
 
 std::vector<Chart> law_charts(const DrawnTrace& d) {
-  const std::vector<Piece> pieces = pieces_of(d.trace);
-  const double fastest = fastest_of(d.trace, pieces);
+  const std::vector<SlipBranch> pieces = slip_branches(d.trace.motion, d.trace.segmentation);
+  const double fastest = fastest_of(d.trace.motion, pieces) / kMillimetre;
   if (!(fastest > 0)) return {};
   return {law_chart(d, pieces, fastest)};
 }
 
 std::vector<Chart> error_charts(const DrawnTrace& d) {
-  const std::vector<Piece> pieces = pieces_of(d.trace);
-  const double fastest = fastest_of(d.trace, pieces);
+  const std::vector<SlipBranch> pieces = slip_branches(d.trace.motion, d.trace.segmentation);
+  const double fastest = fastest_of(d.trace.motion, pieces) / kMillimetre;
   if (!(fastest > 0) || d.models.empty()) return {};
   const Motion& m = d.trace.motion;
   std::vector<Chart> charts = {
@@ -300,8 +224,8 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
       error_chart(d, "error-time", "Relative error over time", {"time", "s"})};
   for (std::size_t k = 0; k < d.models.size(); ++k) {
     ExtremesInBins speed(0, fastest, kErrorBins), time(m.time.front(), m.time.back(), kTimeBins);
-    for (const Piece& piece : pieces) {
-      for (std::size_t i = piece.begin; i < piece.end; ++i) {
+    for (const SlipBranch& piece : pieces) {
+      for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
         const double error = std::abs((m.friction[i] - d.predictions[k][i]) / m.friction[i]);
         speed.add(speed_at(d.trace, i), error);
         time.add(m.time[i], error);

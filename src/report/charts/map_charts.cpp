@@ -44,28 +44,6 @@ double largest(const Rows& rows, std::size_t measure, std::size_t y_begin, std::
   return out;
 }
 
-/// Where stick-slip begins or ends along a row, halfway between the cells.
-ChartLine edge_of(const MapRequest& request, const Rows& rows) {
-  ChartLine line{.name = "edge of stick-slip", .stroke = dots(Colour::black, Symbol::circle, 3)};
-  const auto sticks = [](const MapCell& cell) { return cell.regime == Regime::stick_slip; };
-  const std::vector<double>&x = request.x.values, &y = request.y.values;
-  const auto add = [&](double at_x, double at_y) {
-    line.add(at_x / request.x.variable.si, at_y / request.y.variable.si);
-  };
-  const std::size_t every = 1 + std::max(x.size(), y.size()) / kMostCells;
-  for (std::size_t j = 0; j < rows.size(); ++j) {
-    for (std::size_t i = 0; i < rows[j].size(); ++i) {
-      const bool here = sticks(rows[j][i]);
-      if (j % every == 0 && i + 1 < rows[j].size() && here != sticks(rows[j][i + 1]))
-        add(0.5 * (x[i] + x[i + 1]), y[j]);
-      if (i % every == 0 && j + 1 < rows.size() && i < rows[j + 1].size() && here != sticks(rows[j + 1][i])) {
-        add(x[i], 0.5 * (y[j] + y[j + 1]));
-      }
-    }
-  }
-  return line;
-}
-
 ChartAxis axis_for(const MapAxis& axis) {
   return {.quantity = axis.variable.name,
           .unit = axis.variable.unit,
@@ -95,7 +73,11 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const Rows&
   });
   if (any_gap) chart.note = "White: nothing there, the block slides or its motion did not settle.";
   chart.map = std::move(map);
-  ChartLine edge = edge_of(request, rows);
+  ChartLine edge{.name = "edge of stick-slip", .stroke = dots(Colour::black, Symbol::circle, 3)};
+  const std::size_t every = 1 + std::max(request.x.values.size(), request.y.values.size()) / kMostCells;
+  for (const auto& [at_x, at_y] : edge_of_stick_slip(request, rows, every)) {
+    edge.add(at_x / request.x.variable.si, at_y / request.y.variable.si);
+  }
   if (!edge.x.empty()) chart.lines.push_back(std::move(edge));
   const double x = value_of(of.machine, request.x.variable.name) / request.x.variable.si;
   const double y = value_of(of.machine, request.y.variable.name) / request.y.variable.si;

@@ -8,6 +8,9 @@
 #include "report/drawing.hpp"
 #include "report/numbers.hpp"
 #include "report/page_series.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/segmentation/slip_branches.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
 namespace {
@@ -82,24 +85,6 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   return chart;
 }
 
-/// The first of three cycles in a row that are all there, as near to the middle of the record as they come; else the
-/// middle ones.
-std::size_t first_shown(const Segmentation& segmentation) {
-  const std::vector<Cycle>& cycles = segmentation.cycles;
-  const std::size_t last = cycles.size() - kShownCycles;
-  const auto complete = [&](std::size_t k) {
-    return std::all_of(
-        cycles.begin() + static_cast<std::ptrdiff_t>(k), cycles.begin() + static_cast<std::ptrdiff_t>(k + kShownCycles),
-        [&](const Cycle& c) { return c.stick_complete && c.slip_complete && segmentation.is_selected(c); });
-  };
-  const std::size_t middle = last / 2;
-  for (std::size_t off = 0; off <= last; ++off) {
-    if (middle + off <= last && complete(middle + off)) return middle + off;
-    if (off <= middle && complete(middle - off)) return middle - off;
-  }
-  return middle;
-}
-
 void shade_phases(const Motion& motion, const Cycle& c, Chart& chart) {
   if (c.stick.size() > 0) {
     chart.stretches.push_back({motion.time[c.stick.begin], c.break_away_time, Shade::stick});
@@ -148,14 +133,10 @@ std::vector<Chart> spectrum_chart(const DrawnTrace& d) {
   // Means over neighbours do for what is far below the rate, and cost less.
   const double top = peak > 0 ? std::min(kHarmonics * peak, 0.5 / motion.step) : 0.5 / motion.step;
   const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerHarmonic * top * motion.step)));
-  std::vector<double> reduced(v_r.size() / every);
-  for (std::size_t i = 0; i < reduced.size(); ++i) {
-    double sum = 0;
-    for (std::size_t k = 0; k < every; ++k) sum += v_r[i * every + k];
-    reduced[i] = sum / static_cast<double>(every) / kMillimetre;
-  }
-  if (reduced.size() < 8) return {};
-  const Spectrum spectrum = amplitude_spectrum(reduced, motion.step * static_cast<double>(every));
+  BlockMeans reduced = block_means(v_r, every, motion.step);
+  if (reduced.mean.size() < 8) return {};
+  for (double& v : reduced.mean) v /= kMillimetre;
+  const Spectrum spectrum = amplitude_spectrum(reduced.mean, reduced.step);
   std::vector<double> amplitude = spectrum.amplitude;
   amplitude.resize(std::min(amplitude.size(), static_cast<std::size_t>(top / spectrum.bin_width) + 1));
   Chart chart{.id = d.id + "-spectrum",
@@ -229,7 +210,7 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   const Motion& motion = d.trace.motion;
   if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < kShownCycles) return {};
-  const std::size_t first = first_shown(d.trace.segmentation);
+  const std::size_t first = whole_cycles_near_middle(d.trace.segmentation, kShownCycles);
   const Cycle& head = cycles[first];
   const Cycle& tail = cycles[first + kShownCycles - 1];
   const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/campaign/pool.hpp"
+#include "tribofit/campaign/run_result.hpp"
+
+namespace tribofit {
+
+/// Values of repeats together, as [D] has them in Fig 5 to 9: plain means over the runs of a group.
+
+/// Mean of a value of each run, and its standard error where there is more than one.
+ResultMeasure mean_over_runs(std::span<const double> values);
+
+/// The pooled value of that name of the base law or a measure; null where there is none.
+const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name);
+
+/// Fits of a group with this law and protocol; null where there are none.
+const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol);
+
+/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of);
+
+/// Amplitude of the fundamental of v_r over the runs of a group [mm/s]; none where no run has figures.
+std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
+                                            const PooledGroup& group);
+
+}  // namespace tribofit

@@ -1,0 +1,54 @@
+#include "tribofit/campaign/group_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribofit {
+
+ResultMeasure mean_over_runs(std::span<const double> values) {
+  ResultMeasure out;
+  if (values.empty()) return out;
+  const double n = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  out.value = sum / n;
+  for (const double value : values) squares += (value - out.value) * (value - out.value);
+  if (values.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
+  return out;
+}
+
+const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
+  return found == values.end() ? nullptr : &*found;
+}
+
+const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol) {
+  const auto found = std::find_if(group.fits.begin(), group.fits.end(),
+                                  [&](const auto& fit) { return fit.law == law && fit.protocol == protocol; });
+  return found == group.fits.end() ? nullptr : &*found;
+}
+
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
+  std::vector<double> drops;
+  for (const std::size_t k : group.runs) {
+    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
+    if (fit != nullptr && fit->parameters.size() > 1) {
+      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
+    }
+  }
+  return mean_over_runs(drops);
+}
+
+std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
+                                            const PooledGroup& group) {
+  std::vector<double> values;
+  for (const std::size_t k : group.runs) {
+    const auto figures = results.figures(runs[k].position);
+    if (figures && !figures->harmonics.empty()) values.push_back(figures->harmonics.front().amplitude);
+  }
+  if (values.empty()) return std::nullopt;
+  return mean_over_runs(values);
+}
+
+}  // namespace tribofit
