@@ -121,8 +121,8 @@ async function watchTheErrorFall(address, width) {
   await page.fill("#bench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
   await change(page, () => page.click("#apply-formula"));
   assert.equal(await page.isHidden("#bench-trouble"), true);
-  const others = complaints.filter((text) => !/422/.test(text));
-  assert.deepEqual(others, [], `complaints at ${width} px`);
+  const unexpected = complaints.filter((text) => !/422/.test(text));
+  assert.deepEqual(unexpected, [], `complaints at ${width} px`);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(overflow <= 0, `the page is ${overflow} px wider than ${width} px`);
   await page.screenshot({ path: join(folder, `all-${width}.png`), fullPage: true });
