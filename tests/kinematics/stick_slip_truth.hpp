@@ -55,71 +55,97 @@ inline std::vector<double> noise(std::size_t n, double sigma, double rho, std::m
   return e;
 }
 
+/// The block from event to event.
+class Block {
+ public:
+  Block(const Rig& rig, std::mt19937_64& random, Run& run) : rig_(rig), random_(random), run_(run) {
+    deviation_ = normal_(random_);
+    level_ = rig_.static_friction + rig_.scatter * deviation_;
+    x_ = 0.6 * rig_.load * level_ / rig_.stiffness;
+    v_ = rig_.disc(0);
+  }
+
+  void advance(double until) {
+    while (t_ < until) sticking_ ? stick(until) : slip(until);
+  }
+  double velocity() const { return sticking_ ? rig_.disc(t_) : v_; }
+  double friction() const { return sticking_ ? pull(x_, t_) / rig_.load : law(rig_.disc(t_) - v_); }
+
+ private:
+  double law(double v) const {
+    const double drop = level_ - rig_.kinetic_friction;
+    return rig_.kinetic_friction + drop * (rig_.coulomb ? (v > 0 ? 0.0 : 1.0) : std::exp(-rig_.decay * v));
+  }
+  double acceleration(double x, double v, double t) const {
+    return (rig_.load * law(rig_.disc(t) - v) - rig_.stiffness * x - damping_ * v) / rig_.mass;
+  }
+  /// What friction must hold for the block to keep up with the disc.
+  double pull(double x, double t) const {
+    return rig_.stiffness * x + damping_ * rig_.disc(t) + rig_.mass * rig_.disc_acceleration(t);
+  }
+
+  void stick(double until) {
+    const double before = x_ - rig_.disc_travel(t_);
+    const auto position = [&](double when) { return before + rig_.disc_travel(when); };
+    const auto holds = [&](double when) { return pull(position(when), when) < rig_.load * level_; };
+    if (holds(until)) {
+      x_ = position(until), t_ = until;
+      return;
+    }
+    double low = t_, high = until;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      (holds(middle) ? low : high) = middle;
+    }
+    x_ = position(high), t_ = high, v_ = rig_.disc(t_), sticking_ = false;
+    run_.break_away_time.push_back(t_);
+    run_.break_away_friction.push_back(level_);
+  }
+
+  /// One step of classical Runge-Kutta, or the part of it up to re-stick.
+  void slip(double until) {
+    const double h = std::min(fine_, until - t_);
+    const double a1 = acceleration(x_, v_, t_), v2 = v_ + 0.5 * h * a1;
+    const double a2 = acceleration(x_ + 0.5 * h * v_, v2, t_ + 0.5 * h), v3 = v_ + 0.5 * h * a2;
+    const double a3 = acceleration(x_ + 0.5 * h * v2, v3, t_ + 0.5 * h), v4 = v_ + h * a3;
+    const double a4 = acceleration(x_ + h * v3, v4, t_ + h);
+    const double x = x_ + h / 6 * (v_ + 2 * v2 + 2 * v3 + v4), v = v_ + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    const bool began = t_ - run_.break_away_time.back() < 2 * fine_;
+    const double gap = rig_.disc(t_) - v_, gap_after = rig_.disc(t_ + h) - v;
+    if (gap_after > 0 || began) {
+      x_ = x, v_ = std::min(v, rig_.disc(t_ + h)), t_ += h;
+      return;
+    }
+    const double part = gap / (gap - gap_after);
+    x_ += part * (x - x_), t_ += part * h, v_ = rig_.disc(t_), sticking_ = true;
+    run_.restick_time.push_back(t_);
+    deviation_ = rig_.wander * deviation_ + std::sqrt(1 - rig_.wander * rig_.wander) * normal_(random_);
+    level_ = rig_.static_friction + rig_.scatter * deviation_;
+  }
+
+  const Rig& rig_;
+  std::mt19937_64& random_;
+  Run& run_;
+  std::normal_distribution<double> normal_;
+  const double damping_ = 2 * rig_.zeta * std::sqrt(rig_.mass * rig_.stiffness);
+  const double fine_ = 1 / rig_.rate / 8;
+  double deviation_ = 0, level_ = 0;  ///< static friction of this cycle
+  double x_ = 0, v_ = 0, t_ = 0;
+  bool sticking_ = true;
+};
+
 inline Run simulate(const Rig& rig) {
   Run run;
   std::mt19937_64 random(rig.seed);
-  std::normal_distribution<double> normal;
-  const double c = 2 * rig.zeta * std::sqrt(rig.mass * rig.stiffness);
   const auto n = static_cast<std::size_t>(rig.rate * rig.duration);
-  const double step = 1 / rig.rate, fine = step / 8;
-  double deviation = normal(random);
-  double level = rig.static_friction + rig.scatter * deviation;
-  const auto law = [&](double v) {
-    const double drop = level - rig.kinetic_friction;
-    return rig.kinetic_friction + drop * (rig.coulomb ? (v > 0 ? 0.0 : 1.0) : std::exp(-rig.decay * v));
-  };
-  const auto acceleration = [&](double x, double v, double t) {
-    return (rig.load * law(rig.disc(t) - v) - rig.stiffness * x - c * v) / rig.mass;
-  };
-  double x = 0.6 * rig.load * level / rig.stiffness, v = rig.disc(0), t = 0;
-  bool sticking = true;
+  Block block(rig, random, run);
   Trace& trace = run.trace;
   for (std::size_t i = 0; i < n; ++i) {
-    const double until = static_cast<double>(i) * step;
-    while (t < until) {
-      if (sticking) {
-        const double before = x - rig.disc_travel(t);
-        const auto position = [&](double when) { return before + rig.disc_travel(when); };
-        const auto pull = [&](double when) {
-          return rig.stiffness * position(when) + c * rig.disc(when) + rig.mass * rig.disc_acceleration(when);
-        };
-        if (pull(until) < rig.load * level) {
-          x = position(until), t = until;
-        } else {
-          double low = t, high = until;
-          for (int k = 0; k < 60; ++k) {
-            const double middle = 0.5 * (low + high);
-            (pull(middle) < rig.load * level ? low : high) = middle;
-          }
-          x = position(high), t = high, v = rig.disc(t), sticking = false;
-          run.break_away_time.push_back(t);
-          run.break_away_friction.push_back(level);
-        }
-        continue;
-      }
-      const double h = std::min(fine, until - t);
-      const double a1 = acceleration(x, v, t), v2 = v + 0.5 * h * a1;
-      const double a2 = acceleration(x + 0.5 * h * v, v2, t + 0.5 * h), v3 = v + 0.5 * h * a2;
-      const double a3 = acceleration(x + 0.5 * h * v2, v3, t + 0.5 * h), v4 = v + h * a3;
-      const double a4 = acceleration(x + h * v3, v4, t + h);
-      const double x_next = x + h / 6 * (v + 2 * v2 + 2 * v3 + v4), v_next = v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-      const bool began = t - run.break_away_time.back() < 2 * fine;
-      const double gap = rig.disc(t) - v, gap_next = rig.disc(t + h) - v_next;
-      if (gap_next <= 0 && !began) {
-        const double part = gap / (gap - gap_next);
-        x += part * (x_next - x), t += part * h, v = rig.disc(t), sticking = true;
-        run.restick_time.push_back(t);
-        deviation = rig.wander * deviation + std::sqrt(1 - rig.wander * rig.wander) * normal(random);
-        level = rig.static_friction + rig.scatter * deviation;
-      } else {
-        x = x_next, v = std::min(v_next, rig.disc(t + h)), t += h;
-      }
-    }
-    trace.time.push_back(until);
-    const double disc = rig.disc(until);
-    const double held = (rig.stiffness * x + c * disc + rig.mass * rig.disc_acceleration(until)) / rig.load;
-    trace.velocity.push_back(sticking ? disc : v);
-    trace.friction.push_back(sticking ? held : law(disc - v));
+    const double time = static_cast<double>(i) * (1 / rig.rate);
+    block.advance(time);
+    trace.time.push_back(time);
+    trace.velocity.push_back(block.velocity());
+    trace.friction.push_back(block.friction());
   }
   const auto e_mu = noise(n, rig.friction_noise, rig.noise_correlation, random);
   const auto e_v = noise(n, rig.velocity_noise, rig.noise_correlation, random);
