@@ -18,23 +18,21 @@
 #include <system_error>
 #include <utility>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
-#include "inputs.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
 #include "tribofit/report/whole_file.hpp"
-#include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
 
 /// "3/16"
 Shard shard_from(const std::string& text) {
@@ -45,13 +43,13 @@ Shard shard_from(const std::string& text) {
   const auto [last, error] = std::from_chars(std::min(slash + 1, end), end, shard.count);
   const bool read = first_error == std::errc{} && first_end == slash && error == std::errc{} && last == end;
   if (!read || shard.index < 1 || shard.index > shard.count) {
-    throw CLI::ValidationError("--shard: '" + text + "' is not I/N with I from 1 to N, as in 1/4");
+    throw UsageError("--shard: '" + text + "' is not I/N with I from 1 to N, as in 1/4");
   }
   return shard;
 }
 
 std::string default_results(const std::string& folder) {
-  if (folder.empty()) throw CLI::ValidationError("--shard of traces named one by one needs --out");
+  if (folder.empty()) throw UsageError("--shard of traces named one by one needs --out");
   std::error_code ignored;
   fs::path path = fs::weakly_canonical(folder, ignored);
   if (!path.has_filename()) path = path.parent_path();
@@ -90,31 +88,31 @@ void refuse_overwriting_inputs(const Settings& s, const Campaign& campaign, cons
   const auto check = [&](const std::string& output) {
     const auto identity = identity_of(output);
     const auto found = identity ? inputs.find(*identity) : inputs.end();
-    if (found != inputs.end()) throw CLI::ValidationError("--out would overwrite " + found->second);
+    if (found != inputs.end()) throw UsageError("--out would overwrite " + found->second);
   };
   check((fs::path(batch.results) / "summary.csv").string());
   if (const auto report = identity_of(s.report); report && inputs.count(*report) > 0) {
-    throw CLI::ValidationError("--report would overwrite " + inputs.at(*report));
+    throw UsageError("--report would overwrite " + inputs.at(*report));
   }
   for (const Run& run : campaign.runs) check(result_path(batch.results, run.name));
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
-  if (!s.report.empty() && !s.shard.empty()) throw CLI::ValidationError("--report goes with `identify merge`");
-  if (!s.json.empty()) throw CLI::ValidationError("--json goes with one trace at a time; --out has a file for each");
-  if (!s.csv.empty()) throw CLI::ValidationError("--csv goes with one trace at a time");
+  if (!s.report.empty() && !s.shard.empty()) throw UsageError("--report goes with `identify merge`");
+  if (!s.json.empty()) throw UsageError("--json goes with one trace at a time; --out has a file for each");
+  if (!s.csv.empty()) throw UsageError("--csv goes with one trace at a time");
   if (campaign.runs.size() > 1 && !s.second_file.empty()) {
-    throw CLI::ValidationError("--with goes with one trace at a time");
+    throw UsageError("--with goes with one trace at a time");
   }
   if (campaign.runs.size() > 1 && !s.continued_in.empty()) {
-    throw CLI::ValidationError("--continue goes with one trace at a time");
+    throw UsageError("--continue goes with one trace at a time");
   }
-  if (!s.figures.empty() && !s.shard.empty()) throw CLI::ValidationError("--figures goes with `identify merge`");
+  if (!s.figures.empty() && !s.shard.empty()) throw UsageError("--figures goes with `identify merge`");
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
-    throw CLI::ValidationError("--out is the folder of the traces; name another");
+    throw UsageError("--out is the folder of the traces; name another");
   }
   if (!s.shard.empty() && !(s.compare.empty() && s.share.empty() && s.vary.empty())) {
-    throw CLI::ValidationError("--compare, --share and --vary go with `identify merge`");
+    throw UsageError("--compare, --share and --vary go with `identify merge`");
   }
   check_comparison(s, batch.results);
   refuse_overwriting(s, {s.compare});
@@ -152,7 +150,7 @@ void claim_results(const Campaign& campaign, const BatchOptions& batch) {
   }
   for (const Run& run : campaign.runs) {
     if (!fs::exists(result_path(batch.results, run.name), ignored)) continue;
-    throw InputError("exists and is no result of a campaign", "name another folder with --out",
+    throw InputError("exists and is not a result of a campaign", "name another folder with --out",
                      {result_path(batch.results, run.name), 0, ""});
   }
 }
@@ -202,7 +200,7 @@ std::string counts(const BatchOutcome& outcome) {
   return fmt::format("{} fitted, {} already there, {} failed", outcome.fitted, outcome.present, outcome.failed);
 }
 
-void complain_of(const Campaign& campaign, const BatchOutcome& outcome) {
+void print_problems(const Campaign& campaign, const BatchOutcome& outcome) {
   for (const std::string& problem : campaign.problems) print_error(problem);
   for (const RunEnd& end : outcome.ends) {
     if (!end.begun || end.message.empty()) continue;
@@ -210,15 +208,15 @@ void complain_of(const Campaign& campaign, const BatchOutcome& outcome) {
                     ? end.run->file + ": the analysis could not be done: " + end.message
                     : end.message);
   }
-  if (outcome.stopped) print_error("no result can be written any more: the other runs are left for the next time");
+  if (outcome.stopped) print_error("results can no longer be written: the other runs remain to be done");
 }
 
-int status_of(const Campaign& campaign, const BatchOutcome& outcome) {
+ExitStatus status_of(const Campaign& campaign, const BatchOutcome& outcome) {
   const bool none_read = !outcome.ends.empty() && std::all_of(outcome.ends.begin(), outcome.ends.end(), [](auto& end) {
     return end.kept && end.status == RunStatus::unreadable;
   });
-  if (none_read) return kBadInput;
-  return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? kFailed : kDone;
+  if (none_read) return ExitStatus::bad_input;
+  return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? ExitStatus::failed : ExitStatus::done;
 }
 
 }  // namespace
@@ -231,8 +229,8 @@ bool is_batch(const Settings& s, const Campaign& campaign) {
   return !s.out.empty() || !s.shard.empty() || (!campaign.folder.empty() && campaign.runs.size() > 1);
 }
 
-int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOptions& options,
-                 const std::vector<std::string>& arguments) {
+ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOptions& options,
+                        const std::vector<std::string>& arguments) {
   BatchOptions batch;
   batch.identify = options;
   batch.arguments = without_threads(arguments);
@@ -246,21 +244,21 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
   sharing_from(s);  // refused before anything is fitted
   give_memory_back();
   BatchOutcome outcome;
-  int refused = kDone;
+  ExitStatus refused = ExitStatus::done;
   try {
     claim_results(campaign, batch);
     remove_abandoned_files(batch.results);
     write_campaign(campaign, batch);
     outcome = fit_runs(campaign, batch);
-    complain_of(campaign, outcome);
+    print_problems(campaign, outcome);
     if (s.shard.empty()) {
       const Summarised all = summarise(s, ResultReader(batch.results), shown_as(s, campaign, arguments));
       if (!s.quiet) print(all.summary.table);
-      refused = complain_of(all);
+      refused = print_refusals(all);
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     print_error(error.what());
-    return kFailed;
+    return ExitStatus::failed;
   }
   if (!s.quiet) {
     for (const std::string& note : campaign.notes) print(note + "\n");
@@ -273,5 +271,5 @@ int run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOpti
                                                                  : as_folder(campaign.folder)))
               : fmt::format("\nNext, when every shard is done:\n  identify merge {}\n", shell_quoted(folder)));
   }
-  return std::max(status_of(campaign, outcome), refused);
+  return worse(status_of(campaign, outcome), refused);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// Writes to standard output. Nobody reading any more (a closed pipe) is no error and is not complained about; a full
+/// Writes to standard output. A closed pipe is not an error; a full
 /// disc throws tribofit::InputError.
 void print(const std::string& text);
 

@@ -5,27 +5,28 @@
 #include <utility>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
 #include "results.hpp"
-#include "settings.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/csv.hpp"
 #include "tribofit/report/diagnosis.hpp"
+#include "tribofit/report/json.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1;
-
 constexpr const char* kFooter =
     "Several traces are diagnosed together, with shared parameters; a folder stands for the runs of its\n"
     "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
-    "each condition is kept for confirming the finding.\n"
-    "Every effect of the catalogue is tried; --effect KEY puts one into the law from the start, --formula\n"
-    "adds one of your own to those tried.\n\n"
+    "each condition is held back to confirm the finding.\n"
+    "Every effect of the catalogue is tested; --effect KEY adds one to the law from the start, --formula\n"
+    "adds one of your own to those tested.\n\n"
     "Examples:\n"
     "  identify diagnose --radius 15mm trace.csv\n"
     "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"
@@ -33,14 +34,14 @@ constexpr const char* kFooter =
 
 void check_usage(const Settings& s, const Split& split) {
   if (split.diagnosed.empty())
-    throw CLI::ValidationError("every trace is kept for confirmation; leave one to diagnose");
+    throw UsageError("every trace is held back to confirm the finding; leave one to diagnose");
   if (split.diagnosed.size() > 1 && (!s.second_file.empty() || !s.continued_in.empty())) {
-    throw CLI::ValidationError("--with and --continue go with one trace at a time");
+    throw UsageError("--with and --continue go with one trace at a time");
   }
   for (std::size_t k = 0; k < split.diagnosed.size(); ++k) {  // the same evidence may not count twice
     for (std::size_t earlier = 0; earlier < k; ++earlier) {
       const std::string& path = split.diagnosed[k].trace.path;
-      if (same_file(split.diagnosed[earlier].trace.path, path)) throw CLI::ValidationError(path + " is given twice");
+      if (same_file(split.diagnosed[earlier].trace.path, path)) throw UsageError(path + " is given twice");
     }
   }
   std::vector<std::string> files = input_files(s);
@@ -81,7 +82,7 @@ std::string reason_of(const DiagnosedTraces& result) {
   return "there are too few cycles to hold any out";
 }
 
-int run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   const Split split = keep_for_confirmation(find_runs(s.traces, options.read).runs, s.confirm, options.read);
   check_usage(s, split);
@@ -98,38 +99,37 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   const bool alone = split.diagnosed.size() == 1;
   const std::vector<std::string> own = alone ? arguments_for(split.diagnosed.front(), arguments) : arguments;
   const std::vector<std::string> inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
-  write_results(s, result, arguments, {own, inputs, !s.instruments.empty()});
-  if (!s.quiet && s.json != "-") {
-    TerminalOptions terminal = terminal_options(s, own);
-    terminal.inputs = inputs;
-    print(render_diagnosis(result, terminal));
-  }
-  if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return kDone;
+  TerminalOptions terminal = terminal_options(s, own);
+  terminal.inputs = inputs;
+  deliver(s, {[&] { return render_diagnosis(result, terminal); }, [&] { return to_json(result, {arguments}); },
+              [&] {
+                return report_of(result, {own, inputs, !s.instruments.empty()});
+              },
+              [&](const std::string& folder) { write_csv_folder(folder, result); }});
+  if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return ExitStatus::done;
   print_error("the diagnosis could not be done: " + reason_of(result));
-  return kFailed;
+  return ExitStatus::failed;
 }
 
 }  // namespace
 
-void add_diagnose(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("diagnose", "Where a law fails, which effect is missing, what to measure next");
-  verb->footer(kFooter);
+void add_diagnose(const Command& app) {
+  const Command verb = app.add_verb("diagnose", "Where a law fails, which effect is missing, what to measure next");
+  verb.footer(kFooter);
   const auto settings = std::make_shared<Settings>();
-  add_input_options(*verb, *settings);
-  verb->add_option("--confirm", settings->confirm,
-                   "A run that takes no part and on which the finding is tried (repeatable)")
-      ->allow_extra_args(false)
-      ->group("Reading");
-  add_model_options(*verb, *settings);
-  add_selection_options(*verb, *settings);
-  add_output_options(*verb, *settings);
-  add_report_option(*verb, *settings);
-  verb->callback([settings, verb, &status] {
-    refuse_empty_values(*verb);
+  add_input_options(verb, *settings);
+  verb.add_option("--confirm", settings->confirm,
+                  "A run held back from the diagnosis to confirm the finding (repeatable)")
+      .one_value_each()
+      .group("Reading");
+  add_model_options(verb, *settings);
+  add_selection_options(verb, *settings);
+  add_output_options(verb, *settings);
+  add_report_option(verb, *settings);
+  verb.on_run([settings, verb] {
+    verb.refuse_empty_values();
     check_seed(*settings);
-    if (settings->traces.empty()) {
-      throw CLI::ValidationError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
-    }
-    status = run(*settings, own_options(*verb));
+    if (settings->traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
+    return run(*settings, verb.own_options());
   });
 }

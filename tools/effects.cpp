@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "console.hpp"
-#include "options.hpp"
+#include "parameter_options.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/fingerprint.hpp"
@@ -12,24 +12,24 @@
 
 using namespace tribofit;
 
-void add_effects(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("effects", "List the effects that can be added to a law, or explain one");
-  verb->footer("Example:\n  identify effects rate-state");
+void add_effects(const Command& app) {
+  const Command verb = app.add_verb("effects", "List the effects that can be added to a law, or explain one");
+  verb.footer("Example:\n  identify effects rate-state");
   const auto key = std::make_shared<std::string>();
-  verb->add_option("KEY", *key, "Effect to explain, KEY or KEY:FORM");
-  verb->callback([key, &status] {
+  verb.add_option("KEY", *key, "Effect to explain, KEY or KEY:FORM");
+  verb.on_run([key] {
     TerminalOptions options;
     options.colour = wants_colour();
     options.unicode = wants_unicode();
     options.width = terminal_width();
-    status = 0;
     if (!key->empty()) {
       const Effect effect = effect_named(*key);
       print(render_effect(describe(effect), fingerprint(effect), options));
-      return;
+      return ExitStatus::done;
     }
     std::vector<EffectInfo> effects;
     for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
     print(render_effects(effects, options));
+    return ExitStatus::done;
   });
 }

@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
-#include "settings.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/workbench/server.hpp"
 #include "verbs.hpp"
@@ -27,13 +27,11 @@ using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0;
-
 constexpr const char* kFooter =
-    "Serves a page on this machine (127.0.0.1) until Ctrl-C: switch the law and effects, drag starts and bounds,\n"
-    "choose cycles, leave out stretches of time, type a formula; each change is fitted at once, and the ladder keeps\n"
+    "Serves a page on this machine (127.0.0.1) until Ctrl-C: choose the law and effects, drag starts and bounds,\n"
+    "choose cycles, exclude stretches of time, type a formula; each change is fitted at once, and the ladder keeps\n"
     "every model visited. The page shows the command that fits the model shown, and saves the session as a file.\n"
-    "Only who has the printed address gets in.\n\n"
+    "The printed address holds the token that gives access.\n\n"
     "Examples:\n"
     "  identify explore --radius 15mm trace.csv\n"
     "  identify explore --radius 15mm --effect viscous --port 8080 trace.csv\n"
@@ -44,19 +42,19 @@ struct ExploreSettings : Settings {
   std::string session;
 };
 
-void add_options(CLI::App& app, ExploreSettings& s) {
+void add_options(const Command& app, ExploreSettings& s) {
   add_input_options(app, s);
   add_model_options(app, s);
   add_parameter_options(app, s);
   add_selection_options(app, s);
   app.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)")
-      ->group("Server");
+      .group("Server");
   app.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)")
-      ->check(CLI::Range(1, 65535))
-      ->group("Server");
+      .range(1, 65535)
+      .group("Server");
   app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
-      ->check(CLI::Range(0, 1024))
-      ->group("Server");
+      .range(0, 1024)
+      .group("Server");
 }
 
 std::string text_of_file(const std::string& path) {
@@ -85,7 +83,7 @@ std::vector<std::string> formulas_of(const Settings& s) {
   std::vector<std::string> out;
   for (const std::string& text : s.formulas) {
     if (text.starts_with('@'))
-      throw CLI::ValidationError("--formula: type it, or paste it into the page; @FILE is not read here");
+      throw UsageError("--formula: type it, or paste it into the page; @FILE is not read here");
     out.push_back(text);
   }
   return out;
@@ -109,7 +107,7 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
   return options;
 }
 
-/// A saved session has its own options: others beside it would not be heard.
+/// A saved session has its own options: others beside it would have no effect.
 void refuse_beside_session(const std::vector<std::string>& arguments) {
   std::string others;
   for (const std::string& word : arguments) {
@@ -117,22 +115,19 @@ void refuse_beside_session(const std::vector<std::string>& arguments) {
     if (others.find(word) == std::string::npos) others += (others.empty() ? "" : ", ") + word;
   }
   if (others.empty()) return;
-  throw CLI::ValidationError("--session: the saved session has its own options; leave out " + others +
-                             " (only --port and --threads go with it)");
+  throw UsageError("--session: the saved session has its own options; leave out " + others +
+                   " (only --port and --threads go with it)");
 }
 
 /// The settings that a saved session was begun with, but for what the server itself is told now.
 void take_over(const std::string& text, ExploreSettings& s) {
   const SavedWorkbench saved = saved_workbench(text, s.session);
-  CLI::App app("", "explore");
   ExploreSettings earlier;
-  add_options(app, earlier);
   std::vector<std::string> words = saved.arguments;
   words.push_back(saved.trace);
-  std::reverse(words.begin(), words.end());
   try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
+    parse_words(std::move(words), [&](const Command& explore) { add_options(explore, earlier); });
+  } catch (const UsageError& error) {
     throw InputError(std::string("holds options that cannot be read: ") + error.what(), "save the session again",
                      {s.session, 0, ""});
   }
@@ -175,7 +170,7 @@ void serve(WorkbenchServer& server) {
     if (ended) {
       lock.unlock();
       answering.join();
-      throw std::runtime_error("the server of the workbench has ended by itself: its port is no longer listened on");
+      throw std::runtime_error("the server of the workbench has stopped unexpectedly");
     }
   }
   server.stop();
@@ -183,12 +178,12 @@ void serve(WorkbenchServer& server) {
     // A fit that is under way ends in a moment; one that does not is given up.
     constexpr auto kPatience = std::chrono::milliseconds(1500);
     std::unique_lock lock(mutex);
-    if (!over.wait_for(lock, kPatience, [&] { return ended; })) ::_exit(kDone);
+    if (!over.wait_for(lock, kPatience, [&] { return ended; })) ::_exit(static_cast<int>(ExitStatus::done));
   }
   answering.join();
 }
 
-int run(ExploreSettings& s, const std::vector<std::string>& given) {
+ExitStatus run(ExploreSettings& s, const std::vector<std::string>& given) {
   std::vector<std::string> arguments = given;
   std::string saved;
   if (!s.session.empty()) {
@@ -202,23 +197,22 @@ int run(ExploreSettings& s, const std::vector<std::string>& given) {
   print("The workbench for " + session.trace().path + " is at\n\n  " + server.address() +
         "\n\nOpen it in a browser on this machine. Ctrl-C ends it.\n");
   serve(server);
-  return kDone;
+  return ExitStatus::done;
 }
 
 }  // namespace
 
-void add_explore(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("explore", "A live page: switch effects on and watch the error fall");
-  verb->footer(kFooter);
+void add_explore(const Command& app) {
+  const Command verb = app.add_verb("explore", "A live page: switch effects on and watch the error fall");
+  verb.footer(kFooter);
   const auto settings = std::make_shared<ExploreSettings>();
-  add_options(*verb, *settings);
-  verb->callback([settings, verb, &status] {
-    refuse_empty_values(*verb);
+  add_options(verb, *settings);
+  verb.on_run([settings, verb] {
+    verb.refuse_empty_values();
     check_seed(*settings);
-    if (!settings->session.empty()) refuse_beside_session(own_options(*verb));
-    if (settings->traces.empty() && settings->session.empty()) {
-      throw CLI::ValidationError("no trace given; try `identify explore --radius 15mm trace.csv`");
-    }
-    status = run(*settings, own_options(*verb));
+    if (!settings->session.empty()) refuse_beside_session(verb.own_options());
+    if (settings->traces.empty() && settings->session.empty())
+      throw UsageError("no trace given; try `identify explore --radius 15mm trace.csv`");
+    return run(*settings, verb.own_options());
   });
 }

@@ -3,14 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "batch.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
 #include "results.hpp"
-#include "settings.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/csv.hpp"
+#include "tribofit/report/json.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
@@ -18,17 +20,15 @@ using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1, kBadInput = 3;
-
 void check_usage(const Settings& s, const std::vector<Input>& inputs) {
-  if (s.again) throw CLI::ValidationError("--again goes with a folder of runs, or with --out");
+  if (s.again) throw UsageError("--again goes with a folder of runs, or with --out");
   if (!s.share.empty() || !s.vary.empty()) {
-    throw CLI::ValidationError("--share and --vary go with a folder of runs, or with --out");
+    throw UsageError("--share and --vary go with a folder of runs, or with --out");
   }
-  if (!s.compare.empty()) throw CLI::ValidationError("--compare goes with a folder of runs, or with --out");
+  if (!s.compare.empty()) throw UsageError("--compare goes with a folder of runs, or with --out");
   if (inputs.size() > 1) {
     const auto alone = [](bool given, const char* name) {
-      if (given) throw CLI::ValidationError(std::string(name) + " goes with one trace at a time");
+      if (given) throw UsageError(std::string(name) + " goes with one trace at a time");
     };
     alone(!s.json.empty(), "--json");
     alone(!s.csv.empty(), "--csv");
@@ -42,73 +42,93 @@ void check_usage(const Settings& s, const std::vector<Input>& inputs) {
   refuse_overwriting(s, files);
 }
 
-int run_one(const Settings& s, const Input& input, const IdentifyOptions& options,
-            const std::vector<std::string>& arguments) {
+ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions& options,
+                   const std::vector<std::string>& arguments) {
   IdentifyOptions own = options;
   own.read = input.trace.read;
   Identification result = identify(input.trace.path, own);
   result.notes.insert(result.notes.end(), input.notes.begin(), input.notes.end());
   result.warnings.insert(result.warnings.begin(), input.warnings.begin(), input.warnings.end());
-  write_results(s, result, arguments, {arguments_for(input, arguments), {}, !s.instruments.empty()});
-  if (!s.quiet && s.json != "-") print(render_terminal(result, terminal_options(s, arguments_for(input, arguments))));
+  const std::vector<std::string> alone = arguments_for(input, arguments);
+  deliver(s, {[&] { return render_terminal(result, terminal_options(s, alone)); },
+              [&] { return to_json(result, {arguments}); },
+              [&] {
+                return report_of(result, {alone, {}, !s.instruments.empty()});
+              },
+              [&](const std::string& folder) { write_csv_folder(folder, result); }});
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  if (result.analysed && fitted) return kDone;
+  if (result.analysed && fitted) return ExitStatus::done;
   std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
   print_error(input.trace.path + ": the analysis could not be done: " + reason);
-  return kFailed;
+  return ExitStatus::failed;
 }
 
-int run_all(const Settings& s, const std::vector<Input>& inputs, const IdentifyOptions& options,
-            const std::vector<std::string>& arguments) {
+ExitStatus run_all(const Settings& s, const std::vector<Input>& inputs, const IdentifyOptions& options,
+                   const std::vector<std::string>& arguments) {
   if (inputs.size() == 1) return run_one(s, inputs.front(), options, arguments);
   std::size_t unreadable = 0;
-  int status = kDone;
+  ExitStatus status = ExitStatus::done;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     progress("[" + std::to_string(k + 1) + "/" + std::to_string(inputs.size()) + "] " + inputs[k].trace.path);
     if (k > 0 && !s.quiet) print("\n");
     try {
-      status = std::max(status, run_one(s, inputs[k], options, arguments));
+      status = worse(status, run_one(s, inputs[k], options, arguments));
     } catch (const InputError& error) {
       print_error(error.what());
       ++unreadable;
     }
   }
-  if (unreadable == inputs.size()) return kBadInput;
-  return unreadable > 0 ? kFailed : status;
+  if (unreadable == inputs.size()) return ExitStatus::bad_input;
+  return unreadable > 0 ? ExitStatus::failed : status;
 }
 
-void add_batch_options(CLI::App& app, Settings& s) {
-  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)")->group("Batch");
-  app.add_option("--pattern", s.pattern, "How file names say the conditions: 'r{radius}mm_{repeat}.csv'")
-      ->group("Batch");
-  app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` ends it")
-      ->group("Batch");
-  app.add_flag("--again", s.again, "Fit what has a result already, too")->group("Batch");
+void add_batch_options(const Command& app, Settings& s) {
+  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)").group("Batch");
+  app.add_option("--pattern", s.pattern, "How file names state the conditions: 'r{radius}mm_{repeat}.csv'")
+      .group("Batch");
+  app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` combines them")
+      .group("Batch");
+  app.add_flag("--again", s.again, "Fit runs that already have a result, too").group("Batch");
   add_compare_option(app, s);
 }
 
-void add_fit_options(CLI::App& app, Settings& s) {
+void add_fit_options(const Command& app, Settings& s) {
   add_model_options(app, s);
   add_parameter_options(app, s);
   add_selection_options(app, s);
-  app.add_option("--protocol", s.protocol, "joint, published, or both (default)")
-      ->check(CLI::IsMember({"both", "joint", "published"}))
-      ->group("Law and fit");
-  app.add_flag("--profile", s.profile, "Profile likelihood intervals as well")->group("Law and fit");
+  app.add_option("--protocol", s.protocol, "joint, published (per-cycle extremes), or both (default)")
+      .one_of({"both", "joint", "published"})
+      .group("Law and fit");
+  app.add_flag("--profile", s.profile, "Profile likelihood intervals as well").group("Law and fit");
 }
 
 NamePattern pattern_from(const std::string& text) {
   try {
     return NamePattern(text);
   } catch (const InputError& error) {
-    throw CLI::ValidationError(error.what());
+    throw UsageError(error.what());
   }
+}
+
+ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
+  if (s.traces.empty()) throw UsageError("no trace given; try `identify --radius 15mm trace.csv`");
+  const IdentifyOptions options = options_from(s);
+  FindOptions find;
+  find.errors = ManifestErrors::collect;
+  if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
+  const Campaign campaign = find_runs(s.traces, options.read, find);
+  if (is_batch(s, campaign)) return run_as_batch(s, campaign, options, arguments);
+  find.errors = ManifestErrors::refuse;
+  const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
+  if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
+  check_usage(s, inputs);
+  return run_all(s, inputs, options, arguments);
 }
 
 }  // namespace
 
-void add_identify(CLI::App& app, int& status) {
+void add_identify(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   add_input_options(app, *settings);
   add_fit_options(app, *settings);
@@ -116,32 +136,13 @@ void add_identify(CLI::App& app, int& status) {
   add_report_option(app, *settings);
   add_batch_options(app, *settings);
   add_pooling_options(app, *settings);
-  app.parse_complete_callback([settings, &app] {  // runs before that of a verb
-    const auto verbs = app.get_subcommands();
-    if (verbs.empty() || (own_options(app).empty() && settings->traces.empty())) return;
-    const std::string verb = verbs.front()->get_name();
-    throw CLI::ValidationError("options of `identify " + verb + "` stand behind '" + verb + "'");
+  app.before_verb([settings, app](const std::string& verb) {
+    if (app.own_options().empty() && settings->traces.empty()) return;
+    throw UsageError("put the options after '" + verb + "': identify " + verb + " [OPTIONS]");
   });
-  app.callback([settings, &app, &status] {
-    if (!app.get_subcommands().empty()) return;
-    Settings& s = *settings;
-    refuse_empty_values(app);
-    check_seed(s);
-    const std::vector<std::string> arguments = own_options(app);
-    if (s.traces.empty()) throw CLI::ValidationError("no trace given; try `identify --radius 15mm trace.csv`");
-    const IdentifyOptions options = options_from(s);
-    FindOptions find;
-    find.errors = ManifestErrors::collect;
-    if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
-    const Campaign campaign = find_runs(s.traces, options.read, find);
-    if (is_batch(s, campaign)) {
-      status = run_as_batch(s, campaign, options, arguments);
-      return;
-    }
-    find.errors = ManifestErrors::refuse;
-    const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
-    if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
-    check_usage(s, inputs);
-    status = run_all(s, inputs, options, arguments);
+  app.on_run([settings, app] {
+    app.refuse_empty_values();
+    check_seed(*settings);
+    return run(*settings, app.own_options());
   });
 }

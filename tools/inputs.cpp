@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
-#include "options.hpp"
+#include "analysis_options.hpp"
+#include "exit_status.hpp"
+#include "results.hpp"
 #include "tribofit/ingest/units.hpp"
 
 using namespace tribofit;
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest";  // the source of what it says (see read_manifest)
 
@@ -52,19 +50,14 @@ std::vector<bool> last_repeats(const std::vector<Input>& inputs) {
 
 Input only_input(const Settings& s, const ReadOptions& read, const std::string& verb) {
   if (s.traces.empty()) {
-    throw CLI::ValidationError("no trace given; try `identify " + verb + " --radius 15mm --load 50N trace.csv`");
+    throw UsageError("no trace given; try `identify " + verb + " --radius 15mm --load 50N trace.csv`");
   }
   std::vector<Input> inputs = find_runs(s.traces, read).runs;
-  if (inputs.size() != 1) throw CLI::ValidationError("`identify " + verb + "` takes one trace at a time");
+  if (inputs.size() != 1) throw UsageError("`identify " + verb + "` takes one trace at a time");
   std::vector<std::string> files = input_files(s);
   files.push_back(inputs.front().trace.path);
   refuse_overwriting(s, files);
   return std::move(inputs.front());
-}
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || fs::equivalent(a, b, ignored);
 }
 
 std::vector<std::string> arguments_for(const Input& input, std::vector<std::string> arguments) {
@@ -95,8 +88,8 @@ Split keep_for_confirmation(std::vector<Input> inputs, const std::vector<std::st
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (kept[k] && named.empty()) {
       split.notes.push_back(
-          fmt::format("{} repeats the conditions of another run: it takes no part and the finding is "
-                      "tried on it",
+          fmt::format("{} repeats the conditions of another run: it takes no part in the diagnosis and "
+                      "confirms the finding",
                       inputs[k].trace.path));
     }
     (kept[k] ? split.kept : split.diagnosed).push_back(std::move(inputs[k]));

@@ -8,12 +8,9 @@
 
 using Input = tribofit::Run;
 
-/// The one trace of a verb that takes one at a time (a folder of one does). Wrong usage where there are none or
+/// The one trace of a verb that takes one at a time (a folder of one does). Usage error where there are none or
 /// several, or where an output would overwrite an input.
 Input only_input(const Settings& settings, const tribofit::ReadOptions& read, const std::string& verb);
-
-/// Whether two names lead to one file.
-bool same_file(const std::string& a, const std::string& b);
 
 /// The user's own options and the conditions that came from the manifest, so that the trace can be named alone.
 std::vector<std::string> arguments_for(const Input& input, std::vector<std::string> arguments);

@@ -4,7 +4,8 @@
 #include <map>
 #include <optional>
 
-#include "options.hpp"
+#include "exit_status.hpp"
+#include "parameter_options.hpp"
 #include "tribofit/friction/formula.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -25,7 +26,7 @@ struct ChosenEffect {
   std::vector<double> values;
 };
 
-/// AddsToReading "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
+/// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
 /// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
 ChosenEffect read_effect(const std::string& text) {
   auto colon = text.find(':');
@@ -48,13 +49,13 @@ ChosenEffect read_effect(const std::string& text) {
     begin = end + 1;
     const auto equals = part.find('=');
     if (equals == std::string::npos) {
-      throw CLI::ValidationError("'" + part + "' in --effect " + text + " is not name=value; write it as " +
-                                 info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
+      throw UsageError("'" + part + "' in --effect " + text + " is not name=value; write it as " + info.spelled() +
+                       (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
     }
     const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
     if (found == names.end()) {
-      throw CLI::ValidationError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
-                                 "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
+      throw UsageError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
+                       "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
     }
     const auto k = static_cast<std::size_t>(found - names.begin());
     const Parameter& parameter = info.parameters[k];
@@ -68,7 +69,7 @@ ChosenEffect read_effect(const std::string& text) {
 BaseLaw read_law(const std::string& name) {
   if (const std::optional<BaseLaw> law = find_law(name)) return *law;
   const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
-  throw CLI::ValidationError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
+  throw UsageError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
 }
 
 /// Effects with their values by key: the model puts them into its own order.
@@ -112,7 +113,7 @@ void set_decay(const MachineRequest& request, BaseLaw law, std::vector<double>& 
 
 void set_rig(const MachineRequest& request, Rig& rig) {
   if (!request.damping.empty() && !request.damping_ratio.empty()) {
-    throw CLI::ValidationError("--damping and --damping-ratio exclude each other; give one of them");
+    throw UsageError("--damping and --damping-ratio exclude each other; give one of them");
   }
   const double ratio = rig.damping_ratio();
   const bool other_block = !request.mass.empty() || !request.stiffness.empty();
@@ -180,16 +181,16 @@ constexpr const char* kRigGroup = "Rig (default: the published test of the neare
 
 }  // namespace
 
-void add_machine_options(CLI::App& verb, MachineRequest& r) {
-  verb.add_option("--radius", r.radius, "friction radius")->capture_default_str()->group(kRigGroup);
-  verb.add_option("--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s")->group(kRigGroup);
-  verb.add_option("--load", r.load, "normal force, e.g. 50N")->group(kRigGroup);
+void add_machine_options(const Command& verb, MachineRequest& r) {
+  verb.add_option("--radius", r.radius, "friction radius").show_default().group(kRigGroup);
+  verb.add_option("--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s").group(kRigGroup);
+  verb.add_option("--load", r.load, "normal force, e.g. 50N").group(kRigGroup);
   add_machine_numbers(verb, r);
 }
 
-void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
+void add_machine_numbers(const Command& verb, MachineRequest& r) {
   const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
-    return verb.add_option(flag, value, help)->group(name);
+    return verb.add_option(flag, value, help).group(name);
   };
   const char* rig = kRigGroup;
   group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
@@ -204,8 +205,8 @@ void add_machine_numbers(CLI::App& verb, MachineRequest& r) {
   group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
   group(law, "--effect", r.effects,
         "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
-      ->allow_extra_args(false);
+      .one_value_each();
   group(law, "--formula", r.formulas,
         "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
-      ->allow_extra_args(false);
+      .one_value_each();
 }

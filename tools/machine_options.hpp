@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "command.hpp"
 #include "tribofit/oscillator/machine.hpp"
-#include "verbs.hpp"
 
 /// A machine as typed; empty means: from the published test of the nearest radius.
 struct MachineRequest {
@@ -14,16 +14,16 @@ struct MachineRequest {
 };
 
 /// Options of the rig and of its friction.
-void add_machine_options(CLI::App& verb, MachineRequest& request);
+void add_machine_options(const Command& verb, MachineRequest& request);
 /// The same without radius, speed and load.
-void add_machine_numbers(CLI::App& verb, MachineRequest& request);
+void add_machine_numbers(const Command& verb, MachineRequest& request);
 
 /// The machine in SI, and the radius [m] of the published test that what was not typed comes from.
 struct RequestedMachine {
   tribofit::Machine machine;
   double preset_radius = 0;
 };
-/// Throws tribofit::InputError, or CLI::ValidationError for names that are none.
+/// Throws tribofit::InputError, or UsageError for unknown names.
 RequestedMachine machine_from(const MachineRequest& request);
 
 /// An identified machine with the levels, decay factor and rig that were typed in place of its own.

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include "console.hpp"
-#include "options.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/ingest/manifest.hpp"
 #include "tribofit/report/terminal.hpp"
@@ -34,7 +34,7 @@ void write_draft(const Wanted& wanted) {
   if (!wanted.pattern.empty()) pattern.emplace(wanted.pattern);
   std::error_code ignored;
   if (!wanted.out.empty() && !wanted.force && std::filesystem::exists(wanted.out, ignored)) {
-    throw CLI::ValidationError(wanted.out + " exists; --force overwrites it");
+    throw UsageError(wanted.out + " exists; --force overwrites it");
   }
   const ManifestDraft draft = draft_manifest(wanted.folder, pattern);
   if (wanted.out.empty()) {
@@ -48,17 +48,17 @@ void write_draft(const Wanted& wanted) {
 
 }  // namespace
 
-void add_manifest(CLI::App& app, int& status) {
+void add_manifest(const Command& app) {
   const auto wanted = std::make_shared<Wanted>();
-  CLI::App* verb = app.add_subcommand("manifest", "Draft the manifest.csv of a folder of runs from what it finds");
-  verb->footer(kFooter);
-  verb->add_option("FOLDER", wanted->folder, "Folder of traces (CSV)")->required();
-  verb->add_option("--pattern", wanted->pattern, "How the files are named: 'r{radius}mm_{repeat}.csv'");
-  verb->add_option("--out", wanted->out, "Write it here (default: standard output)");
-  verb->add_flag("--force", wanted->force, "Overwrite the file that is there");
-  verb->callback([wanted, verb, &status] {
-    refuse_empty_values(*verb);
+  const Command verb = app.add_verb("manifest", "Draft the manifest.csv of a folder of runs from what it finds");
+  verb.footer(kFooter);
+  verb.add_option("FOLDER", wanted->folder, "Folder of traces (CSV)").required();
+  verb.add_option("--pattern", wanted->pattern, "How the files are named: 'r{radius}mm_{repeat}.csv'");
+  verb.add_option("--out", wanted->out, "Write it here (default: standard output)");
+  verb.add_flag("--force", wanted->force, "Overwrite the file that is there");
+  verb.on_run([wanted, verb] {
+    verb.refuse_empty_values();
     write_draft(*wanted);
-    status = 0;
+    return ExitStatus::done;
   });
 }

@@ -53,10 +53,10 @@ MapFile::MapFile(const std::string& folder, const MapRequest& request, bool agai
   rows_path_ = folder + "/map.rows";
   map_path_ = folder + "/map.csv";
   if (std::filesystem::is_directory(map_path_)) {
-    throw InputError("is a folder, and would be the table", "name another folder", {map_path_, 0, ""});
+    throw InputError("is a folder, but the table would be written there", "name another folder", {map_path_, 0, ""});
   }
   if (!again && std::filesystem::exists(map_path_)) {
-    throw InputError("a map stands here already", "name another folder, or replace it with --again",
+    throw InputError("a map exists here already", "name another folder, or replace it with --again",
                      {map_path_, 0, ""});
   }
   head_ = head_of(request);
@@ -102,7 +102,7 @@ void MapFile::write(const std::string& text) {
   out_ << text << std::flush;
   if (!out_)
     throw InputError(std::string("cannot be written: ") + std::strerror(errno),
-                     "make room and start again: rows that are there are kept", {rows_path_, 0, ""});
+                     "free some space and start again: the rows written so far are kept", {rows_path_, 0, ""});
 }
 
 void MapFile::add(std::size_t row, const std::vector<MapCell>& cells) {

@@ -8,6 +8,7 @@
 #include "batch.hpp"
 #include "console.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -18,17 +19,15 @@ using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1;
-
 constexpr const char* kFooter =
     "The shards of a campaign need only see the same folders:\n"
     "  identify runs/ --out results/ --shard 1/2      (on one machine)\n"
     "  identify runs/ --out results/ --shard 2/2      (on another)\n"
     "  identify merge results/\n"
     "The summary is the same to the last byte as that of one batch. Runs without a whole result are named, and the\n"
-    "status is 1; doing a shard again does only those.";
+    "status is 1; running a shard again does only those.";
 
-int merge(const Settings& s, const std::string& folder, const ReportOptions& shown) {
+ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptions& shown) {
   check_comparison(s, folder);
   refuse_overwriting(s, {s.compare});
   const ResultReader results(folder);
@@ -37,7 +36,7 @@ int merge(const Settings& s, const std::string& folder, const ReportOptions& sho
     all = summarise(s, results, shown);
   } catch (const InputError& error) {  // it cannot be written
     print_error(error.what());
-    return kFailed;
+    return ExitStatus::failed;
   }
   const CampaignSummary& summary = all.summary;
   for (const std::string& problem : results.problems()) print_error(problem);
@@ -49,28 +48,28 @@ int merge(const Settings& s, const std::string& folder, const ReportOptions& sho
     print(summary.missing > 0 && !results.traces().empty()
               ? fmt::format("\nNext, to do what is missing, with the same options:\n  identify {} --out {}\n",
                             shell_quoted(as_folder(results.traces())), shell_quoted(as_folder(folder)))
-              : "\nNext, to see what can be done with a trace:\n  identify --help\n");
+              : "\nNext, to see the options for one trace:\n  identify --help\n");
   }
   const bool whole = summary.failed == 0 && summary.missing == 0 && results.problems().empty();
-  return std::max(whole ? kDone : kFailed, complain_of(all));
+  return worse(whole ? ExitStatus::done : ExitStatus::failed, print_refusals(all));
 }
 
 }  // namespace
 
-void add_merge(CLI::App& app, int& status) {
+void add_merge(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   const auto folder = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("merge", "Put the results of the shards of a campaign together");
-  verb->footer(kFooter);
-  verb->add_option("RESULTS", *folder, "Folder of results, as given to --out")->required();
-  add_pooling_options(*verb, *settings);
-  add_compare_option(*verb, *settings);
-  add_report_option(*verb, *settings);
-  verb->add_flag("--quiet", settings->quiet, "Do not print the table")->group("Output");
-  verb->callback([settings, folder, verb, &status] {
-    refuse_empty_values(*verb);
+  const Command verb = app.add_verb("merge", "Combine the results of the shards of a campaign");
+  verb.footer(kFooter);
+  verb.add_option("RESULTS", *folder, "Folder of results, as given to --out").required();
+  add_pooling_options(verb, *settings);
+  add_compare_option(verb, *settings);
+  add_report_option(verb, *settings);
+  verb.add_flag("--quiet", settings->quiet, "Do not print the table").group("Output");
+  verb.on_run([settings, folder, verb] {
+    verb.refuse_empty_values();
     std::vector<std::string> arguments = pooling_arguments(*settings);
     arguments.insert(arguments.begin(), "merge");
-    status = merge(*settings, *folder, {arguments, {as_folder(*folder)}});
+    return merge(*settings, *folder, {arguments, {as_folder(*folder)}});
   });
 }

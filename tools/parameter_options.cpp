@@ -8,9 +8,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "options.hpp"
+#include "exit_status.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/workbench/session.hpp"
 
@@ -21,13 +22,7 @@ namespace {
 using Slot = FrictionModel::Slot;
 
 [[noreturn]] void refuse(const std::string& problem) {
-  throw CLI::ValidationError(problem);
-}
-
-std::string trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(' ');
-  if (begin == std::string_view::npos) return {};
-  return std::string(text.substr(begin, text.find_last_not_of(' ') + 1 - begin));
+  throw UsageError(problem);
 }
 
 /// A number with what follows it.
@@ -36,7 +31,8 @@ struct Number {
   std::string unit;
 };
 
-Number number_from(const std::string& text, const std::string& option) {
+Number number_from(const std::string& with_spaces, const std::string& option) {
+  const std::string text(trimmed(with_spaces));
   Number out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
   if (error != std::errc{} || !std::isfinite(out.value))
@@ -49,8 +45,8 @@ Number number_from(const std::string& text, const std::string& option) {
 std::pair<Number, Number> range_from(const std::string& text, const std::string& option, const char* example) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos) refuse(option + ": '" + text + "' is not FROM..TO, as in " + example);
-  std::pair<Number, Number> ends = {number_from(trimmed(text.substr(0, dots)), option),
-                                    number_from(trimmed(text.substr(dots + 2)), option)};
+  std::pair<Number, Number> ends = {number_from(text.substr(0, dots), option),
+                                    number_from(text.substr(dots + 2), option)};
   if (ends.first.unit.empty()) ends.first.unit = ends.second.unit;
   return ends;
 }
@@ -86,7 +82,7 @@ double si_from(const Number& number, const Slot& slot, const std::string& option
   const auto shown = find_unit(p.unit), given = find_unit(number.unit);
   if (number.unit.empty() || number.unit == p.unit || (p.unit == "1" && number.unit == "N")) return number.value * p.si;
   if (given && shown && given->quantity == shown->quantity) return number.value * given->factor / shown->factor * p.si;
-  refuse(option + ": '" + number.unit + "' is no unit of " + slot.full_name() + ", which is in " +
+  refuse(option + ": '" + number.unit + "' is not a unit of " + slot.full_name() + ", which is in " +
          (p.unit == "1" ? "no unit" : p.unit));
 }
 
@@ -97,16 +93,16 @@ std::vector<std::pair<std::string, std::string>> pairs_from(const std::vector<st
   for (const std::string& text : texts) {
     for (std::size_t begin = 0; begin <= text.size();) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
-      const std::string part = trimmed(text.substr(begin, end - begin));
+      const std::string part(trimmed(text.substr(begin, end - begin)));
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos || equals == 0 || equals + 1 == part.size()) {
         refuse(option + ": '" + part + "' is not " + example);
       }
-      const std::string name = trimmed(part.substr(0, equals));
+      const std::string name(trimmed(part.substr(0, equals)));
       if (std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == name; })) {
         refuse(option + ": '" + name + "' is given twice");
       }
-      pairs.emplace_back(name, trimmed(part.substr(equals + 1)));
+      pairs.emplace_back(name, std::string(trimmed(part.substr(equals + 1))));
       begin = end + 1;
     }
   }
@@ -121,6 +117,22 @@ GivenParameter& entry_of(const std::string& name, std::vector<GivenParameter>& g
 }
 
 }  // namespace
+
+Effect effect_named(const std::string& name) {
+  try {
+    return make_effect(name);
+  } catch (const InputError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void refuse_clashes(const std::vector<Effect>& effects) {
+  try {
+    FrictionModel(BaseLaw::exponential, effects);
+  } catch (const InputError& error) {
+    throw UsageError(error.what());
+  }
+}
 
 std::vector<GivenParameter> given_from(const Settings& s, const std::vector<BaseLaw>& laws,
                                        const std::vector<Effect>& effects) {
@@ -158,7 +170,7 @@ Selection selection_from(const Settings& s) {
     const auto seconds = [&](const Number& n) {
       const auto unit =
           n.unit.empty() ? Unit{Quantity::time, 1, 0} : find_unit(n.unit, Quantity::time).value_or(Unit{});
-      if (unit.quantity != Quantity::time) refuse("--exclude: '" + n.unit + "' is no unit of time");
+      if (unit.quantity != Quantity::time) refuse("--exclude: '" + n.unit + "' is not a unit of time");
       return n.value * unit.factor;
     };
     selection.excluded.push_back({seconds(from), seconds(to)});

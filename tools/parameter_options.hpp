@@ -1,14 +1,22 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "settings.hpp"
+#include "tribofit/fit/identification.hpp"
+#include "tribofit/friction/effects/all.hpp"
 
-/// What is typed as --start and --bounds, for the parameters that the laws with these effects have. Wrong usage
-/// (CLI::ValidationError) where there is no such parameter, with the nearest one, where a value cannot be read, or
+/// The effect of that name. Usage error when there is none, with the nearest known name.
+tribofit::Effect effect_named(const std::string& name);
+/// Usage error: two effects are the same, or cannot act together.
+void refuse_clashes(const std::vector<tribofit::Effect>& effects);
+
+/// What is typed as --start and --bounds, for the parameters that the laws with these effects have. Usage error
+/// (UsageError) where there is no such parameter, with the nearest one, where a value cannot be read, or
 /// where a start lies beyond its bounds.
 std::vector<tribofit::GivenParameter> given_from(const Settings& settings, const std::vector<tribofit::BaseLaw>& laws,
                                                  const std::vector<tribofit::Effect>& effects);
 
-/// What is typed as --cycles and --exclude. Wrong usage where it cannot be read.
+/// What is typed as --cycles and --exclude. Usage error where it cannot be read.
 tribofit::Selection selection_from(const Settings& settings);

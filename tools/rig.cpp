@@ -4,21 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
-#include "settings.hpp"
-#include "tribofit/campaign/run.hpp"
+#include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
-
-constexpr int kDone = 0, kFailed = 1;
 
 constexpr const char* kFooter =
     "Mass, damping and stiffness from N mu = m dv_b/dt + c v_b + k x, whatever the friction law is. Without\n"
@@ -28,7 +25,7 @@ constexpr const char* kFooter =
     "  identify rig --radius 15mm --load 50N trace.csv\n"
     "  identify rig --radius 15mm --load 50N --instruments lab.json --json rig.json trace.csv";
 
-int run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
   IdentifyOptions options = options_from(s);
   options.motion.undo_high_pass = !s.keep_high_pass;
   const Input input = only_input(s, options.read, "rig");
@@ -36,26 +33,26 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   Identification& trace = result.trace;
   trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
   trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
-  if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
-  if (!s.quiet && s.json != "-") print(render_rig(result, terminal_options(s, arguments_for(input, arguments))));
-  if (result.rig.determined) return kDone;
+  deliver(s, {[&] { return render_rig(result, terminal_options(s, arguments_for(input, arguments))); },
+              [&] { return to_json(result, {arguments}); }});
+  if (result.rig.determined) return ExitStatus::done;
   print_error(trace.path + ": the rig could not be identified: " + result.rig.reason);
-  return kFailed;
+  return ExitStatus::failed;
 }
 
 }  // namespace
 
-void add_rig(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("rig", "Mass, damping and stiffness of the rig behind a trace");
-  verb->footer(kFooter);
+void add_rig(const Command& app) {
+  const Command verb = app.add_verb("rig", "Mass, damping and stiffness of the rig behind a trace");
+  verb.footer(kFooter);
   const auto settings = std::make_shared<Settings>();
-  add_input_options(*verb, *settings);
-  verb->add_flag("--keep-high-pass", settings->keep_high_pass,
-                 "Do not undo a high-pass found on the velocity (one that is declared is undone)")
-      ->group("Reading");
-  add_result_options(*verb, *settings);
-  verb->callback([settings, verb, &status] {
-    refuse_empty_values(*verb);
-    status = run(*settings, own_options(*verb));
+  add_input_options(verb, *settings);
+  verb.add_flag("--keep-high-pass", settings->keep_high_pass,
+                "Do not undo a high-pass found on the velocity (one that is declared is undone)")
+      .group("Reading");
+  add_result_options(verb, *settings);
+  verb.on_run([settings, verb] {
+    verb.refuse_empty_values();
+    return run(*settings, verb.own_options());
   });
 }

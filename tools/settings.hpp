@@ -3,10 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
-#include "tribofit/report/pictures.hpp"
-#include "tribofit/report/terminal.hpp"
-
 /// What a user types after `identify`, as typed.
 struct Settings {
   std::vector<std::string> traces;
@@ -14,16 +10,16 @@ struct Settings {
   std::vector<std::string> columns, units;
   std::string second_file;
   std::vector<std::string> continued_in;
-  std::vector<std::string> confirm;  // diagnose: runs that take no part
+  std::vector<std::string> confirm;  // diagnose: runs held back
   bool trim = true;
-  bool keep_high_pass = false;  // rig: one found on the velocity is not undone
+  bool keep_high_pass = false;  // rig: do not undo one found on the velocity
 
   std::vector<std::string> laws, effects, formulas;
   std::string protocol = "both", loss = "squares";
   int starts = 5, folds = 5;
   bool profile = false;
   std::vector<std::string> start_values, bounds;  // of parameters by name
-  std::string cycles;                             // that take part
+  std::string cycles;                             // to fit
   std::vector<std::string> excluded;              // stretches of time
 
   std::string json, csv, report;
@@ -37,15 +33,3 @@ struct Settings {
   unsigned long long seed = 1;
   bool quiet = false;
 };
-
-/// What is typed, in SI and checked. Throws tribofit::InputError that names the option.
-tribofit::IdentifyOptions options_from(const Settings& settings);
-
-/// Files that are read besides the traces.
-std::vector<std::string> input_files(const Settings& settings);
-
-/// That of --figures.
-tribofit::PictureFormat picture_format(const Settings& settings);
-
-/// How to show a result here and now.
-tribofit::TerminalOptions terminal_options(const Settings& settings, const std::vector<std::string>& arguments);

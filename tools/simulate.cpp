@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,7 +16,6 @@
 
 #include "console.hpp"
 #include "machine_options.hpp"
-#include "options.hpp"
 #include "simulated_drive.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -62,7 +58,6 @@ struct Plan {
   bool writes_speed = false;  ///< the record has a channel of the disc's speed
   double preset_radius = 0;   ///< of the published test the defaults come from [m]
 };
-
 
 double number(const std::string& text, const char* option) {
   return parse_quantity(text, Quantity::dimensionless, option);
@@ -284,7 +279,7 @@ std::string json_path(const std::string& csv) {
 
 void run(const Request& request) {
   if (request.out == "-") {
-    throw InputError("--out - is no file", "two files are written, the trace and the truth beside it: give a name");
+    throw InputError("--out - is not a file", "two files are written, the trace and the truth beside it: give a name");
   }
   const std::string truth_path = json_path(request.out);
   const Plan plan = make_plan(request);
@@ -300,9 +295,9 @@ void run(const Request& request) {
   if (request.quiet) return;
   std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
                                  motion.break_away_count(), plan.machine.model.name());
-  text += fmt::format("{}: the truth; over slip the true law leaves {:.6f} (RMSE)\n", truth_path, floor);
+  text += fmt::format("{}: the truth; over slip the true law leaves an RMSE of {:.6f}\n", truth_path, floor);
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
-    text += fmt::format("what was not given is that of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
+    text += fmt::format("values not given are those of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
   }
   std::string known = fmt::format("--radius {:g}mm", 1e3 * plan.drive.radius);
   if (plan.drive.speed.constant) known += fmt::format(" --speed {:g}rpm", plan.speed / kRpm);
@@ -310,14 +305,14 @@ void run(const Request& request) {
   print(text + fmt::format("next: identify {} {}\n", known, request.out));
 }
 
-void add_options(CLI::App& verb, Request& r) {
+void add_options(const Command& verb, Request& r) {
   const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
-    return verb.add_option(flag, value, help)->group(name);
+    return verb.add_option(flag, value, help).group(name);
   };
-  verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json")->required();
-  verb.add_option("--duration", r.duration, "of the record")->capture_default_str();
-  verb.add_option("--rate", r.rate, "samples per second")->capture_default_str();
-  verb.add_option("--seed", r.seed, "of noise and scatter")->capture_default_str();
+  verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
+  verb.add_option("--duration", r.duration, "of the record").show_default();
+  verb.add_option("--rate", r.rate, "samples per second").show_default();
+  verb.add_option("--seed", r.seed, "of noise and scatter").show_default();
   verb.add_flag("--quiet", r.quiet, "print nothing");
   add_machine_options(verb, r.machine);
   const char* rig = "Motion of the disc, load and temperature";
@@ -326,40 +321,38 @@ void add_options(CLI::App& verb, Request& r) {
         "the disc goes forth and back as a sine of this frequency; --speed is its peak");
   group(rig, "--speed-steps", r.speed_steps, "speeds of the disc from times on, e.g. 0s:2rpm,10s:4rpm,20s:-4rpm");
   group(rig, "--pause", r.pauses, "the disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
-      ->take_all()
-      ->expected(1);
+      .one_value_each();
   group(rig, "--load-swing", r.load_swing,
         "a sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
   group(rig, "--temperature", r.temperature,
         "temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
   const char* law = "Scatter of break-away";
-  group(law, "--scatter", r.scatter, "standard deviation of mu_s from cycle to cycle")->capture_default_str();
-  group(law, "--wander", r.wander, "correlation of the scatter between neighbouring cycles")->capture_default_str();
+  group(law, "--scatter", r.scatter, "standard deviation of mu_s from cycle to cycle").show_default();
+  group(law, "--wander", r.wander, "correlation of the scatter between neighbouring cycles").show_default();
   const char* sensors = "Sensors";
-  group(sensors, "--noise-mu", r.noise_mu, "standard deviation of the noise on mu")->capture_default_str();
-  group(sensors, "--noise-v", r.noise_v, "of the noise on v_b")->capture_default_str();
-  group(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white")
-      ->capture_default_str();
-  group(sensors, "--delay", r.delay, "mu is recorded later than v_b")->capture_default_str();
-  group(sensors, "--mass-below", r.mass_below, "mass below the force sensor")->capture_default_str();
-  group(sensors, "--force-bandwidth", r.force_bandwidth, "second-order low-pass on mu; 0: none")->capture_default_str();
-  group(sensors, "--force-damping", r.force_damping, "its damping ratio")->capture_default_str();
-  group(sensors, "--velocity-gain", r.velocity_gain, "vibrometer reading over true velocity")->capture_default_str();
-  group(sensors, "--high-pass", r.high_pass, "first-order high-pass of the vibrometer; 0: none")->capture_default_str();
+  group(sensors, "--noise-mu", r.noise_mu, "standard deviation of the noise on mu").show_default();
+  group(sensors, "--noise-v", r.noise_v, "of the noise on v_b").show_default();
+  group(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white").show_default();
+  group(sensors, "--delay", r.delay, "mu is recorded later than v_b").show_default();
+  group(sensors, "--mass-below", r.mass_below, "mass below the force sensor").show_default();
+  group(sensors, "--force-bandwidth", r.force_bandwidth, "second-order low-pass on mu; 0: none").show_default();
+  group(sensors, "--force-damping", r.force_damping, "its damping ratio").show_default();
+  group(sensors, "--velocity-gain", r.velocity_gain, "vibrometer reading over true velocity").show_default();
+  group(sensors, "--high-pass", r.high_pass, "first-order high-pass of the vibrometer; 0: none").show_default();
 }
 
 }  // namespace
 }  // namespace tribofit
 
-void add_simulate(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("simulate", "Writes a simulated trace with the truth beside it");
-  verb->footer(
+void add_simulate(const Command& app) {
+  const Command verb = app.add_verb("simulate", "Writes a simulated trace with the truth beside it");
+  verb.footer(
       "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out "
       "trace.csv");
   auto request = std::make_shared<tribofit::Request>();
-  tribofit::add_options(*verb, *request);
-  verb->callback([request, &status] {
+  tribofit::add_options(verb, *request);
+  verb.on_run([request] {
     tribofit::run(*request);
-    status = 0;
+    return ExitStatus::done;
   });
 }

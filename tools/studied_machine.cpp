@@ -8,8 +8,10 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis_options.hpp"
+#include "exit_status.hpp"
 #include "inputs.hpp"
-#include "options.hpp"
+#include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/study/identified.hpp"
@@ -18,14 +20,14 @@ using namespace tribofit;
 
 namespace {
 
-/// An effect that does nothing until it has a size would be studied in vain.
+/// An effect without a size changes nothing.
 void refuse_effects_without_size(const std::vector<std::string>& effects) {
   for (const std::string& text : effects) {
     if (text.find('=') != std::string::npos) continue;
     const EffectInfo info = describe(effect_named(text));
     const Parameter& size = info.parameters.front();
     if (size.start == size.neutral) {
-      throw CLI::ValidationError("--effect " + text + " has no size; write it as " + text + ":" + size.name + "=VALUE");
+      throw UsageError("--effect " + text + " has no size; write it as " + text + ":" + size.name + "=VALUE");
     }
   }
 }
@@ -56,66 +58,80 @@ void forget_typed(const MachineRequest& typed, MachineCovariance& covariance) {
   if (!typed.stiffness.empty()) set_exact(covariance.rig, 2);
 }
 
-StudiedMachine identified(const Settings& settings, const MachineRequest& typed) {
-  Settings of_trace = settings;
+[[noreturn]] void refuse(const Identification& trace, const std::string& reason) {
+  throw std::runtime_error(trace.path + ": no machine can be identified: " + reason);
+}
+
+/// The settings of a trace with law and effects as typed for the machine.
+Settings settings_of_trace(Settings settings, const MachineRequest& typed) {
   for (const std::string& effect : typed.effects) {
-    if (effect.find('=') != std::string::npos) {
-      throw CLI::ValidationError("--effect " + effect +
-                                 ": beside a trace its values are identified; name the key alone");
-    }
+    if (effect.find('=') == std::string::npos) continue;
+    throw UsageError("--effect " + effect + ": beside a trace its values are identified; name the key alone");
   }
-  of_trace.effects = typed.effects;
-  of_trace.formulas = typed.formulas;
-  if (!typed.law.empty()) of_trace.laws = {typed.law};
-  of_trace.protocol = "joint";
+  settings.effects = typed.effects;
+  settings.formulas = typed.formulas;
+  if (!typed.law.empty()) settings.laws = {typed.law};
+  settings.protocol = "joint";
+  return settings;
+}
+
+/// Refuses a trace of which no machine can be made.
+void require_machine(const Identification& trace) {
+  constexpr double kLargestGap = 0.15;  // of the plateau; beyond it the stated speed or radius is another
+  if (!trace.analysed || trace.fits.empty())
+    refuse(trace, trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
+  if (!trace.fits[trace.best].converged) refuse(trace, "the fit of the law did not converge");
+  if (trace.motion.disc_velocity.empty() && !(trace.motion.constant_disc_velocity > 0))
+    refuse(trace, "the disc does not turn forwards, or its speed is not known");
+  if (std::abs(trace.motion.plateau_ratio - 1) > kLargestGap) {
+    throw InputError("the plateau of stick does not agree with --speed and --radius, which describe the record",
+                     "leave --speed out; --range and --at study other speeds", {trace.path, 0, ""});
+  }
+}
+
+/// The rig beside a law; one that could not be identified counts where all of it is typed.
+RigFit rig_of(const Fit& fit, const Identification& trace, const Instruments& instruments,
+              const MachineRequest& typed) {
+  RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, instruments);
+  const bool any_typed = !typed.mass.empty() || !typed.stiffness.empty() || !typed.damping.empty();
+  if (rig.per_unit_load && any_typed)
+    throw InputError("no normal force is known, and a mass, stiffness or damping was given", "state --load");
+  const bool damping_typed = !typed.damping.empty() || !typed.damping_ratio.empty();
+  if (!rig.determined && !typed.mass.empty() && !typed.stiffness.empty() && damping_typed) {
+    rig.determined = true;
+    rig.mass.value = rig.stiffness.value = rig.damping.value = 1;
+    rig.covariance = {};
+  }
+  return rig;
+}
+
+StudiedMachine identified(const Settings& settings, const MachineRequest& typed) {
+  const Settings of_trace = settings_of_trace(settings, typed);
   IdentifyOptions options = options_from(of_trace);
   const Input input = only_input(of_trace, options.read, "study");
   options.read = input.trace.read;
   Identification trace = identify(input.trace.path, options);
-  const auto refuse = [&](const std::string& reason) {
-    throw std::runtime_error(input.trace.path + ": no machine can be identified: " + reason);
-  };
-  if (!trace.analysed || trace.fits.empty())
-    refuse(trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
-  const Fit& fit = trace.fits[trace.best];
-  if (!fit.converged) refuse("the fit of the law did not converge");
-  if (trace.motion.disc_velocity.empty() && !(trace.motion.constant_disc_velocity > 0)) {
-    refuse("the disc does not turn forwards, or its speed is not known");
-  }
+  require_machine(trace);
   const bool placed = trace.motion.conditions.radius.known();
   if (!placed) trace.motion.conditions.radius.value = 1;
-  constexpr double kOther = 0.15;
-  if (std::abs(trace.motion.plateau_ratio - 1) > kOther) {
-    throw InputError("the plateau of stick is not that of --speed and --radius, which describe the record",
-                     "leave --speed out; --range and --at study other speeds", {input.trace.path, 0, ""});
-  }
-  RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, options.instruments);
-  const bool any_typed = !typed.mass.empty() || !typed.stiffness.empty() || !typed.damping.empty();
-  if (rig.per_unit_load && any_typed) {
-    throw InputError("no normal force is known, and a mass, stiffness or damping was given", "state --load");
-  }
-  const bool damping_typed = !typed.damping.empty() || !typed.damping_ratio.empty();
-  if (!rig.determined && !typed.mass.empty() && !typed.stiffness.empty() && damping_typed) {
-    rig.determined = true;  // all of it is given
-    rig.mass.value = rig.stiffness.value = rig.damping.value = 1;
-    rig.covariance = {};
-  }
+  const Fit& fit = trace.fits[trace.best];
+  const RigFit rig = rig_of(fit, trace, options.instruments, typed);
   IdentifiedMachine found = identified_machine(fit, rig, trace.motion, trace.segmentation);
-  if (!found.reason.empty()) refuse(found.reason);
+  if (!found.reason.empty()) refuse(trace, found.reason);
 
   StudiedMachine out;
-  out.machine = std::move(found.machine);
+  out.machine = with_typed(std::move(found.machine), typed);
   out.covariance = std::move(found.covariance);
-  out.notes = std::move(found.notes);
-  out.machine = with_typed(std::move(out.machine), typed);
   forget_typed(typed, out.covariance);
   out.source = "identified from " + input.trace.path;
+  out.notes = std::move(found.notes);
   if (rig.per_unit_load) {
     out.notes.push_back(
         "no normal force is known: forces, mass, damping, stiffness and energy are per newton of it "
         "(state --load)");
   }
-  if (!placed) out.notes.push_back("no radius is known: speeds of the disc are omega r, rotational ones mean nothing");
+  if (!placed)
+    out.notes.push_back("no radius is known: disc speeds are given as omega r; rotational speeds have no meaning");
   out.record = std::make_shared<const Identification>(std::move(trace));
   return out;
 }
@@ -126,12 +142,12 @@ StudiedMachine studied_machine(const Settings& settings, const MachineRequest& t
   return settings.traces.empty() ? given(settings, typed) : identified(settings, typed);
 }
 
-std::vector<std::string> shared_arguments(const CLI::App& kind) {
+std::vector<std::string> shared_arguments(const Command& kind) {
   static constexpr std::array<std::string_view, 11> kOwn = {"--range",     "--at",      "--points", "--cycles",
                                                             "--harmonics", "--vary",    "--factor", "--x",
                                                             "--y",         "--measure", "--threads"};
   std::vector<std::string> out;
-  const std::vector<std::string> all = own_options(kind);
+  const std::vector<std::string> all = kind.own_options();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (std::find(kOwn.begin(), kOwn.end(), all[i]) != kOwn.end()) {
       ++i;  // and its value

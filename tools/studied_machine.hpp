@@ -9,4 +9,4 @@
 tribofit::StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed);
 
 /// Options as typed that say which machine is studied, for the next command.
-std::vector<std::string> shared_arguments(const CLI::App& kind);
+std::vector<std::string> shared_arguments(const Command& kind);

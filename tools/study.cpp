@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "machine_options.hpp"
 #include "map_file.hpp"
@@ -73,7 +74,7 @@ double velocity_from(const std::string& text, const Machine& machine, const std:
 std::vector<double> velocities_from(const std::string& text, std::size_t count, const Machine& machine) {
   const std::vector<std::string> ends = split(text, "..");
   if (ends.size() != 2)
-    throw InputError("--range: '" + text + "' is no range", "write it as 1mm/s..20mm/s or 1rpm..8rpm");
+    throw InputError("--range: '" + text + "' is not a range", "write it as 1mm/s..20mm/s or 1rpm..8rpm");
   const double low = velocity_from(ends[0], machine, "--range"), high = velocity_from(ends[1], machine, "--range");
   if (!(high > low)) throw InputError("--range: '" + text + "' does not rise", "write the lower speed first");
   return spread(low, high, count);
@@ -97,65 +98,50 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
       const std::string number = range.substr(colon + 1);
       range.resize(colon);
       if (number.empty() || number.size() > 5 || number.find_first_not_of("0123456789") != std::string::npos) {
-        throw bad("'" + number + "' is no count of values");
+        throw bad("'" + number + "' is not a number of values");
       }
       count = std::stoul(number);
     }
     const std::vector<std::string> ends = split(range, "..");
-    if (ends.size() != 2) throw bad("'" + range + "' is no range");
+    if (ends.size() != 2) throw bad("'" + range + "' is not a range");
     low = parse_quantity(ends[0], axis.variable.quantity, option, axis.variable.unit);
     high = parse_quantity(ends[1], axis.variable.quantity, option, axis.variable.unit);
   } else if (axis.variable.name == "ratio") {
     high = std::min(high, 1.0);
   }
-  if (count < 2 || count > kMost) throw bad(fmt::format("{} values; from 2 to {} can be had", count, kMost));
+  if (count < 2 || count > kMost) throw bad(fmt::format("{} values; 2 to {} are possible", count, kMost));
   if (!(high > low)) throw bad("the range does not rise");
   axis.values = spread(low, high, count);
   return axis;
 }
 
-/// Writes what was asked for, all of it or none, and prints the rest.
-struct Delivery {
-  std::string text;  ///< for people
-  std::function<std::string()> json;
-  std::function<Report()> report;
-  std::function<void(const std::string&)> csv = {};  ///< writes the tables into the folder given
-
-  void write(const Request& r) const {
-    const Settings& s = r.settings;
-    std::optional<WholeFile> file;
-    if (!s.json.empty()) {
-      file.emplace(s.json == "-" ? "/dev/stdout" : s.json);
-      file->write(json());
-      file->finish();
-    }
-    ReportFiles drawn(s, report);
-    if (!s.csv.empty() && csv) csv(s.csv);
-    drawn.commit();
-    if (file) file->commit();
-    if (s.quiet || s.json == "-") return;
-    print(text);
-    if (!s.csv.empty()) print("\nTables in " + s.csv + "\n");
+/// Writes and prints what was asked for of a study.
+void deliver_study(const Request& r, Outputs outputs) {
+  if (!r.settings.csv.empty()) {
+    outputs.text = [text = std::move(outputs.text), folder = r.settings.csv] {
+      return text() + "\nTables in " + folder + "\n";
+    };
   }
-};
+  deliver(r.settings, outputs);
+}
 
 /// What every kind begins with.
 struct Begun {
-  StudiedMachine of;
+  StudiedMachine machine;
   SettleOptions settle;
   TerminalOptions terminal;
   JsonOptions json;
   ReportOptions report;
 };
 
-Begun begin(Request& r, const CLI::App& kind) {
-  refuse_empty_values(kind);
+Begun begin(Request& r, const Command& kind) {
+  kind.refuse_empty_values();
   refuse_overwriting(r.settings, input_files(r.settings));
   Begun out;
   out.settle = settle_options(r);
-  out.json.arguments = own_options(kind);
-  out.of = studied_machine(r.settings, r.machine);
-  out.of.sharpness = out.settle.sharpness;
+  out.json.arguments = kind.own_options();
+  out.machine = studied_machine(r.settings, r.machine);
+  out.machine.sharpness = out.settle.sharpness;
   out.terminal = terminal_options(r.settings, shared_arguments(kind));
   out.terminal.inputs = r.settings.traces;
   out.terminal.csv_written = !r.settings.csv.empty();
@@ -165,46 +151,47 @@ Begun begin(Request& r, const CLI::App& kind) {
 
 template <class Study>
 void deliver(const Request& r, const Begun& b, const Study& study) {
-  Delivery{render_study(b.of, study, b.terminal), [&] { return study_json(b.of, study, b.json); },
-           [&] { return report_of(b.of, study, b.report); },
-           [&](const std::string& folder) { write_study(folder, study); }}
-      .write(r);
+  deliver_study(
+      r, {[&] { return render_study(b.machine, study, b.terminal); },
+          [&] { return study_json(b.machine, study, b.json); }, [&] { return report_of(b.machine, study, b.report); },
+          [&](const std::string& folder) { write_study(folder, study); }});
 }
 
-void run_speed(Request& r, const CLI::App& kind) {
+void run_speed(Request& r, const Command& kind) {
   const Begun b = begin(r, kind);
   SpeedStudyOptions options;
   options.settle = b.settle;
-  options.covariance = b.of.covariance;
+  options.covariance = b.machine.covariance;
   options.threads = r.settings.threads;
   options.points = r.points;
-  if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.of.machine);
-  const SpeedStudy study = study_speed(b.of.machine, options);
+  if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.machine.machine);
+  const SpeedStudy study = study_speed(b.machine.machine, options);
   deliver(r, b, study);
 }
 
-void run_phase(Request& r, const CLI::App& kind) {
+void run_phase(Request& r, const Command& kind) {
   const Begun b = begin(r, kind);
   std::vector<double> velocities;
-  if (!r.range.empty()) velocities = velocities_from(r.range, r.points, b.of.machine);
+  if (!r.range.empty()) velocities = velocities_from(r.range, r.points, b.machine.machine);
   if (!r.at.empty()) {
-    for (const std::string& text : split(r.at, ",")) velocities.push_back(velocity_from(text, b.of.machine, "--at"));
+    for (const std::string& text : split(r.at, ','))
+      velocities.push_back(velocity_from(text, b.machine.machine, "--at"));
   }
-  if (velocities.empty()) velocities = {b.of.machine.disc_velocity()};
+  if (velocities.empty()) velocities = {b.machine.machine.disc_velocity()};
   PortraitOptions options;
   options.cycles = r.cycles;
   options.settle = b.settle;
-  const std::vector<Portrait> study = study_phase(b.of.machine, velocities, options);
+  const std::vector<Portrait> study = study_phase(b.machine.machine, velocities, options);
   deliver(r, b, study);
 }
 
-void run_response(Request& r, const CLI::App& kind) {
+void run_response(Request& r, const Command& kind) {
   const Begun b = begin(r, kind);
-  const Response study = study_response(b.of.machine, r.harmonics, b.settle);
+  const Response study = study_response(b.machine.machine, r.harmonics, b.settle);
   deliver(r, b, study);
 }
 
-void run_sensitivity(Request& r, const CLI::App& kind) {
+void run_sensitivity(Request& r, const Command& kind) {
   const Begun b = begin(r, kind);
   SensitivityOptions options;
   options.variables = r.vary;
@@ -212,14 +199,15 @@ void run_sensitivity(Request& r, const CLI::App& kind) {
   options.count = r.points;
   options.settle = b.settle;
   options.threads = r.settings.threads;
-  const std::vector<Sensitivity> study = study_sensitivity(b.of.machine, options);
+  const std::vector<Sensitivity> study = study_sensitivity(b.machine.machine, options);
   deliver(r, b, study);
 }
 
-void run_map(Request& r, const CLI::App& kind) {
+void run_map(Request& r, const Command& kind) {
   const Begun b = begin(r, kind);
   const MeasureInfo& measure = measure_named(r.measure);
-  MapRequest request{b.of.machine, axis_from(r.x, b.of.machine, "--x"), axis_from(r.y, b.of.machine, "--y"), b.settle};
+  MapRequest request{b.machine.machine, axis_from(r.x, b.machine.machine, "--x"),
+                     axis_from(r.y, b.machine.machine, "--y"), b.settle};
   check_map(request);
   MapFile file(r.settings.csv, request, r.again);
   ProgressLine progress;
@@ -231,44 +219,39 @@ void run_map(Request& r, const CLI::App& kind) {
     return true;
   });
   file.finish();
-  Delivery{render_map(b.of, request, file.rows(), measure, b.terminal),
-           [&] { return map_json(b.of, request, file.rows(), b.json); },
-           [&] { return report_of(b.of, request, file.rows(), b.report); }}
-      .write(r);
+  deliver_study(r, {[&] { return render_map(b.machine, request, file.rows(), measure, b.terminal); },
+                    [&] { return map_json(b.machine, request, file.rows(), b.json); },
+                    [&] { return report_of(b.machine, request, file.rows(), b.report); }});
 }
 
-CLI::App* add_kind(CLI::App& study, const char* name, const char* help, const std::shared_ptr<Request>& r,
-                   void (*run)(Request&, const CLI::App&), int& status) {
-  CLI::App* kind = study.add_subcommand(name, help);
-  kind->get_formatter()->column_width(30);
-  add_input_options(*kind, r->settings);
-  add_machine_numbers(*kind, r->machine);
-  kind->add_option("--sharpness", r->sharpness,
-                   "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
-  kind->add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
-      ->check(CLI::IsMember({"stick", "rest", "sliding"}));
-  add_output_options(*kind, r->settings);
-  add_report_option(*kind, r->settings);
-  kind->get_option("--csv")->description("Write the tables of the study into this folder");
-  kind->get_option("TRACE")->description("One trace (CSV) from which the machine is identified");
-  kind->callback([r, kind, run, &status] {
-    run(*r, *kind);
-    status = 0;
+Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<Request>& r,
+                 void (*run)(Request&, const Command&)) {
+  const Command kind = study.add_verb(name, help);
+  kind.narrow_help();
+  add_input_options(kind, r->settings);
+  add_machine_numbers(kind, r->machine);
+  kind.add_option("--sharpness", r->sharpness,
+                  "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
+  kind.add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
+      .one_of({"stick", "rest", "sliding"});
+  add_output_options(kind, r->settings);
+  add_report_option(kind, r->settings);
+  kind.option("--csv").describe("Write the tables of the study into this folder");
+  kind.option("TRACE").describe("One trace (CSV) from which the machine is identified");
+  kind.on_run([r, kind, run] {
+    run(*r, kind);
+    return ExitStatus::done;
   });
   return kind;
 }
 
 }  // namespace
 
-void add_study(CLI::App& app, int& status) {
-  CLI::App* study = app.add_subcommand("study", "What a machine does: critical speed, portraits, sensitivities, maps");
-  study->require_subcommand(0, 1);
-  study->callback([study] {
-    if (!study->get_subcommands().empty()) return;
-    throw CLI::ValidationError("name what to study: speed, phase, response, sensitivity or map");
-  });
-  study->footer(
-      "A machine is a rig with its friction: identified from a trace, or given, or both (what is given beats what was\n"
+void add_study(const Command& app) {
+  const Command study = app.add_verb("study", "What a machine does: critical speed, portraits, sensitivities, maps");
+  study.requires_kind("name what to study: speed, phase, response, sensitivity or map");
+  study.footer(
+      "A machine is a rig with its friction: identified from a trace, or given, or both (given values replace those\n"
       "identified). Without either it is the published test at the radius given. Beside a trace --radius, --speed and\n"
       "--load describe the record; --range and --at study other speeds.\n\n"
       "Examples:\n"
@@ -279,36 +262,33 @@ void add_study(CLI::App& app, int& status) {
   const auto request = [] { return std::make_shared<Request>(); };
 
   auto r = request();
-  CLI::App* kind =
-      add_kind(*study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed, status);
-  kind->add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm");
-  kind->add_option("--points", r->points, "Number of speeds (default 40)")->check(CLI::Range(2, 10000));
+  Command kind = add_kind(study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed);
+  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm");
+  kind.add_option("--points", r->points, "Number of speeds (default 40)").range(2, 10000);
 
   r = request();
-  kind = add_kind(*study, "phase", "Phase portraits", r, run_phase, status);
-  kind->add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)");
-  kind->add_option("--range", r->range, "Speeds, 1mm/s..20mm/s");
-  kind->add_option("--points", r->points, "Number of speeds in --range")->check(CLI::Range(2, 1000));
-  kind->add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)")->check(CLI::Range(1, 10000));
+  kind = add_kind(study, "phase", "Phase portraits", r, run_phase);
+  kind.add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)");
+  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s");
+  kind.add_option("--points", r->points, "Number of speeds in --range").range(2, 1000);
+  kind.add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)").range(1, 10000);
 
   r = request();
-  kind = add_kind(*study, "response", "A(omega), and spectra of force and displacement", r, run_response, status);
-  kind->add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)")->check(CLI::Range(1, 1000));
+  kind = add_kind(study, "response", "A(omega), and spectra of force and displacement", r, run_response);
+  kind.add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)").range(1, 1000);
 
   r = request();
   r->points = 21;
-  kind = add_kind(*study, "sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity,
-                  status);
-  kind->add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)")->allow_extra_args(false);
-  kind->add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)")
-      ->check(CLI::Range(1.0001, 1e6));
-  kind->add_option("--points", r->points, "Values of a sweep (default 21)")->check(CLI::Range(2, 10000));
+  kind = add_kind(study, "sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity);
+  kind.add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)").one_value_each();
+  kind.add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)").range(1.0001, 1e6);
+  kind.add_option("--points", r->points, "Values of a sweep (default 21)").range(2, 10000);
 
   r = request();
-  kind = add_kind(*study, "map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map, status);
-  kind->add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100")->required();
-  kind->add_option("--y", r->y, "Down: the same")->required();
-  kind->add_option("--measure", r->measure,
-                   "The one printed (all are written): peak-to-peak (default), stick-time, ...");
-  kind->add_flag("--again", r->again, "Compute rows that are known already, too");
+  kind = add_kind(study, "map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map);
+  kind.add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100").required();
+  kind.add_option("--y", r->y, "Down: the same").required();
+  kind.add_option("--measure", r->measure,
+                  "The one printed (all are written): peak-to-peak (default), stick-time, ...");
+  kind.add_flag("--again", r->again, "Compute rows that are known already, too");
 }

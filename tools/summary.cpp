@@ -6,15 +6,14 @@
 #include <optional>
 #include <system_error>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
-#include "inputs.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/comparison.hpp"
 #include "tribofit/report/figures.hpp"
 #include "tribofit/report/pooled.hpp"
 #include "tribofit/report/whole_file.hpp"
-#include "verbs.hpp"
 
 using namespace tribofit;
 
@@ -23,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kComparison = "comparison.csv";
-constexpr int kFailed = 1, kUsage = 2, kBadInput = 3;
 
 std::optional<ComparisonReport> comparison_of(const Settings& s, const ResultReader& results,
                                               std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
@@ -39,12 +37,12 @@ Sharing sharing_from(const Settings& s) {
     for (const std::string& text : s.share) sharing.common.push_back(share_from(text));
     for (const std::string& text : s.vary) sharing.common.push_back(vary_from(text));
   } catch (const InputError& error) {
-    throw CLI::ValidationError(error.what());
+    throw UsageError(error.what());
   }
   for (std::size_t a = 0; a < sharing.common.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (sharing.common[a].parameter != sharing.common[b].parameter) continue;
-      throw CLI::ValidationError("'" + sharing.common[a].parameter + "' is named twice in --share and --vary");
+      throw UsageError("'" + sharing.common[a].parameter + "' is named twice in --share and --vary");
     }
   }
   return sharing;
@@ -54,7 +52,7 @@ void check_comparison(const Settings& s, const std::string& results) {
   if (s.compare.empty()) return;
   for (const char* name : {kComparison, "pooled.csv", "summary.csv"}) {
     if (!same_file(s.compare, (fs::path(results) / name).string())) continue;
-    throw CLI::ValidationError("--compare names a file that these results overwrite; copy it elsewhere");
+    throw UsageError("--compare names a file that these results would overwrite; copy it elsewhere");
   }
   if (std::error_code ignored; !fs::is_regular_file(s.compare, ignored) || !std::ifstream(s.compare)) {
     throw InputError("--compare: the file cannot be read", "name a table as data/published/table4.csv",
@@ -72,13 +70,13 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   try {
     if (!sharing.common.empty()) pooled.shared = fit_shared(runs, sharing);
   } catch (const InputError& error) {
-    out.refused.push_back({groups.empty() ? kFailed : kUsage, error.what()});
+    out.refused.push_back({groups.empty() ? ExitStatus::failed : ExitStatus::wrong_usage, error.what()});
   }
   std::optional<ComparisonReport> comparison;
   try {
     comparison = comparison_of(s, results, runs, groups);
   } catch (const InputError& error) {
-    out.refused.push_back({kBadInput, error.what()});
+    out.refused.push_back({ExitStatus::bad_input, error.what()});
   }
   write_pooled(results.folder(), runs, pooled);
   write_figures(results, runs, groups);
@@ -100,11 +98,11 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   return out;
 }
 
-int complain_of(const Summarised& all) {
-  int status = 0;
+ExitStatus print_refusals(const Summarised& all) {
+  ExitStatus status = ExitStatus::done;
   for (const Summarised::Refusal& refusal : all.refused) {
     print_error(refusal.why);
-    status = std::max(status, refusal.status);
+    status = worse(status, refusal.status);
   }
   return status;
 }

@@ -3,22 +3,24 @@
 #include <string>
 #include <vector>
 
+#include "exit_status.hpp"
 #include "settings.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/campaign/sharing.hpp"
 #include "tribofit/report/campaign.hpp"
+#include "tribofit/report/report.hpp"
 
-/// Wrong usage or tribofit::InputError: a table of earlier values that cannot be read, or that would be overwritten by
+/// Usage error or tribofit::InputError: a table of earlier values that cannot be read, or that would be overwritten by
 /// what is written into the folder of results.
 void check_comparison(const Settings& settings, const std::string& results);
 
-/// What --share and --vary say. Throws CLI::ValidationError.
+/// What --share and --vary say. Throws UsageError.
 tribofit::Sharing sharing_from(const Settings& settings);
 
 /// A campaign's summary, and what was asked beyond it and could not be done.
 struct Summarised {
   struct Refusal {
-    int status = 0;  ///< for the exit
+    ExitStatus status = ExitStatus::done;
     std::string why;
   };
   tribofit::CampaignSummary summary;
@@ -32,5 +34,5 @@ struct Summarised {
 Summarised summarise(const Settings& settings, const tribofit::ResultReader& results,
                      const tribofit::ReportOptions& shown);
 
-/// Says what could not be done; the exit status for it, 0 where there is nothing.
-int complain_of(const Summarised& all);
+/// Prints what could not be done; the exit status for it.
+ExitStatus print_refusals(const Summarised& all);

@@ -5,30 +5,28 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
 #include "results.hpp"
-#include "settings.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/whole_file.hpp"
+#include "tribofit/study/twin.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
 
-constexpr int kDone = 0, kFailed = 1;
-
 constexpr const char* kFooter =
     "Fits the law and the rig, simulates the same conditions for as long as the record, takes the simulated\n"
-    "record through the same steps and lays the motions side by side. With --effect there is a twin of the bare\n"
+    "record through the same steps and compares the motions. With --effect there is a twin of the bare\n"
     "law and one of the law with the effects.\n\n"
     "Examples:\n"
     "  identify twin --radius 15mm --load 50N trace.csv\n"
     "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
 
-int run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   const Input input = only_input(s, options.read, "twin");
   TwinIdentification result;
@@ -42,28 +40,29 @@ int run(const Settings& s, const std::vector<std::string>& arguments) {
   Identification& trace = result.trace;
   trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
   trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
-  ReportFiles drawn(s, [&] { return report_of(result, {arguments, {input.trace.path}, !s.instruments.empty()}); });
-  if (!s.json.empty()) write_whole(s.json == "-" ? "/dev/stdout" : s.json, to_json(result, {arguments}));
-  drawn.commit();
-  if (!s.quiet && s.json != "-") print(render_twin(result, terminal_options(s, arguments_for(input, arguments))));
-  if (result.twin.reason.empty()) return kDone;
+  deliver(s, {[&] { return render_twin(result, terminal_options(s, arguments_for(input, arguments))); },
+              [&] { return to_json(result, {arguments}); },
+              [&] {
+                return report_of(result, {arguments, {input.trace.path}, !s.instruments.empty()});
+              }});
+  if (result.twin.reason.empty()) return ExitStatus::done;
   print_error(trace.path + ": there is no twin: " + result.twin.reason);
-  return kFailed;
+  return ExitStatus::failed;
 }
 
 }  // namespace
 
-void add_twin(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("twin", "The motion that law and rig predict beside the measured one");
-  verb->footer(kFooter);
+void add_twin(const Command& app) {
+  const Command verb = app.add_verb("twin", "The motion that law and rig predict beside the measured one");
+  verb.footer(kFooter);
   const auto settings = std::make_shared<Settings>();
-  add_input_options(*verb, *settings);
-  add_model_options(*verb, *settings);
-  add_result_options(*verb, *settings);
-  add_report_option(*verb, *settings);
-  verb->callback([settings, verb, &status] {
-    refuse_empty_values(*verb);
+  add_input_options(verb, *settings);
+  add_model_options(verb, *settings);
+  add_result_options(verb, *settings);
+  add_report_option(verb, *settings);
+  verb.on_run([settings, verb] {
+    verb.refuse_empty_values();
     check_seed(*settings);
-    status = run(*settings, own_options(*verb));
+    return run(*settings, verb.own_options());
   });
 }

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include "command.hpp"
 
-/// Each verb adds its options to `app` and leaves the exit status of its run in `status`.
-/// A verb may throw tribofit::InputError; main() prints it.
-void add_identify(CLI::App& app, int& status);
-void add_manifest(CLI::App& app, int& status);
-void add_merge(CLI::App& app, int& status);
-void add_diagnose(CLI::App& app, int& status);
-void add_explore(CLI::App& app, int& status);
-void add_rig(CLI::App& app, int& status);
-void add_twin(CLI::App& app, int& status);
-void add_effects(CLI::App& app, int& status);
-void add_simulate(CLI::App& app, int& status);
-void add_study(CLI::App& app, int& status);
+/// Each verb adds its options and what it runs. It may throw UsageError and tribofit::InputError, which main() prints.
+void add_identify(const Command& app);
+void add_manifest(const Command& app);
+void add_merge(const Command& app);
+void add_diagnose(const Command& app);
+void add_explore(const Command& app);
+void add_rig(const Command& app);
+void add_twin(const Command& app);
+void add_effects(const Command& app);
+void add_simulate(const Command& app);
+void add_study(const Command& app);

@@ -14,6 +14,7 @@
 
 #include "ingest/content_hash.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/pipeline.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {

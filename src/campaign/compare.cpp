@@ -110,7 +110,7 @@ EarlierComparison compare_with(const EarlierTable& table, std::span<const Pooled
     }
     const std::string what = earlier.column + (earlier.law.empty() ? "" : " of the " + earlier.law + " law");
     if (some_group && out.values.size() == before && columns_without.insert(what).second) {
-      out.unmatched.push_back(fmt::format("line {}: column {}: no fit has it", earlier.line, what));
+      out.unmatched.push_back(fmt::format("line {}: column {}: no fit holds it", earlier.line, what));
     }
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "order.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
@@ -27,7 +27,7 @@ ConditionColumn column_of(std::span<const RunResult> runs, const char* name, con
 std::vector<ConditionColumn> condition_columns(std::span<const RunResult> runs) {
   std::vector<ConditionColumn> out = {
       column_of(runs, "radius", "mm", 1e-3, &Conditions::radius),
-      column_of(runs, "speed", "rpm", 2 * std::numbers::pi / 60, &Conditions::speed),
+      column_of(runs, "speed", "rpm", kRpm, &Conditions::speed),
       column_of(runs, "load", "N", 1, &Conditions::load),
   };
   for (std::size_t r = 0; r < runs.size(); ++r) {

@@ -104,7 +104,7 @@ class EarlierReader {
     const auto [end, error] = std::from_chars(plain.data() + begin, plain.data() + plain.size(), value);
     if (is_number(plain, '.') && error == std::errc{} && std::isfinite(value)) return value;
     if (error == std::errc::result_out_of_range) {
-      refuse(fmt::format("'{}' is beyond what a number can hold", text), "correct it", line, column);
+      refuse(fmt::format("'{}' is too large for a number", text), "correct it", line, column);
     }
     refuse(fmt::format("'{}' is not a number", text), "write a number, or leave the cell empty", line, column);
   }
@@ -140,7 +140,8 @@ class EarlierReader {
     const auto known = columns_.find(name);
     if (!known) {
       if (unknown_.insert(name).second) {
-        table_.notes.push_back(fmt::format("line {}: '{}' is no parameter or measure of these runs", value.line, name));
+        table_.notes.push_back(
+            fmt::format("line {}: '{}' is not a parameter or measure of these runs", value.line, name));
       }
       return;
     }

@@ -221,12 +221,12 @@ std::optional<std::size_t> EarlierColumns::error_of(std::size_t value) const {
 }
 
 void EarlierColumns::note_unknown(const EarlierColumn& column) {
-  static const std::vector<std::string> told = {"run", "runs", "file", "repeat", "status", "message", "note", "notes"};
-  if (column.title.empty() || has(told, column.title)) return;
+  static const std::vector<std::string> known = {"run", "runs", "file", "repeat", "status", "message", "note", "notes"};
+  if (column.title.empty() || has(known, column.title)) return;
   std::vector<std::string> names;
   for (const KnownQuantity& known : known_) names.push_back(known.name);
   const std::string nearest = likely_name(column.title, names);
-  notes_.push_back(fmt::format("column {} is no parameter, measure or condition of these runs{}", column.title,
+  notes_.push_back(fmt::format("column {} is not a parameter, measure or condition of these runs{}", column.title,
                                nearest.empty() ? "" : " (is it " + nearest + "?)"));
 }
 

@@ -116,7 +116,7 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
       campaign.runs.push_back(options.pattern ? named_run(path, *options.pattern, read) : run_of(path, read));
     }
     if (!traces.left_out.empty()) {
-      campaign.notes.push_back("left out of " + folder + ", because --csv wrote them: " + traces.left_out);
+      campaign.notes.push_back("not read from " + folder + ", because --csv wrote them: " + traces.left_out);
       campaign.runs[first].notes.push_back(campaign.notes.back());  // said once
     }
   }

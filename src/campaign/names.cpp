@@ -112,7 +112,7 @@ NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
       add_field(pattern.substr(at + 1, end - at - 1), std::string_view(pattern).substr(end + 1), expression);
       at = end;
     } else if (pattern[at] == '}') {
-      throw InputError("--pattern: a } stands alone", kAdvice);
+      throw InputError("--pattern: a } has no {", kAdvice);
     } else {
       expression += escaped(pattern[at]);
     }
@@ -122,7 +122,8 @@ NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
 }
 
 void NamePattern::add_field(const std::string& name, std::string_view behind, std::string& expression) {
-  if (name.empty() || name == "file") throw InputError("--pattern: {" + name + "} is no name of a condition", kAdvice);
+  if (name.empty() || name == "file")
+    throw InputError("--pattern: {" + name + "} is not the name of a condition", kAdvice);
   if (std::any_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; })) {
     throw InputError("--pattern: {" + name + "} is given twice", "use each name once; * stands for anything");
   }

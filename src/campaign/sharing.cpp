@@ -65,7 +65,7 @@ Member member_of(std::size_t run, const ResultFit& fit) {
       const bool both = out.usable[static_cast<std::size_t>(i)] && out.usable[static_cast<std::size_t>(j)];
       if (both) out.covariance(i, j) = fit.covariance[static_cast<std::size_t>(i * n + j)];
     }
-    if (!(out.covariance(i, i) > 0)) out.covariance(i, i) = 1;  // takes no part
+    if (!(out.covariance(i, i) > 0)) out.covariance(i, i) = 1;  // not used
   }
   out.covariance = made_positive(out.covariance);
   return out;
@@ -197,11 +197,95 @@ void note_scatter(const SharedFit::Parameter& common, std::vector<std::string>& 
     if (!(value.between > kMany * own)) continue;
     const std::string where = common.condition.empty() ? "" : " at " + common.condition + " " + common.levels[l];
     notes.push_back(
-        fmt::format("{}{} differs from run to run by {:.2g}{}, many times what the errors of the runs allow: they "
-                    "hardly have it in "
-                    "common; --vary {}:CONDITION gives one value for each value of a condition",
+        fmt::format("{}{} differs from run to run by {:.2g}{}, many times what the errors of the runs allow, so "
+                    "it is hardly common to them; --vary {}:CONDITION gives one value for each value of a condition",
                     common.name, where, value.between, value.unit == "1" ? "" : " " + value.unit, common.name));
   }
+}
+
+/// One joint fit of each law, to know its parameters.
+std::vector<const ResultFit*> fitted_laws(std::span<const RunResult> runs) {
+  std::vector<const ResultFit*> laws;
+  for (const RunResult& run : runs) {
+    for (const ResultFit& fit : run.fits) {
+      const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
+      if (fit.protocol != "joint" || fit.covariance.empty() || std::any_of(laws.begin(), laws.end(), same)) continue;
+      laws.push_back(&fit);
+    }
+  }
+  return laws;
+}
+
+/// Refuses a parameter that no law has, or that is named twice.
+void require_known(const Sharing& sharing, const std::vector<const ResultFit*>& laws) {
+  std::vector<std::string> known;
+  for (const ResultFit* law : laws) {
+    for (const ResultParameter& p : law->parameters) {
+      if (std::find(known.begin(), known.end(), name_of(p)) == known.end()) known.push_back(name_of(p));
+    }
+  }
+  for (std::size_t c = 0; c < sharing.common.size(); ++c) {
+    const std::string& parameter = sharing.common[c].parameter;
+    if (std::find(known.begin(), known.end(), parameter) == known.end())
+      refuse("no law has a parameter '" + parameter + "'", parameter, known);
+    for (std::size_t d = 0; d < c; ++d) {
+      if (sharing.common[d].parameter != parameter) continue;
+      throw InputError("'" + parameter + "' is named twice in --share and --vary", "name it once");
+    }
+  }
+}
+
+/// For every common parameter its condition in every run, as text; empty texts where it has none.
+std::vector<std::vector<std::string>> condition_texts(const Sharing& sharing, std::span<const RunResult> runs) {
+  const std::vector<ConditionColumn> conditions = condition_columns(runs);
+  std::vector<std::vector<std::string>> texts;
+  for (const Sharing::Common& common : sharing.common) {
+    texts.emplace_back(runs.size());
+    if (common.condition.empty()) continue;
+    const auto at = std::find_if(conditions.begin(), conditions.end(),
+                                 [&](const ConditionColumn& column) { return column.name == common.condition; });
+    if (at == conditions.end()) {
+      std::vector<std::string> names;
+      for (const ConditionColumn& column : conditions) names.push_back(column.name);
+      refuse("no run states a condition '" + common.condition + "'", common.condition, names);
+    }
+    texts.back() = at->text;
+  }
+  return texts;
+}
+
+/// The joint fit of one law; without common parameters where the law has none of them.
+SharedFit fit_law(const ResultFit& like, std::span<const RunResult> runs, const Sharing& sharing,
+                  const std::vector<std::vector<std::string>>& texts) {
+  SharedFit fit;
+  fit.law = like.law;
+  for (const ResultParameter& p : like.parameters) {
+    fit.names.push_back(name_of(p));
+    fit.units.push_back(p.unit);
+  }
+  std::vector<Member> members;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ResultFit* own = runs[r].fit(like.law, "joint");
+    if (own != nullptr && own->covariance.size() == fit.names.size() * fit.names.size()) {
+      members.push_back(member_of(r, *own));
+    } else if (runs[r].run.status == RunStatus::ok) {
+      fit.notes.push_back(fmt::format("{} has no {} fit with errors and is not used", runs[r].run.name, like.law));
+    }
+  }
+  std::vector<Place> places;
+  fit.common.reserve(sharing.common.size());  // places point into it
+  for (std::size_t c = 0; c < sharing.common.size(); ++c) {
+    const auto at = std::find(fit.names.begin(), fit.names.end(), sharing.common[c].parameter);
+    if (at == fit.names.end()) continue;  // of the other law
+    Place place{at - fit.names.begin(), {}, nullptr};
+    fit.common.push_back(pool_levels(sharing.common[c], members, place.parameter, texts[c], runs, like, place.level));
+    place.found = &fit.common.back();
+    places.push_back(std::move(place));
+  }
+  if (fit.common.empty()) return fit;
+  for (const SharedFit::Parameter& common : fit.common) note_scatter(common, fit.notes);
+  for (std::size_t i = 0; i < members.size(); ++i) fit.runs.push_back(of_run(places, members, i));
+  return fit;
 }
 
 }  // namespace
@@ -222,76 +306,14 @@ Sharing::Common vary_from(const std::string& text) {
 }
 
 std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing) {
-  const std::vector<ConditionColumn> conditions = condition_columns(runs);
-  std::vector<const ResultFit*> laws;  // one fit of each law, to know its parameters
-  for (const RunResult& run : runs) {
-    for (const ResultFit& fit : run.fits) {
-      const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
-      if (fit.protocol != "joint" || fit.covariance.empty() || std::any_of(laws.begin(), laws.end(), same)) continue;
-      laws.push_back(&fit);
-    }
-  }
-  if (laws.empty()) throw InputError("no run was fitted, so that there is nothing to share", "see why in the summary");
-  std::vector<std::string> known;
-  for (const ResultFit* law : laws) {
-    for (const ResultParameter& p : law->parameters) {
-      if (std::find(known.begin(), known.end(), name_of(p)) == known.end()) known.push_back(name_of(p));
-    }
-  }
-  std::vector<std::vector<std::string>> texts;  // of every common parameter: its condition in every run
-  for (std::size_t c = 0; c < sharing.common.size(); ++c) {
-    const Sharing::Common& common = sharing.common[c];
-    if (std::find(known.begin(), known.end(), common.parameter) == known.end()) {
-      refuse("no law has a parameter '" + common.parameter + "'", common.parameter, known);
-    }
-    for (std::size_t d = 0; d < c; ++d) {
-      if (sharing.common[d].parameter != common.parameter) continue;
-      throw InputError("'" + common.parameter + "' is named twice in --share and --vary", "name it once");
-    }
-    texts.emplace_back(runs.size());
-    if (common.condition.empty()) continue;
-    const auto at = std::find_if(conditions.begin(), conditions.end(),
-                                 [&](const ConditionColumn& column) { return column.name == common.condition; });
-    if (at == conditions.end()) {
-      std::vector<std::string> names;
-      for (const ConditionColumn& column : conditions) names.push_back(column.name);
-      refuse("no run states a condition '" + common.condition + "'", common.condition, names);
-    }
-    texts.back() = at->text;
-  }
-
+  const std::vector<const ResultFit*> laws = fitted_laws(runs);
+  if (laws.empty()) throw InputError("no run was fitted, so there is nothing to share", "see why in the summary");
+  require_known(sharing, laws);
+  const std::vector<std::vector<std::string>> texts = condition_texts(sharing, runs);
   std::vector<SharedFit> out;
   for (const ResultFit* like : laws) {
-    SharedFit fit;
-    fit.law = like->law;
-    for (const ResultParameter& p : like->parameters) {
-      fit.names.push_back(name_of(p));
-      fit.units.push_back(p.unit);
-    }
-    std::vector<Member> members;
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      const ResultFit* own = runs[r].fit(like->law, "joint");
-      if (own != nullptr && own->covariance.size() == fit.names.size() * fit.names.size()) {
-        members.push_back(member_of(r, *own));
-      } else if (runs[r].run.status == RunStatus::ok) {
-        fit.notes.push_back(fmt::format("{} has no {} fit with errors and takes no part", runs[r].run.name, like->law));
-      }
-    }
-    std::vector<Place> places;
-    fit.common.reserve(sharing.common.size());  // places point into it
-    for (std::size_t c = 0; c < sharing.common.size(); ++c) {
-      const auto at = std::find(fit.names.begin(), fit.names.end(), sharing.common[c].parameter);
-      if (at == fit.names.end()) continue;  // of the other law
-      Place place{at - fit.names.begin(), {}, nullptr};
-      fit.common.push_back(
-          pool_levels(sharing.common[c], members, place.parameter, texts[c], runs, *like, place.level));
-      place.found = &fit.common.back();
-      places.push_back(std::move(place));
-    }
-    if (fit.common.empty()) continue;
-    for (const SharedFit::Parameter& common : fit.common) note_scatter(common, fit.notes);
-    for (std::size_t i = 0; i < members.size(); ++i) fit.runs.push_back(of_run(places, members, i));
-    out.push_back(std::move(fit));
+    SharedFit fit = fit_law(*like, runs, sharing, texts);
+    if (!fit.common.empty()) out.push_back(std::move(fit));
   }
   return out;
 }

@@ -5,13 +5,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <set>
 
 #include "condition_columns.hpp"
 #include "statistics/meta_regression.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -40,7 +40,7 @@ ConditionColumn sliding_speed(const std::vector<ConditionColumn>& columns, std::
   if (radius == columns.end() || speed == columns.end()) return out;
   for (std::size_t r = 0; r < runs; ++r) {
     if (radius->number[r] && speed->number[r]) {
-      out.number[r] = *radius->number[r] * *speed->number[r] * 2 * std::numbers::pi / 60;
+      out.number[r] = *radius->number[r] * *speed->number[r] * kRpm;
     }
   }
   return out;
@@ -144,7 +144,7 @@ std::string sentence(const Confounded& pair) {
   const std::string both = fmt::format("{} and {} change together (correlation {:.2f})", pair.a,
                                        order ? "the order of the runs" : pair.b, pair.correlation);
   if (order)
-    return both + ": wear or running-in may pass for a trend over " + pair.a + "; make the runs in random order";
+    return both + ": wear or running-in may look like a trend over " + pair.a + "; make the runs in random order";
   if (pair.b == "sliding speed") {
     return both + ": a trend over one may be one over the other; run the same sliding speed at two radii";
   }
@@ -186,7 +186,7 @@ Trends find_trends(std::span<const RunResult> runs) {
       std::any_of(runs.begin(), runs.end(), [](const RunResult& run) { return run.order.has_value(); });
   if (!ordered && !out.trends.empty()) {
     out.warnings.push_back(
-        "the order of the runs is not stated: wear may pass for a trend; add a column 'order' or 'date' to the "
+        "the order of the runs is not stated: wear may look like a trend; add a column 'order' or 'date' to the "
         "manifest");
   }
   return out;

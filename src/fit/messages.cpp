@@ -38,19 +38,18 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
     for (const std::size_t k : group) {
       names += (names.empty() ? "" : k == group.back() ? " and " : ", ") + shown_name(fit.parameters[k]);
     }
-    fit.messages.push_back(names +
-                           " are not determined: the data fix a combination of them only, and no interval holds "
-                           "for one alone");
+    fit.messages.push_back(
+        names + " are not determined: the data fix only a combination of them, so none has an interval of its own");
   }
   add_correlations(fit);
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
     if (unconstrained[k] && fit.protocol == Protocol::joint) {
-      fit.messages.push_back(fmt::format("{} was not moved: no sample depends on it", shown_name(p)));
+      fit.messages.push_back(fmt::format("{} is unconstrained: no sample depends on it", shown_name(p)));
     } else if (p.at_bound) {
       const bool low = std::abs(p.value / p.parameter.si - p.parameter.lower) <
                        std::abs(p.value / p.parameter.si - p.parameter.upper);
-      fit.messages.push_back(fmt::format("{} sits at its {} bound of {:g}{}", shown_name(p), low ? "lower" : "upper",
+      fit.messages.push_back(fmt::format("{} is at its {} bound of {:g}{}", shown_name(p), low ? "lower" : "upper",
                                          low ? p.parameter.lower : p.parameter.upper,
                                          p.parameter.unit == "1" ? "" : " " + p.parameter.unit));
     }
@@ -65,8 +64,8 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
   const double missing = 1 - stribeck_shape(model.law(), fit.parameters[2].value * fit.slowest);
   if (missing > 0.1) {
     fit.messages.push_back(
-        fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the way to mu_k "
-                    "is already gone",
+        fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the drop to mu_k "
+                    "is already past",
                     fit.slowest * 1e3, 100 * missing));
   }
   const double reached = stribeck_shape(model.law(), fit.parameters[2].value * fit.fastest);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "slip_ranges.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -13,133 +14,11 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show a curve
-constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
-
 /// Median number of samples of the slips.
 std::size_t median_size(const std::vector<Observations::SlipObservation>& slips) {
   std::vector<double> sizes;
   for (const auto& slip : slips) sizes.push_back(static_cast<double>(slip.samples.size()));
   return sizes.empty() ? 0 : static_cast<std::size_t>(std::round(median(std::move(sizes))));
-}
-
-/// Mean friction over two milliseconds of the stick after a slip; NaN where no stick follows.
-double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
-  constexpr double kGap = 0.5e-3, kMean = 2e-3;  // [s]
-  const Cycle& cycle = segmentation.cycles[segment];
-  if (!cycle.slip_complete) return std::numeric_limits<double>::quiet_NaN();
-  // The stick after the last slip belongs to no cycle: it has no slip.
-  const bool last = segment + 1 >= segmentation.cycles.size();
-  const SampleRange stick = last ? SampleRange{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
-  const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
-  const std::size_t end =
-      std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
-  if (stick.begin < cycle.slip.end || begin + 2 > end) return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0;
-  for (std::size_t i = begin; i < end; ++i) sum += motion.friction[i];
-  return sum / static_cast<double>(end - begin);
-}
-
-/// A stick that began before the record is taken to be as long as the others were. is_selected: which slips are known.
-void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const std::vector<bool>& is_selected) {
-  std::vector<double> known;
-  for (std::size_t k = 0; k < slips.size(); ++k) {
-    if (is_selected[k] && std::isfinite(slips[k].stick_time)) known.push_back(slips[k].stick_time);
-  }
-  if (known.empty()) return;
-  const double usual = median(std::move(known));
-  for (auto& slip : slips) {
-    if (slip.from_stick && !std::isfinite(slip.stick_time)) slip.stick_time = usual;
-  }
-}
-
-/// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
-/// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
-void trim_rest(const Motion& motion, SampleRange& samples) {
-  constexpr double kSigmas = 6;
-  const std::size_t least = samples.begin + samples.size() / 2;
-  while (samples.end > least && std::abs(motion.relative_velocity[samples.end - 1]) < kSigmas * motion.velocity_noise) {
-    --samples.end;
-  }
-}
-
-/// Takes out of each stick time what the levels of its own re-stick and break-away made of it. A break-away that is
-/// high by chance is reached later: left in, its scatter would pass for ageing. What stays is how long the disc took.
-void free_stick_times_of_their_own_level(std::vector<Observations::SlipObservation>& slips,
-                                         const std::vector<bool>& is_selected) {
-  constexpr double kLeastLeft = 0.1;
-  std::vector<double> pulled(slips.size(), std::numeric_limits<double>::quiet_NaN());
-  double sum = 0, count = 0;
-  for (std::size_t k = 1; k < slips.size(); ++k) {
-    if (!slips[k].from_stick || !is_selected[k] || !is_selected[k - 1]) continue;
-    pulled[k] = slips[k].break_away_friction - slips[k].direction * slips[k - 1].tail_friction;
-    if (!std::isfinite(pulled[k])) continue;
-    sum += pulled[k];
-    count += 1;
-  }
-  for (std::size_t k = 1; k < slips.size(); ++k) {
-    const double late = (pulled[k] - sum / count) / std::abs(slips[k].stick_slope);
-    if (!std::isfinite(late)) continue;
-    slips[k].stick_time = std::max(kLeastLeft * slips[k].stick_time, slips[k].stick_time - late);
-  }
-}
-
-/// Drops the slips that take no part; those that are left are the units of evidence.
-void keep(const std::vector<bool>& is_selected, std::vector<Observations::SlipObservation>& slips) {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < slips.size(); ++k) {
-    if (!is_selected[k]) continue;
-    slips[kept] = slips[k];
-    slips[kept].cycle = kept;
-    ++kept;
-  }
-  slips.resize(kept);
-}
-
-/// One range per slip of the segmentation that takes part; slips without stick are cut into pieces of about equal
-/// length.
-std::vector<Observations::SlipObservation> ranges_of(const Motion& motion, const Segmentation& segmentation) {
-  std::vector<Observations::SlipObservation> ranges;
-  std::vector<bool> is_selected;
-  std::size_t slipping = 0;
-  for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
-  const bool pieces = segmentation.kind == MotionKind::always_slipping;
-  const std::size_t piece = std::max<std::size_t>(kShortestSlip, slipping / kPiecesWithoutStick + 1);
-  for (const Cycle& cycle : segmentation.cycles) {
-    if (cycle.slip.size() < kShortestSlip) continue;
-    const bool from_stick = cycle.stick.size() > 0 && std::isfinite(cycle.break_away_friction);
-    const std::size_t parts = pieces ? (cycle.slip.size() + piece - 1) / piece : 1;
-    for (std::size_t k = 0; k < parts; ++k) {
-      Observations::SlipObservation range;
-      range.samples = {cycle.slip.begin + k * cycle.slip.size() / parts,
-                       cycle.slip.begin + (k + 1) * cycle.slip.size() / parts};
-      if (!pieces && cycle.slip_complete) trim_rest(motion, range.samples);
-      if (range.samples.size() == 0) continue;
-      range.cycle = ranges.size();
-      range.segment = static_cast<std::size_t>(&cycle - segmentation.cycles.data());
-      range.direction = cycle.direction;
-      const double speed = motion.conditions.speed.known() ? motion.conditions.speed.value : 0;
-      range.disc_speed = motion.disc_speed.empty() ? speed : motion.disc_speed[range.samples.begin];
-      range.from_stick = from_stick && k == 0;
-      range.break_away_friction = std::numeric_limits<double>::quiet_NaN();
-      range.break_away_time = motion.time[range.samples.begin];
-      range.tail_friction = friction_after(motion, segmentation, range.segment);
-      range.restick_time = cycle.restick_time;
-      range.stick_time = std::numeric_limits<double>::quiet_NaN();
-      if (range.from_stick) {
-        range.break_away_time = std::min(cycle.break_away_time, motion.time[range.samples.begin]);
-        range.stick_time = cycle.stick_time;
-        range.stick_slope = cycle.stick_slope;
-        range.break_away_friction = cycle.break_away_friction;
-      }
-      ranges.push_back(range);
-      is_selected.push_back(pieces ? segmentation.is_selected(range.samples) : segmentation.is_selected(cycle));
-    }
-  }
-  fill_stick_times(ranges, is_selected);
-  free_stick_times_of_their_own_level(ranges, is_selected);
-  keep(is_selected, ranges);
-  return ranges;
 }
 
 /// Means of `channel` over each value of the observations.
@@ -233,6 +112,59 @@ double mean_of(const std::vector<double>& x, double otherwise) {
   double sum = 0;
   for (const double value : x) sum += value;
   return sum / static_cast<double>(x.size());
+}
+
+/// Variance of v_r within each value. Sensor noise is part of this spread; it is far below what the motion does within
+/// a value.
+void add_velocity_variance(const Motion& motion, const Reducer& reduce, Observations& out) {
+  std::size_t value = 0;
+  reduce.each([&](std::size_t begin, std::size_t end) {
+    const double mean = out.velocity[value++];
+    double squares = 0;
+    for (std::size_t i = begin; i < end; ++i) squares += std::pow(motion.relative_velocity[i] - mean, 2);
+    out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
+  });
+}
+
+void add_acceleration(const Motion& motion, Observations& out) {
+  for (const auto& slip : out.slips) {
+    const std::vector<double> full = slip_acceleration(motion, slip.samples);
+    for (std::size_t i = 0; i < full.size(); i += out.samples_per_value) {
+      const std::size_t end = std::min(i + out.samples_per_value, full.size());
+      const double sum = std::accumulate(full.begin() + static_cast<std::ptrdiff_t>(i),
+                                         full.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+      out.acceleration.push_back(sum / static_cast<double>(end - i));
+    }
+  }
+}
+
+/// The channels that effects need, as far as the record has them.
+void add_channels(const Motion& motion, const Channels& needs, const Reducer& reduce, Observations& out) {
+  if (needs.acceleration) add_acceleration(motion, out);
+  if (needs.angle) out.angle = reduce.means(disc_angle(motion));
+  if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
+  if (needs.load) {
+    // Records that differ in a constant load show together what none shows alone.
+    if (motion.load.empty() && motion.conditions.load.known()) {
+      out.load.assign(out.time.size(), motion.conditions.load.value);
+    } else {
+      out.load = reduce.means(motion.load);
+    }
+  }
+  if (needs.temperature) out.temperature = reduce.means(motion.temperature);
+  out.mean_load = mean_of(motion.load, motion.conditions.load.known() ? motion.conditions.load.value : 1);
+  out.mean_temperature = mean_of(motion.temperature, 0);
+}
+
+/// What the values reach: speeds and friction.
+void set_extent(Observations& out) {
+  const bool sticks = std::any_of(out.slips.begin(), out.slips.end(), [](const auto& slip) { return slip.from_stick; });
+  out.slowest = sticks || out.size() == 0 ? 0 : std::abs(out.velocity[0]);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out.slowest = std::min(out.slowest, std::abs(out.velocity[i]));
+    out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
+    out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
+  }
 }
 
 }  // namespace
@@ -351,18 +283,18 @@ Observations join(std::vector<Observations> records) {
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
                      std::size_t values_per_slip) {
   Observations out;
-  out.slips = ranges_of(motion, segmentation);
+  out.slips = slip_ranges(motion, segmentation);
   out.cycles = out.slips.size();
-  if (values_per_slip > 0) {
+  if (values_per_slip > 0)
     out.samples_per_value = std::max<std::size_t>(1, (median_size(out.slips) + values_per_slip / 2) / values_per_slip);
-  }
-  const Reducer reduce(out.slips, out.samples_per_value);
+  std::size_t values = 0;
   for (auto& slip : out.slips) {
-    slip.begin = out.size();
-    out.time.resize(out.size() + (slip.samples.size() + out.samples_per_value - 1) / out.samples_per_value);
-    slip.end = out.size();
+    slip.begin = values;
+    values += (slip.samples.size() + out.samples_per_value - 1) / out.samples_per_value;
+    slip.end = values;
   }
   add_earlier_slips(out.slips);
+  const Reducer reduce(out.slips, out.samples_per_value);
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
   out.friction = reduce.means(motion.friction);
@@ -370,48 +302,10 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.weight.push_back(static_cast<double>(end - begin));
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
+  if (out.samples_per_value > 1) add_velocity_variance(motion, reduce, out);
   if (needs.lead) add_leads(motion, segmentation, out);
-  if (out.samples_per_value > 1) {
-    std::size_t value = 0;
-    reduce.each([&](std::size_t begin, std::size_t end) {
-      const double mean = out.velocity[value++];
-      double squares = 0;
-      for (std::size_t i = begin; i < end; ++i) squares += std::pow(motion.relative_velocity[i] - mean, 2);
-      // Sensor noise is part of this spread; it is far below what the motion does within a value.
-      out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
-    });
-  }
-  if (needs.acceleration) {
-    for (const auto& slip : out.slips) {
-      const std::vector<double> full = slip_acceleration(motion, slip.samples);
-      for (std::size_t i = 0; i < full.size(); i += out.samples_per_value) {
-        const std::size_t end = std::min(i + out.samples_per_value, full.size());
-        out.acceleration.push_back(std::accumulate(full.begin() + static_cast<std::ptrdiff_t>(i),
-                                                   full.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
-                                   static_cast<double>(end - i));
-      }
-    }
-  }
-  if (needs.angle) out.angle = reduce.means(disc_angle(motion));
-  if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
-  if (needs.load) {
-    // Records that differ in a constant load show together what none shows alone.
-    if (motion.load.empty() && motion.conditions.load.known()) {
-      out.load.assign(out.time.size(), motion.conditions.load.value);
-    } else {
-      out.load = reduce.means(motion.load);
-    }
-  }
-  if (needs.temperature) out.temperature = reduce.means(motion.temperature);
-  out.mean_load = mean_of(motion.load, motion.conditions.load.known() ? motion.conditions.load.value : 1);
-  out.mean_temperature = mean_of(motion.temperature, 0);
-  const bool sticks = std::any_of(out.slips.begin(), out.slips.end(), [](const auto& slip) { return slip.from_stick; });
-  out.slowest = sticks || out.size() == 0 ? 0 : std::abs(out.velocity[0]);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out.slowest = std::min(out.slowest, std::abs(out.velocity[i]));
-    out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
-    out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
-  }
+  add_channels(motion, needs, reduce, out);
+  set_extent(out);
   return out;
 }
 

@@ -9,7 +9,8 @@
 
 namespace tribofit {
 
-/// Levels of the published protocol ([D] 3.2): the largest friction in stick and the smallest in slip, cycle by cycle.
+/// Levels by per-cycle extremes ([D] 3.2, Protocol::published): the largest friction in stick and the smallest in slip,
+/// cycle by cycle.
 struct CycleExtremes {
   std::array<std::vector<double>, 2>
       of_cycle;  ///< mu_s, mu_k of each unit of evidence; NaN where a cycle is not complete

@@ -98,7 +98,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
 /// Its error is that of the pieces of the record.
 void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit) {
   fit.reason =
-      "the block never slips: it moves with the disc, so that nothing accelerates and mass and damping do not show";
+      "the block never slips: it moves with the disc and does not accelerate, so mass and damping cannot be found";
   const std::optional<StraightLine> line = force_over_way(motion, load, {0, motion.size()});
   if (!disc_is_known(motion) || !line) return;
   constexpr std::size_t kPieces = 24;
@@ -192,7 +192,7 @@ void try_further_terms(const Balance& balance, const BalanceSolution& solution, 
 void judge(const BalanceSolution& solution, RigFit& fit) {
   const auto clear = [](const RigValue& v) { return v.determined && std::abs(v.value) > kClear * v.std_error; };
   if (!(solution.noise_share.maxCoeff() < kMostNoise) || !clear(fit.mass) || !clear(fit.stiffness)) {
-    fit.reason = "the block moves too little against the noise of the channels to tell mass, damping and stiffness";
+    fit.reason = "the block moves too little, compared with the noise, to determine mass, damping and stiffness";
     return;
   }
   fit.reason = rig::why_impossible(fit);
@@ -242,7 +242,7 @@ void refine_delay(const Motion& motion, const Segmentation& segmentation, double
 }  // namespace
 
 Rig RigFit::to_rig() const {
-  if (!determined) throw std::logic_error("RigFit::to_rig(): no rig was found: " + reason);
+  if (!determined) throw std::logic_error("RigFit::to_rig(): the rig could not be identified: " + reason);
   return {mass.value, std::max(0.0, damping.value), stiffness.value};
 }
 
@@ -264,16 +264,16 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
   }
   const double period = period_guess(motion, segmentation);
   if (!(period > kFewestSamples * motion.step)) {
-    fit.reason = period > 0 ? "the record has fewer than eight samples in a swing of the block"
-                            : "no slip is complete and nothing swings: there is no motion to balance forces on";
+    fit.reason = period > 0 ? "the record has fewer than eight samples per oscillation of the block"
+                            : "no slip is complete and nothing oscillates: there is no motion for the force balance";
     return fit;
   }
   auto [balance, solution] = solve(motion, segmentation, load, period);
   fit.cycles = balance.blocks.size();
   fit.smoothing = balance.width;
   if (!solution.solved) {
-    fit.reason = fit.cycles < 3 ? "there are fewer than three whole cycles: no error could be given"
-                                : "the block moves too little to tell mass, damping and stiffness from one another";
+    fit.reason = fit.cycles < 3 ? "there are fewer than three whole cycles: no uncertainty can be given"
+                                : "the block moves too little to separate mass, damping and stiffness";
     return fit;
   }
   set_values(solution, fit);

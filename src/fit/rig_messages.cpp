@@ -62,15 +62,15 @@ std::string why_negative_damping(const RigFit& fit) {
 std::string why_impossible(const RigFit& fit) {
   const double m = fit.mass.value, k = fit.stiffness.value;
   if (k < 0 && m < 0) {
-    return "mass and stiffness come out negative: v_b or friction has the wrong sign";
+    return "mass and stiffness are negative: v_b or friction has the wrong sign";
   }
-  if (k < 0) return "the stiffness comes out negative: the channels do not belong to one block on a spring";
+  if (k < 0) return "the stiffness is negative: the channels do not belong to one block on a spring";
   if (m < 0) {
-    return "the mass comes out negative: more mass hangs below the force sensor than above it (only m - m_s shows), or "
+    return "the mass is negative: more mass hangs below the force sensor than above it (only m - m_s shows), or "
            "the channels are far apart in time";
   }
   if (fit.damping.upper95 < 0) {
-    return fmt::format("the damping comes out negative, {}: {}", damping_text(fit), why_negative_damping(fit));
+    return fmt::format("the damping is negative, {}: {}", damping_text(fit), why_negative_damping(fit));
   }
   return "";
 }
@@ -85,7 +85,8 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
   if (sag_first && fit.high_pass.value > 0) {
     out.push_back(fmt::format(
         "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on v_b that is not undone (a force "
-        "goes with the integral of the displacement, which no rig does); it would be {:.3g} {} without: undo it, or "
+        "follows the integral of the displacement, as in no rig); without it the damping would be {:.3g} {}: undo it, "
+        "or "
         "declare it as vibrometer.high_pass",
         fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.without_both.damping, damping_unit(fit)));
   } else if (sag_first) {
@@ -98,7 +99,7 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
                   "; a delay or a slower force sensor does this: declare it with --instruments");
   }
   if (motion.high_pass > 0) {
-    out.push_back(fmt::format("a high-pass of {:.3g} Hz on v_b was undone; what its corner is off by is fitted along",
+    out.push_back(fmt::format("a high-pass of {:.3g} Hz on v_b was undone; the error of its corner is fitted too",
                               motion.high_pass));
   }
 }
@@ -106,7 +107,7 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
 void add_about_mass(const Instruments& instruments, RigFit& fit) {
   auto& out = fit.messages;
   if (fit.mass_below_declared) {
-    out.push_back(fmt::format("the mass holds the declared {:.4g} kg below the force sensor",
+    out.push_back(fmt::format("the mass includes the declared {:.4g} kg below the force sensor",
                               instruments.force_sensor.mass_below->value));
     return;
   }
@@ -118,9 +119,8 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
     return;
   }
   out.push_back(
-      "the mass is that above the force sensor (m - m_s): what hangs below it cannot be told from the friction; "
-      "declare "
-      "force_sensor.mass_below or rig.ping_frequency with --instruments");
+      "the mass is that above the force sensor (m - m_s): what hangs below it is not distinguishable from "
+      "friction; declare force_sensor.mass_below or rig.ping_frequency with --instruments");
 }
 
 void add_about_stiffness(const Motion& motion, const Instruments& instruments, RigFit& fit) {
@@ -129,10 +129,11 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
   const double off = fit.stick_slope_stiffness.value / fit.stiffness.value - 1;
   if (fit.determined && fit.stick_slope_stiffness.determined && std::abs(off) > kLeast &&
       t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChance) {
-    out.push_back(fmt::format(
-        "the slope of stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or omega r is off, or the "
-        "contact creeps in stick",
-        100 * off));
+    out.push_back(
+        fmt::format("the slope of friction in stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or "
+                    "omega r is off, or the "
+                    "contact creeps in stick",
+                    100 * off));
   }
   if (const auto& pull = instruments.rig.stiffness; pull && fit.stiffness.determined && !fit.per_unit_load) {
     const double error = std::hypot(fit.stiffness.std_error, fit.stiffness.systematic, pull->uncertainty);
@@ -143,7 +144,7 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
     out.push_back("no normal force is known: mass, damping and stiffness are per newton of it; give --load 50N");
   }
   if (motion.velocity_kind == VelocityKind::relative && motion.disc_velocity.empty()) {
-    out.push_back("v_r was measured: the disc is taken to turn evenly");
+    out.push_back("v_r was measured: the disc is assumed to turn evenly");
   }
 }
 
@@ -152,16 +153,16 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
 void add_messages(const Motion& motion, const Segmentation& segmentation, const Instruments& instruments, RigFit& fit) {
   if (segmentation.kind == MotionKind::always_sticking) {
     if (fit.stiffness.determined) {
-      fit.messages.push_back("the stiffness is from the slope of friction while the disc winds the spring up");
+      fit.messages.push_back("the stiffness is from the slope of friction in stick");
     }
   } else {
     if (segmentation.kind == MotionKind::always_slipping) {
-      fit.messages.push_back("the block never sticks: the balance rests on how it swings in slip alone");
+      fit.messages.push_back("the block never sticks: the force balance uses slip only");
     }
     add_about_channels(motion, fit);
     if (fit.mass.determined) add_about_mass(instruments, fit);
     if (fit.determined && fit.damping.value < 0) {
-      fit.messages.push_back("the damping is zero within its error; a simulation takes zero");
+      fit.messages.push_back("the damping is zero within its error; simulations use zero");
     }
   }
   add_about_stiffness(motion, instruments, fit);

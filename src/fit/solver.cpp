@@ -115,7 +115,7 @@ std::string explain(const ceres::Solver::Summary& summary) {
     case ceres::CONVERGENCE:
       return "converged";
     case ceres::NO_CONVERGENCE:
-      return "did not settle within " + std::to_string(summary.iterations.size()) + " iterations";
+      return "did not converge within " + std::to_string(summary.iterations.size()) + " iterations";
     default:
       return "the solver failed: " + summary.message;
   }

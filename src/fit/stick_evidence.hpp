@@ -10,8 +10,8 @@
 namespace tribofit {
 
 /// Rows that turn v_r of the parts of a stick, from the first in which the law holds, into residuals of variance
-/// stick_unit^2, without what no creep can be told from: see add_stick_evidence(). One matrix a record; without rows
-/// where its noise is not known.
+/// stick_unit^2, without what is not distinguishable from creep: see add_stick_evidence(). One matrix a record; without
+/// rows where its noise is not known.
 ///
 /// What a law of creep is wrong by is the same in every stick and does not average out: it widens the noise of one
 /// stick by as many times its variance as there are sticks.

@@ -57,7 +57,9 @@ std::vector<double> slopes(const Observations& observations, double delay) {
   return out;
 }
 
-std::vector<Shift> shifts_of(const Motion& motion, const Observations& observations, const Instruments& instruments) {
+/// What the uncertainties of radius, speed and vibrometer do to v_r.
+void add_velocity_shifts(const Motion& motion, const Observations& observations, const Instruments& instruments,
+                         std::vector<Shift>& shifts) {
   const auto values = [&](auto&& change) {
     std::vector<double> out(observations.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(i);
@@ -66,8 +68,6 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
   const auto block_velocity = [&](std::size_t i) { return motion.constant_disc_velocity - observations.velocity[i]; };
   const auto& rig = instruments.rig;
   const auto& vibrometer = instruments.vibrometer;
-  const auto& sensor = instruments.force_sensor;
-  std::vector<Shift> shifts;
   const bool plateau = motion.conditions.speed.source == "plateau";
   if (const double u = uncertainty(rig.radius); u > 0 && !plateau && motion.conditions.speed.known()) {
     shifts.push_back({values([&](std::size_t) { return u * motion.conditions.speed.value; }), {}});
@@ -87,16 +87,42 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
     const std::vector<double> x = displacement(motion, observations);
     shifts.push_back({values([&](std::size_t i) { return -2 * std::numbers::pi * corner * x[i]; }), {}});
   }
-  // Low-passes are corrected as the delay they make at low frequency.
+}
+
+/// What delays between the channels do. Low-passes are corrected as the delay they make at low frequency.
+void add_delay_shifts(const Observations& observations, const Instruments& instruments, std::vector<Shift>& shifts) {
+  constexpr double kSensorDamping = 0.7;
   const auto low_pass_delay = [](const std::optional<Declared>& corner_frequency, double factor) {
     const double u_f = uncertainty(corner_frequency);
     return u_f > 0 ? factor * u_f / (2 * std::numbers::pi * std::pow(corner_frequency->value, 2)) : 0.0;
   };
-  constexpr double kSensorDamping = 0.7;
-  for (const double u : {uncertainty(vibrometer.delay), low_pass_delay(vibrometer.low_pass, 1),
-                         low_pass_delay(sensor.bandwidth, 2 * kSensorDamping)}) {
+  for (const double u : {uncertainty(instruments.vibrometer.delay), low_pass_delay(instruments.vibrometer.low_pass, 1),
+                         low_pass_delay(instruments.force_sensor.bandwidth, 2 * kSensorDamping)}) {
     if (u > 0) shifts.push_back({slopes(observations, u), {}});
   }
+}
+
+/// Mean over each value of the change of friction by the inertia of a mass below the sensor that is uncertain: `scale`
+/// of friction per m/s^2.
+std::vector<double> inertia_changes(const Motion& motion, const Observations& observations, double scale) {
+  const std::vector<double> full = block_acceleration(motion);
+  std::vector<double> change;
+  for (const auto& slip : observations.slips) {
+    for (std::size_t s = slip.samples.begin; s < slip.samples.end; s += observations.samples_per_value) {
+      const std::size_t end = std::min(s + observations.samples_per_value, slip.samples.end);
+      double sum = 0;
+      for (std::size_t i = s; i < end; ++i) sum += full[i];
+      change.push_back(scale * sum / static_cast<double>(end - s));
+    }
+  }
+  return change;
+}
+
+/// What the uncertainties of force sensor and load do to friction.
+void add_friction_shifts(const Motion& motion, const Observations& observations, const Instruments& instruments,
+                         std::vector<Shift>& shifts) {
+  const auto& rig = instruments.rig;
+  const auto& sensor = instruments.force_sensor;
   const auto zero = zero_of_friction(sensor, motion.friction_kind, motion.conditions.load);
   if (const double u = uncertainty(zero); u > 0) shifts.push_back({{}, {}, -u, 0});
   if (const double u = uncertainty(sensor.crosstalk); u > 0) shifts.push_back({{}, {}, -u, 0});
@@ -106,20 +132,8 @@ std::vector<Shift> shifts_of(const Motion& motion, const Observations& observati
   }
   if (const double u = uncertainty(sensor.mass_below); u > 0 && motion.conditions.load.known()) {
     // In rigid stick the block moves with the disc, so the levels at break-away do not change.
-    const double scale = u / motion.conditions.load.value;
-    const std::vector<double> full = block_acceleration(motion);
-    std::vector<double> change;
-    for (const auto& slip : observations.slips) {
-      for (std::size_t s = slip.samples.begin; s < slip.samples.end; s += observations.samples_per_value) {
-        const std::size_t end = std::min(s + observations.samples_per_value, slip.samples.end);
-        double sum = 0;
-        for (std::size_t i = s; i < end; ++i) sum += full[i];
-        change.push_back(scale * sum / static_cast<double>(end - s));
-      }
-    }
-    shifts.push_back({{}, std::move(change)});
+    shifts.push_back({{}, inertia_changes(motion, observations, u / motion.conditions.load.value)});
   }
-  return shifts;
 }
 
 /// The observations as they would be with the shift.
@@ -143,7 +157,10 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
                                       const Observations& observations, const Instruments& instruments,
                                       const std::vector<bool>& free, bool published) {
   std::vector<double> squares(p.size(), 0.0);
-  const std::vector<Shift> shifts = shifts_of(motion, observations, instruments);
+  std::vector<Shift> shifts;
+  add_velocity_shifts(motion, observations, instruments, shifts);
+  add_delay_shifts(observations, instruments, shifts);
+  add_friction_shifts(motion, observations, instruments, shifts);
   if (shifts.empty()) return squares;
   const std::vector<std::size_t> all = all_slips(observations);
   const auto gradient = [&](const Observations& at, Eigen::MatrixXd* curvature) {
@@ -157,8 +174,7 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   const Eigen::VectorXd base = gradient(observations, &curvature);
   const Eigen::MatrixXd inverse = inverse_over(curvature, free);
   for (const Shift& shift : shifts) {
-    Eigen::VectorXd levels =
-        Eigen::VectorXd::Zero(curvature.rows());  // of the published protocol, given by the extremes
+    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());  // of per-cycle extremes, which give them
     for (Eigen::Index k = 0; published && k < 2; ++k)
       levels(k) = shift.offset + shift.part * p[static_cast<std::size_t>(k)];
     const Eigen::VectorXd pull = gradient(moved(observations, shift), nullptr) - base;

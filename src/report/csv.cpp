@@ -13,7 +13,7 @@
 #include "numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "whole_folder.hpp"
 

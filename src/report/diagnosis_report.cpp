@@ -9,7 +9,7 @@
 #include "numbers.hpp"
 #include "report/charts/diagnosis_charts.hpp"
 #include "report_parts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/report.hpp"
 
 namespace tribofit {

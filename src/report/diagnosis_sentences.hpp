@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verdict.hpp"
 

@@ -8,7 +8,7 @@
 #include "json_parts.hpp"
 #include "measures.hpp"
 #include "numbers.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/json.hpp"
 
 namespace tribofit {

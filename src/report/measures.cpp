@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "tribofit/fit/observations.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {

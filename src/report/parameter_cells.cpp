@@ -7,7 +7,7 @@
 
 #include "measures.hpp"
 #include "numbers.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 

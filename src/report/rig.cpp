@@ -10,7 +10,7 @@
 #include "numbers.hpp"
 #include "style.hpp"
 #include "terminal_parts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "verdict.hpp"
 
 namespace tribofit {

@@ -12,7 +12,7 @@
 #include "style.hpp"
 #include "terminal_fits.hpp"
 #include "terminal_parts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/version.hpp"
 #include "verdict.hpp"
 

@@ -11,7 +11,7 @@
 #include "measures.hpp"
 #include "numbers.hpp"
 #include "parameter_cells.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 namespace {

@@ -1,7 +1,7 @@
 #include "numbers.hpp"
 #include "parameter_cells.hpp"
 #include "report_parts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 #include "verdict.hpp"
 

@@ -8,7 +8,7 @@
 #include "numbers.hpp"
 #include "style.hpp"
 #include "terminal_parts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/study/twin.hpp"
 #include "twin_sentences.hpp"
 #include "verdict.hpp"
 

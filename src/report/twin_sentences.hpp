@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/study/twin.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verdict.hpp"
 

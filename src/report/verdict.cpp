@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "numbers.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 namespace {

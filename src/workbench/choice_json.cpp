@@ -42,7 +42,7 @@ std::vector<std::string> texts(const Json& json, const char* key, std::size_t mo
   }
   for (const Json& item : json[key]) {
     if (!item.is_string() || item.get_ref<const std::string&>().size() > kLongestFormula) {
-      refuse(fmt::format("an entry of '{}' is no text, or too long", key), "write it shorter");
+      refuse(fmt::format("an entry of '{}' is not a text, or too long", key), "write it shorter");
     }
     out.push_back(item.get<std::string>());
   }
@@ -105,11 +105,11 @@ Selection selection_from(const Json& json) {
   }
   if (!json.contains("excluded")) return selection;
   if (!json["excluded"].is_array() || json["excluded"].size() > kMostStretches) {
-    refuse("what is left out is not a list of stretches of time", "leave out fewer stretches");
+    refuse("'excluded' is not a list of stretches of time", "exclude fewer stretches");
   }
   for (const Json& item : json["excluded"]) {
-    const auto [from, to] = range(item, "a stretch that is left out");
-    if (!(from < to)) refuse("a stretch that is left out has no length", "give an earlier and a later time");
+    const auto [from, to] = range(item, "an excluded stretch");
+    if (!(from < to)) refuse("an excluded stretch has no length", "give an earlier and a later time");
     selection.excluded.push_back({from, to});
   }
   return selection;
@@ -195,7 +195,7 @@ Json choice_json(const WorkbenchChoice& choice) {
 }
 
 WorkbenchChoice choice_from(const Json& json) {
-  if (!json.is_object()) refuse("this is no choice", "send law, effects and formulas");
+  if (!json.is_object()) refuse("this is not a choice", "send law, effects and formulas");
   WorkbenchChoice choice;
   choice.law = law_from(json);
   choice.effects = texts(json, "effects", kMostEffects);
@@ -244,7 +244,7 @@ std::string contradiction_in(const std::vector<GivenParameter>& given) {
     const auto beyond_numbers = [](double value) { return !(std::abs(value) <= 1e12); };
     if ((one.start && beyond_numbers(*one.start)) ||
         (one.bounds && (beyond_numbers(one.bounds->lower) || beyond_numbers(one.bounds->upper)))) {
-      return one.name + " is given a value too large to compute with";
+      return one.name + " is given a value that is too large";
     }
     if (!one.bounds) continue;
     if (one.bounds->lower > one.bounds->upper) return "the bounds given for " + one.name + " run from high to low";

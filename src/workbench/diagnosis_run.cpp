@@ -7,6 +7,7 @@
 
 #include "report/diagnosis_sentences.hpp"
 #include "tribofit/friction/effects/all.hpp"
+#include "tribofit/pipeline.hpp"
 
 namespace tribofit::workbench {
 

@@ -126,7 +126,7 @@ void WorkbenchServer::State::post(const char* path, Do&& what) {
     } catch (const WorkbenchSession::Superseded&) {
       answer(response, {{"superseded", true}});
     } catch (const Json::exception&) {
-      answer(response, problem_json("this cannot be done", "the request lacks something", "use the page"), kUnfit);
+      answer(response, problem_json("this cannot be done", "the request is incomplete", "use the page"), kUnfit);
     } catch (const std::bad_alloc&) {
       answer(response, problem_json("this cannot be done", "there is not enough memory", "choose a part of the record"),
              kBroken);
@@ -200,7 +200,7 @@ WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(s
   s.http.set_error_handler([](const httplib::Request&, httplib::Response& response) {
     if (!response.body.empty()) return;
     const int status = response.status;
-    const char* why = status == kUnknown    ? "there is nothing of that name"
+    const char* why = status == kUnknown    ? "there is nothing with that name"
                       : status == kTooLarge ? "the body is too large"
                                             : "the request cannot be read";
     answer(response, problem_json("the request is refused", why, "use the page"), status);

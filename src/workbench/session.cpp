@@ -15,6 +15,7 @@
 #include "diagnosis_run.hpp"
 #include "report/verdict.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/pipeline.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -25,7 +26,7 @@ namespace {
 
 constexpr std::size_t kMostRungs = 200;
 
-/// A trace with one set of corrections of its motion, and what it said before any part of it was left out or fitted.
+/// A trace with one set of corrections of its motion, and what it said before any part of it was excluded or fitted.
 struct Prepared {
   explicit Prepared(Identification prepared)
       : trace(std::move(prepared)),
@@ -156,8 +157,8 @@ struct WorkbenchSession::State {
       return;
     }
     if (rungs.size() >= kMostRungs) {
-      throw InputError(fmt::format("{} models have been visited, more are not kept", kMostRungs),
-                       "save the session and begin anew");
+      throw InputError(fmt::format("{} models have been visited; no more are kept", kMostRungs),
+                       "save the session and start a new one");
     }
     rung.number = rungs.size();
     rungs.push_back(rung);
@@ -330,7 +331,7 @@ Json session_json(std::string_view text, const std::string& file) {
                      json.value("trace", Json()).is_string() && json.value("arguments", Json()).is_array() &&
                      json.value("rungs", Json()).is_array() && json.value("checksum", Json()).is_string();
   if (!whole)
-    throw InputError("is no saved session of the workbench", "give a file that its page saved", {file, 0, ""});
+    throw InputError("is not a saved session of the workbench", "give a file that its page saved", {file, 0, ""});
   return json;
 }
 
@@ -356,7 +357,7 @@ SavedWorkbench saved_workbench(std::string_view text, const std::string& file) {
   SavedWorkbench out;
   out.trace = json["trace"].get<std::string>();
   for (const Json& argument : json["arguments"]) {
-    if (!argument.is_string()) throw InputError("holds options that are no texts", "save it again", {file, 0, ""});
+    if (!argument.is_string()) throw InputError("holds options that are not texts", "save it again", {file, 0, ""});
     out.arguments.push_back(argument.get<std::string>());
   }
   return out;

@@ -96,7 +96,7 @@ TEST(StudyCommand, AMapThatWasKilledEndsTheSame) {
   // Nothing is written over without a word.
   const Outcome again = shop.identify(map + " --csv cut");
   EXPECT_EQ(again.status, 3);
-  EXPECT_THAT(again.err, HasSubstr("a map stands here already"));
+  EXPECT_THAT(again.err, HasSubstr("a map exists here already"));
 }
 
 TEST(StudyCommand, RowsOfAnotherMapAreNotUsed) {

@@ -9,6 +9,7 @@
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/oscillator/rig.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 

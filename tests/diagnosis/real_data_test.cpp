@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace {

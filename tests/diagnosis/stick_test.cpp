@@ -13,6 +13,7 @@
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/rig.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace {

@@ -190,7 +190,7 @@ TEST(Fit, SaysWhatTheDataDoNotSay) {
   options.peak = 0.08;
   const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 6.0}, options));
   EXPECT_TRUE(bound.parameters[3].at_bound);
-  EXPECT_TRUE(has(bound, "sigma sits at its upper bound of 0.002 s/mm"));
+  EXPECT_TRUE(has(bound, "sigma is at its upper bound of 0.002 s/mm"));
 }
 
 TEST(Fit, FewerThanThreeCyclesIsAReasonNotAnException) {

@@ -28,7 +28,7 @@ struct Problem {
   std::size_t degrees_of_freedom() const { return response.size() - certified.size(); }
 };
 
-/// AddsToReading a .dat file as NIST publishes it. Throws std::runtime_error naming the file when it is not complete.
+/// Reads a .dat file as NIST publishes it. Throws std::runtime_error naming the file when it is not complete.
 Problem read_problem(const std::string& path);
 
 /// Mean over i of the correct digits of values[i]: -log10(|v - c|/|c|), at most 11 each as no more are certified.

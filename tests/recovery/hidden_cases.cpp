@@ -378,12 +378,13 @@ std::string_view to_string(Kind kind) {
 
 std::vector<Case> plan_cases(const PlanOptions& options) {
   std::vector<Case> cases;
-  const auto add = [&](const std::string& group, std::size_t count, Kind kind, Setting setting, const auto& hide) {
+  const auto add = [&](const std::string& group, std::size_t count, Kind kind, Setting setting,
+                       const auto& add_effect) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t seed = hash(fmt::format("{}:{}", group, i), options.seed);
       Random random(seed);
       Case c = draw(group, i, kind, setting, seed, random);
-      simulate_recording(c, random);
+      add_effect(c, random);
       cases.push_back(std::move(c));
     }
   };

@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 
+#include "tribofit/pipeline.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace recovery {

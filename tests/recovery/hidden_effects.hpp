@@ -18,7 +18,7 @@
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/oscillator/rig.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace recovery {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace tribofit {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "machines.hpp"
+#include "small_steps.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/study/critical_speed.hpp"
 #include "tribofit/study/vary.hpp"
@@ -31,7 +32,13 @@ TEST(Uradnicek, FundamentalNeedsADecayFactorThatIsNotPrinted) {
   const double smoothed = decay_for_frequency(0.28, kPrintedSharpness), located = decay_for_frequency(0.28, 0);
   EXPECT_NEAR(smoothed, 333, 2);
   EXPECT_NEAR(located, 293, 2);
-  EXPECT_NEAR(settle(uradnicek_machine(smoothed, 0.5e-3), {.sharpness = kPrintedSharpness}).frequency, 0.28, 1e-5);
+  SmallSteps block;  // an integration of its own says the same
+  block.friction = [decay = located](double v) { return 0.1 + 0.5 * std::exp(-decay * v); };
+  EXPECT_NEAR(frequency_of_rigid(block, 0.6), 0.28, 1e-5);
+  block.friction = [decay = smoothed](double v) {
+    return (0.1 + 0.5 * std::exp(-decay * std::abs(v))) * M_2_PI * std::atan(kPrintedSharpness * v);
+  };
+  EXPECT_NEAR(frequency_of_smooth(block, 60), 0.28, 2e-5);
   // The slower stick of a heavier drop of friction: frequency falls with c_v.
   EXPECT_LT(decay_for_frequency(0.285, kPrintedSharpness), smoothed);
   EXPECT_GT(decay_for_frequency(0.275, kPrintedSharpness), smoothed);
@@ -104,13 +111,16 @@ Machine creak_machine_with_both_figures() {
 TEST(Creak, BothFiguresNeedTheViscousTerm) {
   // Published: 0.28 Hz; stick is gone at about 2.5 mm/s, where vibration dies out.
   const Machine machine = creak_machine_with_both_figures();
-  EXPECT_NEAR(settle(machine).frequency, 0.28, 1e-5);
+  const double decay = machine.parameters[2], viscous = machine.parameters[3];
+  SmallSteps block;  // an integration of its own says the same
+  block.friction = [=](double v) { return 0.1 + 0.5 * std::exp(-decay * v) + viscous * v; };
+  EXPECT_NEAR(frequency_of_rigid(block, 0.6), 0.28, 1e-5);
   EXPECT_NEAR(critical_speed(machine).linear.back(), 2.5e-3, 1e-6);
   const double last = last_stick_from_rest(machine);  // published: stick at 2, none at 2.75 mm/s
   EXPECT_GT(last, 2.5e-3);
   EXPECT_LT(last, 2.75e-3);
   // Without it, what gives 2.5 mm/s is far from 0.28 Hz on either branch.
-  const auto frequency = [](double decay) { return settle(creak_machine(decay, 0)).frequency; };
+  const auto frequency = [](double c_v) { return settle(creak_machine(c_v, 0)).frequency; };
   const std::vector<double> roots = decays_losing_stability_at(2.5e-3);
   ASSERT_EQ(roots.size(), 2U);
   EXPECT_GT(frequency(roots[0]), 0.35);

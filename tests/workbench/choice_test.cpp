@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string complaint_of(const std::string& text) {
+std::string problem_of(const std::string& text) {
   try {
     choice_from(parsed(text, "the request"));
   } catch (const InputError& error) {
@@ -50,22 +50,22 @@ TEST(Choice, keeps_to_itself_what_is_given_for_another_law) {
 }
 
 TEST(Choice, that_cannot_be_says_why) {
-  EXPECT_THAT(complaint_of("[1,2"), HasSubstr("is not JSON"));
-  EXPECT_THAT(complaint_of("[[[[[[[[[[[[1]]]]]]]]]]]]"), HasSubstr("nested too deeply"));
-  EXPECT_THAT(complaint_of("{}"), HasSubstr("there is no law"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponental"})"), HasSubstr("exponential"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","effects":["frictional-leg"]})"), HasSubstr("frictional-lag"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","effects":["viscous","viscous"]})"), HasSubstr("viscous"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","formulas":["hump = a*exp(-v"]})"), HasSubstr("formula"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","start":{"mu_s":"high"}})"), HasSubstr("mu_s is not a number"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","bounds":{"mu_s":[2,1]}})"), HasSubstr("from high to low"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","cycles":[1.5,3]})"), HasSubstr("whole numbers"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","excluded":[[1]]})"), HasSubstr("pair of numbers"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","excluded":[[1,1]]})"), HasSubstr("no length"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","start":{"mu_s":0.9},"bounds":{"mu_s":[0.1,0.2]}})"),
+  EXPECT_THAT(problem_of("[1,2"), HasSubstr("is not JSON"));
+  EXPECT_THAT(problem_of("[[[[[[[[[[[[1]]]]]]]]]]]]"), HasSubstr("nested too deeply"));
+  EXPECT_THAT(problem_of("{}"), HasSubstr("there is no law"));
+  EXPECT_THAT(problem_of(R"({"law":"exponental"})"), HasSubstr("exponential"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","effects":["frictional-leg"]})"), HasSubstr("frictional-lag"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","effects":["viscous","viscous"]})"), HasSubstr("viscous"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","formulas":["hump = a*exp(-v"]})"), HasSubstr("formula"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","start":{"mu_s":"high"}})"), HasSubstr("mu_s is not a number"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","bounds":{"mu_s":[2,1]}})"), HasSubstr("from high to low"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","cycles":[1.5,3]})"), HasSubstr("whole numbers"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","excluded":[[1]]})"), HasSubstr("pair of numbers"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","excluded":[[1,1]]})"), HasSubstr("no length"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","start":{"mu_s":0.9},"bounds":{"mu_s":[0.1,0.2]}})"),
               HasSubstr("mu_s starts beyond"));
-  EXPECT_THAT(complaint_of(R"({"law":"exponential","start":{"alpha":1e307}})"), HasSubstr("too large to compute with"));
-  EXPECT_THAT(complaint_of(R"({"law":7,"effects":7})"), HasSubstr("there is no law"));
+  EXPECT_THAT(problem_of(R"({"law":"exponential","start":{"alpha":1e307}})"), HasSubstr("a value that is too large"));
+  EXPECT_THAT(problem_of(R"({"law":7,"effects":7})"), HasSubstr("there is no law"));
 }
 
 }  // namespace

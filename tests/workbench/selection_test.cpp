@@ -98,7 +98,7 @@ TEST(CommandLine, refuses_what_it_cannot_mean) {
   EXPECT_THAT(refused("--cycles 5"), HasSubstr("FROM..TO"));
   EXPECT_THAT(refused("--cycles 7..5"), HasSubstr("FIRST..LAST"));
   EXPECT_THAT(refused("--exclude 3s..2s"), HasSubstr("earlier to a later"));
-  EXPECT_THAT(refused("--exclude 3mm..4mm"), HasSubstr("no unit of time"));
+  EXPECT_THAT(refused("--exclude 3mm..4mm"), HasSubstr("not a unit of time"));
 }
 
 }  // namespace

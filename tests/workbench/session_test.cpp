@@ -143,7 +143,7 @@ TEST(Session, keeps_no_rung_of_what_is_passed_by) {
 TEST(Session, lives_on_after_what_it_cannot_do) {
   WorkbenchSession session(lagging().options());
   WorkbenchChoice bad;
-  const auto complaint = [&] {
+  const auto problem = [&] {
     try {
       session.show(bad, FitDetail::quick);
     } catch (const InputError& error) {
@@ -152,14 +152,14 @@ TEST(Session, lives_on_after_what_it_cannot_do) {
     return std::string("none");
   };
   bad.formulas = {"hump = a*log(0*v - 1); a=0.02"};
-  EXPECT_NE(complaint(), "none");
+  EXPECT_NE(problem(), "none");
   bad.formulas = {"hump = b*exp(-v); a=0.02"};
-  EXPECT_THAT(complaint(), HasSubstr("'b'"));
+  EXPECT_THAT(problem(), HasSubstr("'b'"));
   bad = with({"temperature-dependence"});
-  EXPECT_THAT(complaint(), HasSubstr("temperature"));
+  EXPECT_THAT(problem(), HasSubstr("temperature"));
   bad = {};
   bad.selection.cycles = {1000, 2000};
-  EXPECT_THAT(complaint(), HasSubstr("fewer than three cycles"));
+  EXPECT_THAT(problem(), HasSubstr("fewer than three cycles"));
   EXPECT_TRUE(session.rungs().empty());
   EXPECT_GT(session.show({}, FitDetail::quick).rung.fit.error.held_out_rmse, 0);
 }

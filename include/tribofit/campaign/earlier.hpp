@@ -26,13 +26,13 @@ struct EarlierValue {
 struct EarlierTable {
   std::string path;
   std::vector<EarlierValue> values;  ///< by line, then by column
-  std::vector<std::string> notes;    ///< columns that are nothing a campaign knows
+  std::vector<std::string> notes;    ///< columns that no campaign knows
 };
 
 /// Name by which a pooled value is known in tables: "mu_s", and "runout.A" for a parameter of an effect.
 std::string full_name(const PooledValue& value);
 
-/// AddsToReading a table of earlier values, as data/published/table4.csv, to be compared with `groups`.
+/// Reads a table of earlier values, as data/published/table4.csv, to be compared with `groups`.
 ///
 /// A row a condition: columns radius, speed, load and further conditions of the campaign by their names, as in a
 /// manifest (units in the header or in the cell); a value for each column called like a parameter or measure of the
@@ -41,7 +41,7 @@ std::string full_name(const PooledValue& value);
 /// Or a row a value: columns name (or parameter, quantity), value, unit, std_error beside those of the conditions.
 /// v_r_amplitude is read as amplitude and fundamental as frequency. Empty cells say nothing; # begins a comment line.
 /// Throws InputError with file, line and column: no conditions or no values, an unknown or missing unit or one of
-/// another quantity, a cell that is no number, two columns for one value. Cost: linear in rows.
+/// another quantity, a cell that is not a number, two columns for one value. Cost: linear in rows.
 EarlierTable read_earlier(const std::string& path, std::span<const PooledGroup> groups);
 
 }  // namespace tribofit

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 

@@ -19,7 +19,7 @@ struct StatedFields {
 ///
 /// {radius}, {speed} and {load} are numbers, with the unit behind them in the pattern ({speed}rpm) or in the name;
 /// {repeat} is a whole number; any other {name} is a further condition of that name; * is anything. A pattern without
-/// .csv or .tsv at its end leaves out the extension.
+/// .csv or .tsv at its end does not name the extension.
 class NamePattern {
  public:
   /// Throws InputError for braces that do not match, a field given twice and a pattern without fields.

@@ -46,12 +46,12 @@ bool is_order(const OtherCondition& condition);
 /// Pools repeats: runs whose stated conditions (radius, speed, load, any further one but the order) are equal.
 ///
 /// The mean over runs of y_i with errors v_i and scatter tau^2 between them: see meta_regression(); intervals cover
-/// with three runs as with thirty. A parameter on its bound, or with an error that is not known, takes no part.
+/// with three runs as with thirty. A parameter on its bound, or with an error that is not known, is not used.
 /// Groups in the order of their first run; runs that were not fitted are in none. Cost: linear in runs.
 std::vector<PooledGroup> pool_repeats(std::span<const RunResult> runs);
 
 /// Pools one quantity. values, std_errors, systematic: one per run, those with errors that are not finite and positive
-/// are left out; systematic may be empty.
+/// are not used; systematic may be empty.
 PooledValue pool(std::string name, std::string unit, std::span<const double> values, std::span<const double> std_errors,
                  std::span<const double> systematic = {});
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tribofit/campaign/names.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/ingest/manifest.hpp"
-#include "tribofit/pipeline.hpp"
 
 namespace tribofit {
 
@@ -25,7 +25,7 @@ struct Campaign {
   std::string folder;  ///< empty where files were named one by one
   std::vector<Run> runs;
   std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
-  std::vector<std::string> notes;     ///< files of the folder that were left out
+  std::vector<std::string> notes;     ///< files of the folder that were excluded
 };
 
 /// The run of one file of which nothing but `read` is known.

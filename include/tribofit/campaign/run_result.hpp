@@ -104,7 +104,7 @@ struct CampaignResults {
   std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
 };
 
-/// A JSON object with its own checksum as last key, by which half a file and a damaged one are told.
+/// A JSON object with its own checksum as last key, which shows a cut or damaged file.
 std::string sealed(std::string_view json);
 
 /// Whether a text is one that sealed() made, to the last byte.
@@ -117,7 +117,7 @@ inline constexpr const char* campaign_name = "campaign.json";
 /// missing or damaged. Never throws.
 std::optional<std::string> folder_of_campaign(const std::string& results);
 
-/// AddsToReading the record of one result file; nothing where the file is missing, damaged or of another make. Never
+/// Reads the record of one result file; nothing where the file is missing, damaged or of another make. Never
 /// throws.
 std::optional<RunRecord> read_record(const std::string& path);
 
@@ -147,7 +147,7 @@ class ResultReader {
   std::vector<Listed> runs_;
 };
 
-/// AddsToReading all results of a campaign; `order` comes from the first further condition that is called order, run
+/// Reads all results of a campaign; `order` comes from the first further condition that is called order, run
 /// order, sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text,
 /// which puts ISO dates in order). Throws InputError where the folder holds no campaign. Cost: linear in runs.
 CampaignResults read_campaign(const std::string& folder);

@@ -19,7 +19,7 @@ struct Sharing {
   std::vector<Common> common;
 };
 
-/// AddsToReading "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
+/// Reads "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
 Sharing::Common share_from(const std::string& text);
 Sharing::Common vary_from(const std::string& text);
 
@@ -41,7 +41,7 @@ struct SharedFit {
   std::vector<std::string> names, units;  ///< of all parameters of the law
   std::vector<Parameter> common;
   std::vector<OfRun> runs;
-  std::vector<std::string> notes;  ///< runs or parameters that could take no part, and why
+  std::vector<std::string> notes;  ///< runs or parameters that are not used, and why
 };
 
 /// Joint fit of the runs of a campaign, one for each law, from the joint fits of the single runs and their covariances.

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 
@@ -112,6 +112,22 @@ struct Diagnosis {
 struct Diagnosed {
   Diagnosis diagnosis;
   std::vector<Fit> fits;
+};
+
+struct DiagnoseOptions {
+  DiagnosisOptions diagnosis;
+  std::vector<TraceInput> confirm;  ///< runs that are held back and on which the finding is tried
+};
+
+/// A diagnosis of one trace, or of several together with shared parameters; see pipeline.hpp.
+struct DiagnosedTraces {
+  std::vector<Identification> traces;  ///< as given; their `fits` are of each trace alone and empty where several are
+                                       ///< diagnosed together
+  std::vector<Fit> fits;   ///< the bare laws, then the last rung of the ladder where it holds more; all traces together
+  std::size_t best = 0;    ///< index in `fits`
+  std::vector<Fit> rungs;  ///< the models of the ladder, the base law first
+  Diagnosis diagnosis;
+  bool analysed = true;  ///< false: some trace cannot carry the analysis, its warnings say why
 };
 
 /// Diagnoses one record, or several together with all parameters shared.

@@ -36,7 +36,7 @@ struct GivenParameter {
 struct FitOptions {
   Protocol protocol = Protocol::joint;
   Loss loss = Loss::squares;
-  double loss_scale = 3;  ///< where the robust losses bend, in units of the floor
+  double loss_scale = 3;  ///< where the robust losses bend, in units of the noise floor
   int starts = 5;         ///< starting points; the first comes from the data, the others are seeded; 0: a short look
   std::uint64_t seed = 1;
   int folds = 5;              ///< contiguous blocks of cycles held out in turn
@@ -72,7 +72,7 @@ struct ErrorFigures {
   double rmse = 0;           ///< [1 or N]
   double mean_relative = 0;  ///< mean of [D] Eq 5 over slip samples, |(mu - model)/mu|
   double max_relative = 0;   ///< largest of [D] Eq 5
-  double held_out_rmse = 0;  ///< on cycles that took no part in the fit
+  double held_out_rmse = 0;  ///< on cycles held out from the fit
 };
 
 /// What even the true law would leave.
@@ -96,7 +96,8 @@ struct Fit {
   ErrorFigures error;
   Floor floor;
   double constant_rmse = 0;  ///< what a constant |friction| would leave [1 or N]
-  double explained = 0;      ///< share of the error above the floor that the model explains, against constant friction
+  double explained =
+      0;  ///< share of the error above the noise floor that the model explains, against constant friction
   bool converged = false;
   std::size_t observations = 0;  ///< samples
   std::size_t cycles = 0;
@@ -135,7 +136,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
 /// The same for several records with all parameters shared; `observations` are theirs, joined in the same order. The
-/// floor is the mean of theirs. The published protocol and systematic errors are for one record.
+/// floor is the mean of theirs. Per-cycle extremes and systematic errors are for one record.
 Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
               const Instruments& instruments = {}, const FitOptions& options = {});
 
@@ -143,7 +144,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
 /// nothing sticks), from the spread itself and not from differences, so that coloured noise is not underestimated.
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 
-/// Sets the floor of a fit and the share of the error above it that the model explains.
+/// Sets the noise floor of a fit and the share of the error above it that the model explains.
 void set_floor(const Floor& floor, Fit& fit);
 
 /// A fit tried on another record with every parameter frozen: its errors there, all of them held out.

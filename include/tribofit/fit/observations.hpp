@@ -15,7 +15,7 @@ namespace tribofit {
 
 /// The samples over which an error is taken: those of every slip, and one break-away per cycle.
 ///
-/// This is the definition for the whole house: rigid-stick laws are judged over the slip samples plus one break-away
+/// This is the definition for the whole library: rigid-stick laws are judged over the slip samples plus one break-away
 /// residual per cycle (in rigid stick mu is set by the spring, not by the law). The unit of evidence is the cycle, or a
 /// stretch of equal length where nothing sticks.
 ///
@@ -66,7 +66,7 @@ struct Observations {
   double largest_friction = 0;  ///< largest |mu|, the scale for bounds where friction is a force
 
   std::size_t size() const { return time.size(); }
-  /// A slip as the friction room sees it.
+  /// A slip as friction/ takes it.
   Slip slip(const SlipObservation& range) const;
 };
 

@@ -24,7 +24,7 @@ struct RigValue {
 };
 
 /// The rig found in a record. Where no normal force is known (per_unit_load) mass, damping and stiffness are per newton
-/// of it: kg/N, s/m, 1/m. A rig that cannot be had says why in `reason`.
+/// of it: kg/N, s/m, 1/m. Where the rig could not be identified, `reason` says why.
 struct RigFit {
   bool determined = false;  ///< all three were found and can be a rig
   std::string reason;       ///< why not; empty where determined

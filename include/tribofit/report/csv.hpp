@@ -4,7 +4,7 @@
 
 namespace tribofit {
 
-struct DiagnosedTraces;  // pipeline.hpp
+struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
 
 /// Writes a result as CSV files for plotting, all of them or none; the folder is made when it is missing.

@@ -6,7 +6,7 @@
 
 namespace tribofit {
 
-struct DiagnosedTraces;  // pipeline.hpp
+struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 
 /// What a person reads after a diagnosis, in this order: what was diagnosed; the ladder of held-out errors as it falls,
 /// with bars against the floor; where the base law fails; the verdict in one sentence; the added effects with their

@@ -5,7 +5,7 @@
 
 namespace tribofit {
 
-struct DiagnosedTraces;  // pipeline.hpp
+struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
 
 struct JsonOptions {

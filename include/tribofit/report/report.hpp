@@ -10,7 +10,7 @@
 
 namespace tribofit {
 
-struct DiagnosedTraces;  // pipeline.hpp
+struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
 
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_page() makes one HTML file

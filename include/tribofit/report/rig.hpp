@@ -7,7 +7,7 @@
 
 namespace tribofit {
 
-struct RigIdentification;  // pipeline.hpp
+struct RigIdentification;  // fit/identification.hpp
 
 /// What a person reads after `identify rig`: trace, conditions, health, the rig with its uncertainties and the check by
 /// the slope of stick, what limits it, and the next command.

@@ -9,7 +9,7 @@
 
 namespace tribofit {
 
-struct Identification;  // pipeline.hpp
+struct Identification;  // fit/identification.hpp
 
 struct TerminalOptions {
   bool colour = false;

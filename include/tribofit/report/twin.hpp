@@ -8,7 +8,7 @@
 
 namespace tribofit {
 
-struct TwinIdentification;  // pipeline.hpp
+struct TwinIdentification;  // study/twin.hpp
 
 /// What a person reads after `identify twin`: the laws and the rig in a line each, measured and simulated motion side
 /// by side with their difference in standard errors, where the twin fails, and the next command.

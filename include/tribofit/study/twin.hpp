@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/study/block_motion.hpp"
 #include "tribofit/study/identified.hpp"
 
@@ -40,6 +41,13 @@ struct Twin {
 
   /// Names of the measures in which a column is off by more than three standard errors, the worst first.
   std::vector<std::string> failures(std::size_t column) const;
+};
+
+/// A trace beside the motions that its laws and its rig predict; see pipeline.hpp.
+struct TwinIdentification {
+  Identification trace;      ///< its `fits`: the best bare law, then the best law with the effects asked for
+  std::vector<RigFit> rigs;  ///< beside each of them, see rig_beside()
+  Twin twin;
 };
 
 struct TwinOptions {

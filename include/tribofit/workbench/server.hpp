@@ -15,7 +15,7 @@ namespace tribofit {
 /// has sent a newer one, and are answered in JSON, errors as {"problem", "why", "suggestion"}.
 class WorkbenchServer {
  public:
-  /// port: 0 takes a free one. Throws InputError where the port cannot be had, or where this build has no page.
+  /// port: 0 takes a free one. Throws InputError where the port is not free, or where this build has no page.
   WorkbenchServer(WorkbenchSession& session, int port);
   ~WorkbenchServer();
   WorkbenchServer(const WorkbenchServer&) = delete;

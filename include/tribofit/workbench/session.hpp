@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 
 namespace tribofit {
@@ -22,7 +22,7 @@ struct WorkbenchChoice {
 };
 
 /// Why one of them cannot be meant: bounds from high to low, a start beyond the bounds given with it, a value too
-/// large to compute with; empty where all can. Asked at both doors, the command line and the pages.
+/// large to compute with; empty where all can. Asked at both boundaries, the command line and the pages.
 std::string contradiction_in(const std::vector<GivenParameter>& given);
 
 /// A model that was visited.
@@ -78,7 +78,7 @@ struct WorkbenchOptions {
 /// samples; FitDetail::full is what the command line does, to the last bit.
 class WorkbenchSession {
  public:
-  /// AddsToReading the trace. Throws InputError, also where the trace cannot carry an analysis.
+  /// Reads the trace. Throws InputError, also where the trace cannot carry an analysis.
   explicit WorkbenchSession(WorkbenchOptions options);
   ~WorkbenchSession();  ///< cancels a diagnosis
   WorkbenchSession(const WorkbenchSession&) = delete;
@@ -103,7 +103,7 @@ class WorkbenchSession {
   std::string command_of(const WorkbenchChoice& choice) const;
 
   /// Begins a diagnosis of the part of the record that is chosen, with its formulas as candidates beside the catalogue.
-  /// False where one runs already.
+  /// False where one is running already.
   bool begin_diagnosis(const WorkbenchChoice& choice);
   void cancel_diagnosis();
   WorkbenchDiagnosis diagnosis() const;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {

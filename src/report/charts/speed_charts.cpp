@@ -7,7 +7,7 @@
 #include "report/study_sentences.hpp"
 #include "study_parts.hpp"
 #include "styles.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 namespace {

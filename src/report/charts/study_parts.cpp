@@ -10,7 +10,7 @@
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "report/study_sentences.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {

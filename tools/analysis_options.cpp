@@ -1,4 +1,4 @@
-#include "settings.hpp"
+#include "analysis_options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "console.hpp"
-#include "options.hpp"
 #include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -116,36 +115,47 @@ void add_formulas_of(const std::string& path, std::vector<Effect>& effects) {
   }
 }
 
+void read_reading(const Settings& s, ReadOptions& read) {
+  read_conditions(s, read.conditions, read.step_radii);
+  for (const std::string& text : s.columns) add_pairs(text, "--columns", read.columns);
+  for (const std::string& text : s.units) add_pairs(text, "--units", read.units);
+  if (!s.rate.empty()) read.rate = positive(s.rate, Quantity::frequency, "--rate");
+  read.second_file = s.second_file;
+  read.continued_in = s.continued_in;
+  read.threads = s.threads;
+}
+
+void read_laws(const std::vector<std::string>& names, std::vector<BaseLaw>& laws) {
+  if (!names.empty()) laws.clear();
+  for (const std::string& name : names) {
+    const auto found = find_law(name);
+    const bool again = found && std::find(laws.begin(), laws.end(), *found) != laws.end();
+    if (found && !again) laws.push_back(*found);
+  }
+}
+
+void read_effects(const Settings& s, std::vector<Effect>& effects) {
+  for (const std::string& key : s.effects) effects.push_back(effect_named(key));
+  for (const std::string& formula : s.formulas) {
+    if (formula.front() == '@') {
+      add_formulas_of(formula.substr(1), effects);
+    } else {
+      effects.emplace_back(Formula(formula));
+    }
+  }
+  refuse_clashes(effects);
+}
+
 }  // namespace
 
 IdentifyOptions options_from(const Settings& s) {
   IdentifyOptions options;
-  read_conditions(s, options.read.conditions, options.read.step_radii);
-  for (const std::string& text : s.columns) add_pairs(text, "--columns", options.read.columns);
-  for (const std::string& text : s.units) add_pairs(text, "--units", options.read.units);
-  if (!s.rate.empty()) options.read.rate = positive(s.rate, Quantity::frequency, "--rate");
-  options.read.second_file = s.second_file;
-  options.read.continued_in = s.continued_in;
-  options.read.threads = options.threads = s.threads;
+  options.threads = s.threads;
+  read_reading(s, options.read);
   options.motion.trim = s.trim;
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
-
-  if (!s.laws.empty()) options.laws.clear();
-  for (const std::string& law : s.laws) {
-    const auto found = find_law(law);
-    const bool again = found && std::find(options.laws.begin(), options.laws.end(), *found) != options.laws.end();
-    if (found && !again) options.laws.push_back(*found);
-  }
-  for (const std::string& key : s.effects) options.effects.push_back(effect_named(key));
-  for (const std::string& formula : s.formulas) {
-    if (formula.front() == '@') {
-      add_formulas_of(formula.substr(1), options.effects);
-    } else {
-      options.effects.emplace_back(Formula(formula));
-    }
-  }
-
-  refuse_clashes(options.effects);
+  read_laws(s.laws, options.laws);
+  read_effects(s, options.effects);
   options.fit.given = given_from(s, options.laws, options.effects);
   options.selection = selection_from(s);
 
@@ -168,11 +178,6 @@ std::vector<std::string> input_files(const Settings& s) {
     if (formula.front() == '@') files.push_back(formula.substr(1));
   }
   return files;
-}
-
-PictureFormat picture_format(const Settings& s) {
-  if (s.picture_format == "pdf") return PictureFormat::pdf;
-  return s.picture_format == "png" ? PictureFormat::png : PictureFormat::svg;
 }
 
 TerminalOptions terminal_options(const Settings& s, const std::vector<std::string>& arguments) {

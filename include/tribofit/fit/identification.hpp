@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/rig.hpp"
+#include "tribofit/ingest/instruments.hpp"
+#include "tribofit/ingest/read_trace.hpp"
+#include "tribofit/kinematics/motion.hpp"
+#include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
+
+namespace tribofit {
+
+/// How a trace is read, prepared and fitted.
+struct IdentifyOptions {
+  ReadOptions read;
+  Instruments instruments;
+  MotionOptions motion;
+  FitOptions fit;
+  std::vector<BaseLaw> laws = {BaseLaw::exponential, BaseLaw::fractional};
+  int threads = 0;                 ///< 0: as many as there are; the result does not depend on it
+  std::vector<Effect> effects;     ///< added to every law
+  bool published_protocol = true;  ///< fit by per-cycle extremes too, beside the joint fit
+  Selection selection;             ///< what part of the record is fitted
+};
+
+/// One input file with what is known of it beforehand (a manifest's row over the command line).
+struct TraceInput {
+  std::string path;
+  ReadOptions read = {};
+  std::shared_ptr<const Trace> trace = {};  ///< already in memory (a simulation): `path` is its name, nothing is read
+};
+
+/// Everything known about one trace.
+struct Identification {
+  std::string path;
+  std::uint64_t checksum = 0;
+  std::size_t samples = 0;
+  double duration = 0, rate = 0;  ///< [s], [Hz]
+  Motion motion;
+  Segmentation segmentation;
+  SpectralPeak spectral_peak;      ///< of v_r
+  Estimate load_coupling = {};     ///< found in the load channel by a diagnosis and removed from it; 0: none
+  std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the per-cycle extremes
+  std::size_t best = 0;            ///< the fit that predicts held-out cycles best
+  std::vector<std::string> notes;  ///< how the input was read
+  std::vector<std::string> warnings;
+  bool analysed = true;  ///< false: the data were read but cannot carry the analysis, warnings say why
+
+  /// The trace cannot carry the analysis, for this reason.
+  void refuse(std::string reason) {
+    warnings.push_back(std::move(reason));
+    analysed = false;
+  }
+};
+
+/// How finely effects are fitted. quick: to means of a few samples where a slip has many, which moves parameters by up
+/// to about one standard error; the bare laws always are.
+enum class FitDetail { full, quick };
+
+/// The rig behind one trace.
+struct RigIdentification {
+  Identification trace;  ///< without fits; `analysed` is that of the rig
+  RigFit rig;
+};
+
+}  // namespace tribofit

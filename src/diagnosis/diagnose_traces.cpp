@@ -1,0 +1,192 @@
+#include "diagnose_traces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "fit/fit_laws.hpp"
+#include "fit/requested_effects.hpp"
+#include "fit/stick.hpp"
+#include "fit/stick_evidence.hpp"
+#include "instrument_limits.hpp"
+#include "kinematic_effects.hpp"
+#include "tribofit/segmentation/load_coupling.hpp"
+#include "tribofit/statistics/distributions.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// Prepares the trace again without undoing the high-pass, and keeps that where a contact that turns with the disc
+/// explains the sag of the plateau.
+void reconsider_high_pass(const Instruments& instruments, PreparedTrace& prepared) {
+  constexpr double kChance = 15;  // fall of chi-squared that happens by chance once in 1e4
+  const Identification& trace = prepared.trace;
+  if (!trace.analysed || !(trace.motion.high_pass > 0) || instruments.vibrometer.high_pass) return;
+  MotionOptions raw = prepared.motion;
+  raw.undo_high_pass = false;
+  Identification plain = prepared.prepare(raw);
+  // Where the high-pass would leave the plateau off, the spin explains by one effect what else takes two.
+  const double at_least = plateau_is_off(trace.motion, instruments) ? 0 : kChance;
+  if (!plain.analysed || !spins_rather_than_sags(plain.motion, plain.segmentation, at_least)) return;
+  prepared.motion = raw;
+  prepared.trace = std::move(plain);
+}
+
+/// Puts a plateau right that is not where the stated speed and radius put it.
+void correct_plateau(const Instruments& instruments, PreparedTrace& prepared) {
+  const Motion& motion = prepared.trace.motion;
+  if (!prepared.trace.analysed || prepared.motion.plateau != PlateauCorrection::none ||
+      !plateau_is_off(motion, instruments)) {
+    return;
+  }
+  const PlateauSays says = plateau_says(instruments, motion.conditions, motion.plateau_ratio);
+  const bool gain = says.not_the_radius && !says.not_the_gain;
+  MotionOptions corrected = prepared.motion;
+  corrected.plateau = gain ? PlateauCorrection::gain : PlateauCorrection::radius;
+  prepared.trace = prepared.prepare(corrected);
+}
+
+/// A load that follows friction within every cycle would pass for friction that follows the load.
+void remove_load_coupling(Identification& trace) {
+  constexpr double kLeast = 0.01, kChance = 0.01 / 28;  // one of the catalogue's effects
+  if (!trace.analysed) return;
+  const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
+  if (!(std::abs(kappa.value) > kLeast)) return;
+  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > kChance) return;
+  uncouple_load(kappa.value, trace.motion);
+  trace.load_coupling = kappa;
+}
+
+/// Takes back corrections of the plateau that nobody asked for, where the effect that was found lets the block creep as
+/// much: a plateau below omega r is then what that effect does. True when there was one.
+bool undo_needless_corrections(const IdentifyOptions& options, const Diagnosed& diagnosed,
+                               std::vector<PreparedTrace>& traces) {
+  if (options.motion.plateau != PlateauCorrection::none || diagnosed.fits.empty()) return false;
+  const Fit& fit = diagnosed.fits.back();
+  if (!fit.model.acts_in_stick() || fit.parameters.empty()) return false;
+  bool undone = false;
+  for (PreparedTrace& prepared : traces) {
+    if (prepared.trace.motion.plateau_correction == PlateauCorrection::none) continue;
+    Identification plain = prepared.prepare(prepared.motion);
+    if (plain.motion.plateau_correction != PlateauCorrection::none) continue;  // asked for by its effect
+    const Estimate gap = gap_beside_creep(fit.model, fit.values(), plain.motion, plain.segmentation);
+    if (!plain.analysed || !std::isfinite(gap.value) || is_gap(gap.value, gap.std_error)) continue;
+    prepared.trace = std::move(plain);
+    undone = true;
+  }
+  return undone;
+}
+
+/// What the base law leaves where nothing of the motion is undone; nothing where nothing was, or where the record
+/// cannot be read like that.
+std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOptions options, BaseLaw law,
+                                   const EffectRoles& effects) {
+  const Motion& motion = prepared.trace.motion;
+  const bool corrected =
+      motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 || motion.plateau_correction != PlateauCorrection::none;
+  if (!corrected) return std::nullopt;
+  MotionOptions raw = options.motion;
+  raw.undo_high_pass = raw.undo_speed_ripple = false;
+  Identification trace = prepared.prepare(raw);
+  if (!trace.analysed) return std::nullopt;
+  options.laws = {law};
+  options.effects = effects.from_the_start;
+  options.published_protocol = false;
+  fit_laws(options, trace);
+  if (trace.fits.empty() || trace.fits[0].parameters.empty()) return std::nullopt;
+  return trace.fits[0];
+}
+
+std::vector<Record> records_of(const std::vector<PreparedTrace>& traces) {
+  std::vector<Record> records;
+  for (const PreparedTrace& prepared : traces)
+    records.push_back({&prepared.trace.motion, &prepared.trace.segmentation});
+  return records;
+}
+
+/// Refuses traces without what the effects need; false when any is refused.
+bool all_can_be_diagnosed(const std::vector<Effect>& effects, const EffectRoles& roles,
+                          std::vector<PreparedTrace>& traces) {
+  bool all = true;
+  for (PreparedTrace& prepared : traces) {
+    require_channels(effects, prepared.trace);
+    require_formulas(roles.candidates, prepared.trace);
+    all &= prepared.trace.analysed;
+  }
+  return all;
+}
+
+/// The first and the last rung as the fits of the result, and every rung.
+void take_rungs(std::vector<Fit> rungs, DiagnosedTraces& out) {
+  if (rungs.empty()) return;
+  out.fits.push_back(rungs.front());
+  if (rungs.size() > 1) out.fits.push_back(rungs.back());
+  out.best = out.fits.size() - 1;
+  out.rungs = std::move(rungs);
+}
+
+}  // namespace
+
+EffectRoles roles_of(const std::vector<Effect>& effects) {
+  EffectRoles roles;
+  roles.kinematic = kinematic_effects(effects);
+  for (const Effect& effect : friction_effects(effects)) {
+    (std::holds_alternative<Formula>(effect) ? roles.candidates : roles.from_the_start).push_back(effect);
+  }
+  return roles;
+}
+
+PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options) {
+  PreparedTrace prepared{prepare(options.motion), options.motion, prepare};
+  reconsider_high_pass(options.instruments, prepared);
+  correct_plateau(options.instruments, prepared);
+  remove_load_coupling(prepared.trace);
+  return prepared;
+}
+
+DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const IdentifyOptions& options,
+                                const DiagnosisOptions& given) {
+  DiagnosedTraces out;
+  const EffectRoles effects = roles_of(options.effects);
+  out.analysed = all_can_be_diagnosed(options.effects, effects, traces);
+  if (out.analysed) {
+    DiagnosisOptions inner = given;
+    inner.threads = options.threads;
+    inner.from_the_start = effects.from_the_start;
+    const auto diagnose_all = [&] {
+      return diagnose(records_of(traces), options.laws, effects.candidates, options.instruments, options.fit, inner);
+    };
+    Diagnosed diagnosed = diagnose_all();
+    if (undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
+    out.diagnosis = std::move(diagnosed.diagnosis);
+    std::optional<Fit> uncorrected;
+    if (traces.size() == 1 && !diagnosed.fits.empty())
+      uncorrected = fit_uncorrected(traces[0], options, out.diagnosis.law, effects);
+    add_motion(records_of(traces), traces[0].trace.load_coupling, options.instruments, uncorrected, out.diagnosis);
+    take_rungs(std::move(diagnosed.fits), out);
+  } else {
+    out.diagnosis.verdict = Verdict::not_enough_data;
+  }
+  for (PreparedTrace& prepared : traces) out.traces.push_back(std::move(prepared.trace));
+  return out;
+}
+
+Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs) {
+  Confirmation out;
+  out.path = trace.path;
+  out.base_rmse = out.final_rmse = std::numeric_limits<double>::quiet_NaN();
+  if (!trace.analysed) return out;
+  const Fit base = evaluate_frozen(rungs.front(), trace.motion, trace.segmentation);
+  const Fit last = evaluate_frozen(rungs.back(), trace.motion, trace.segmentation);
+  out.base_rmse = base.error.rmse;
+  out.final_rmse = last.error.rmse;
+  const Comparison comparison = compare_held_out(last, base);
+  out.p_value = comparison.first_better ? 0.5 * comparison.p_value : 1 - 0.5 * comparison.p_value;
+  return out;
+}
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "tribofit/diagnosis/diagnosis.hpp"
+
+namespace tribofit::diagnosis {
+
+/// Reads, moves and segments one trace with other motion options than before.
+using PrepareTrace = std::function<Identification(const MotionOptions&)>;
+
+/// A trace that can be prepared again.
+struct PreparedTrace {
+  Identification trace;
+  MotionOptions motion;  ///< what was done in the end, but for the plateau
+  PrepareTrace prepare;
+};
+
+/// Which part the effects that a user names have in a diagnosis.
+struct EffectRoles {
+  std::vector<Effect> kinematic;       ///< corrected before any fit
+  std::vector<Effect> from_the_start;  ///< of the catalogue: in every model
+  std::vector<Effect> candidates;      ///< formulas: candidates beside the catalogue
+};
+EffectRoles roles_of(const std::vector<Effect>& effects);
+
+/// A trace as the diagnosis reads it. A high-pass that nobody declared is not undone where a contact that turns with
+/// the disc lets the plateau sag as well or better; a plateau that is off is corrected; a load that follows friction
+/// within every cycle is freed of it.
+PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options);
+
+/// Diagnoses the traces together. A trace without what `options.effects` need is refused, and nothing is diagnosed.
+/// Corrections of the plateau that nobody asked for are taken back where the effect that was found explains it.
+DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const IdentifyOptions& options,
+                                const DiagnosisOptions& diagnosis);
+
+/// The last rung against the base law on a trace that was held back, every parameter frozen.
+Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs);
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,89 @@
+#include "cross_validation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace tribofit {
+
+namespace {
+
+/// How far the levels by per-cycle extremes move when the cycles of a fold are left out.
+Eigen::VectorXd shift_of_levels(const FitContext& context, const Solution& solution, const Fit& fit, std::size_t fold) {
+  const std::vector<double>& p = solution.values();
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
+  if (!context.by_extremes()) return shift;
+  std::vector<bool> left_out(context.observations.cycles);
+  for (std::size_t c = 0; c < left_out.size(); ++c) left_out[c] = fit.cycle_folds[c] == fold;
+  const std::array<double, 2> kept = solution.extremes.means(left_out);
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (std::isfinite(kept[k])) shift(static_cast<Eigen::Index>(k)) = kept[k] - p[k];
+  }
+  return shift;
+}
+
+/// One Gauss-Newton step from the fit of all towards that of the cycles outside a fold.
+Eigen::VectorXd step_without(const FitContext& context, const Solution& solution, const NormalEquations& equations,
+                             const std::vector<bool>& free, const Fit& fit, std::size_t fold) {
+  Eigen::MatrixXd curvature = equations.total;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(curvature.rows());
+  for (std::size_t c = 0; c < context.observations.cycles; ++c) {
+    if (fit.cycle_folds[c] == fold) {
+      curvature -= equations.curvature[c];
+    } else {
+      gradient += equations.gradient[c];
+    }
+  }
+  const Eigen::VectorXd levels = shift_of_levels(context, solution, fit, fold);
+  return levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
+}
+
+/// Adds a step, within the bounds. True where it is too long for the model to be straight over it.
+bool take_step(const Bounds& bounds, const std::vector<bool>& free, const Eigen::VectorXd& step,
+               std::vector<double>& q) {
+  bool is_long = false;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double length = step(static_cast<Eigen::Index>(k));
+    const double range = bounds.upper[k] - bounds.lower[k];
+    is_long |= free[k] && std::abs(length) > 0.2 * std::abs(q[k]) + 1e-3 * range;
+    q[k] += length;
+    if (free[k]) q[k] = std::clamp(q[k], bounds.lower[k], bounds.upper[k]);
+  }
+  return is_long;
+}
+
+}  // namespace
+
+void cross_validate(const FitContext& context, const Solution& solution, const NormalEquations& equations,
+                    const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
+  const Observations& observations = context.observations;
+  const std::vector<double>& p = solution.values();
+  const std::size_t folds = std::min(observations.cycles, static_cast<std::size_t>(std::max(2, context.options.folds)));
+  fit.cycle_counts = errors.counts;
+  fit.cycle_squares = errors.squares;
+  fit.fold_parameters.assign(folds, p);
+  fit.cycle_folds = blocks_of(observations, folds);
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    std::vector<std::size_t> held, kept;
+    for (const std::size_t s : all_slips(observations)) {
+      (fit.cycle_folds[observations.slips[s].cycle] == fold ? held : kept).push_back(s);
+    }
+    std::vector<double>& q = fit.fold_parameters[fold];
+    const Eigen::VectorXd step = step_without(context, solution, equations, free, fit, fold);
+    const bool is_long = take_step(context.bounds, free, step, q);
+    if (is_long && !context.by_extremes()) q = context.solve(kept, p, quick_search()).p;
+    // The squares on every sample at p are known; means over a few samples give their change exactly
+    // where the two curves differ by a nearly constant amount within such a mean.
+    const ModelResiduals residuals(context.model, observations, held);
+    const std::vector<double> at_q = residuals.squares(q.data()), at_p = residuals.squares(p.data());
+    for (std::size_t k = 0; k < std::min(at_q.size(), at_p.size()); ++k) {
+      fit.cycle_squares[observations.slips[held[k]].cycle] += at_q[k] - at_p[k];
+    }
+  }
+  const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
+  const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);
+  fit.error.held_out_rmse = std::sqrt(std::max(0.0, squares) / counts);
+}
+
+}  // namespace tribofit

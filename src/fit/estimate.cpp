@@ -1,0 +1,139 @@
+#include "estimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "change_point.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Evenly spread slips with about `values` values: enough to compare starts.
+std::vector<std::size_t> sample_of_slips(const Observations& observations, std::size_t values) {
+  const std::size_t every = std::max<std::size_t>(1, observations.size() / values);
+  std::vector<std::size_t> slips;
+  for (std::size_t k = 0; k < observations.slips.size(); k += every) slips.push_back(k);
+  return slips;
+}
+
+/// Good enough for a look: what has not been found by then is far away.
+SolverOptions short_search() {
+  SolverOptions look = quick_search();
+  look.max_iterations = 12;
+  look.relative_cost = 1e-6;
+  return look;
+}
+
+/// The last digits; along a flat valley nothing is gained by going on.
+SolverOptions careful_search() {
+  SolverOptions careful;
+  careful.relative_cost = 1e-13;
+  return careful;
+}
+
+/// Where the search begins: the starts of the data or of the user, each once.
+std::vector<std::vector<double>> different_starts(const FitContext& context) {
+  auto starts =
+      make_starts(context.model, context.observations, context.bounds, context.options.starts, context.options.seed);
+  if (!context.options.start.empty()) starts = {context.options.start};
+  for (auto& start : starts) apply_given(context.model, context.options.given, context.bounds, start);
+  for (std::size_t k = 1; k < starts.size();) {  // where all is given, all starts are one
+    const auto here = starts.begin() + static_cast<std::ptrdiff_t>(k);
+    if (std::find(starts.begin(), here, *here) == here) {
+      ++k;
+    } else {
+      starts.erase(here);
+    }
+  }
+  return starts;
+}
+
+/// Where the best of several starts leads, compared on a part of the slips.
+std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
+                                   const SolverOptions& search, Fit& fit) {
+  constexpr std::size_t kValuesToCompare = 4000;
+  const std::vector<std::size_t> part = sample_of_slips(context.observations, kValuesToCompare);
+  std::vector<SolverResult> tries;
+  for (const auto& start : starts) tries.push_back(context.solve(part, start, search));
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < tries.size(); ++k) {
+    if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;
+  }
+  if (best != 0)
+    fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
+  return tries[best].p;
+}
+
+/// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
+/// that scatter taken out.
+Solution joint_estimate(FitContext& context, Fit& fit) {
+  Solution out;
+  const bool look = context.options.starts == 0;
+  const SolverOptions search = look ? short_search() : quick_search();
+  const std::vector<std::vector<double>> starts = different_starts(context);
+  out.start = starts[0];
+  const std::vector<std::size_t> all = all_slips(context.observations);
+  std::vector<double> p = context.solve(all, best_of_starts(context, starts, search, fit), search).p;
+  const std::optional<ChangePoint> change = change_point_of(context.model);
+  Bounds held = context.bounds;
+  // The direction in which a slip scatters is that of the law: known better once it has been taken out.
+  const ModelResiduals plain(context.model, context.observations, all, context.loss);
+  constexpr int kPasses = 3;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    context.whitening = plain.whitening_at(p.data());
+    if (change) {  // slips at levels of their own would hide a change that is misplaced
+      p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p);
+      held.lower[change->time] = held.upper[change->time] = p[change->time];
+    }
+    if (pass < kPasses - 1) p = context.solve(all, p, search, held).p;
+  }
+  out.result = context.solve(all, p, look ? search : careful_search(), held);
+  return out;
+}
+
+/// [D] 3.2: levels from extremes, then the decay factor alone.
+Solution estimate_by_extremes(FitContext& context, Fit& fit) {
+  Solution out;
+  out.extremes = extremes_of(context.observations, *context.records[0].segmentation);
+  out.start = start_from_data(context.model, context.observations, context.bounds);
+  apply_given(context.model, context.options.given, context.bounds, out.start);
+  const std::array<double, 2> levels = out.extremes.means();
+  out.has_levels = std::isfinite(levels[0]) && std::isfinite(levels[1]);
+  if (!out.has_levels) {
+    out.result.p = out.start;
+    out.result.message = "the per-cycle extremes need at least three cycles that stick and slip";
+    return out;
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    out.start[k] = context.bounds.lower[k] = context.bounds.upper[k] = levels[k];
+  }
+  for (const GivenParameter& given : context.options.given) {
+    if (given.name != "mu_s" && given.name != "mu_k") continue;
+    fit.messages.push_back(given.name + " is set by the per-cycle extremes; the value given for it is not used");
+  }
+  out.result = context.solve(all_slips(context.observations), out.start, SolverOptions());
+  return out;
+}
+
+}  // namespace
+
+SolverOptions quick_search() {
+  SolverOptions quick;
+  quick.max_iterations = 40;
+  quick.relative_cost = 1e-8;
+  quick.relative_step = 1e-7;
+  quick.careful = false;
+  return quick;
+}
+
+Solution estimate(FitContext& context, Fit& fit) {
+  Solution out = context.by_extremes() ? estimate_by_extremes(context, fit) : joint_estimate(context, fit);
+  fit.converged = out.result.converged;
+  if (!fit.converged) fit.messages.push_back(out.result.message);
+  return out;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model_residuals.hpp"
+#include "starts.hpp"
+#include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/solver.hpp"
+
+namespace tribofit {
+
+/// One fit in the making: what all its steps share.
+struct FitContext {
+  const FrictionModel& model;
+  std::span<const Record> records;
+  const Observations& observations;
+  const Instruments& instruments;
+  const FitOptions& options;
+  Bounds given{};   ///< with what the user said of them
+  Bounds bounds{};  ///< `given`, but for what the protocol holds
+  ModelResiduals::Options loss{};
+  ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
+
+  /// One record by the per-cycle extremes; several records are always fitted jointly.
+  bool by_extremes() const { return options.protocol == Protocol::published && records.size() == 1; }
+  ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
+    ModelResiduals out(model, observations, slips, loss);
+    if (whitening.part > 0) out.whiten(whitening, own_levels);
+    return out;
+  }
+  SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
+                     const SolverOptions& solver, const Bounds& within) const {
+    return minimize(residuals(slips), start, within.lower, within.upper, solver);
+  }
+  SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
+                     const SolverOptions& solver) const {
+    return solve(slips, start, solver, bounds);
+  }
+};
+
+/// A search that is good enough to compare.
+SolverOptions quick_search();
+
+/// A value within a millionth of its range of a bound sits on it.
+bool on_bound(double value, double lower, double upper);
+
+}  // namespace tribofit

@@ -1,0 +1,74 @@
+#include "fit_laws.hpp"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "requested_effects.hpp"
+#include "tribofit/fit/observations.hpp"
+#include "tribofit/statistics/parallel.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Every model and protocol to fit: joint fits first, then the per-cycle extremes for the bare laws.
+std::vector<std::pair<FrictionModel, FitOptions>> planned_fits(const IdentifyOptions& options,
+                                                               const std::vector<Effect>& effects) {
+  std::vector<std::pair<FrictionModel, FitOptions>> fits;
+  FitOptions inner = options.fit;
+  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, effects), inner);
+  inner.protocol = Protocol::published;
+  for (const BaseLaw law : options.laws) {
+    if (options.published_protocol && law != BaseLaw::coulomb) fits.emplace_back(FrictionModel(law), inner);
+  }
+  return fits;
+}
+
+/// Index of the fit with the least error on held-out cycles, among those of the first fit's protocol.
+std::size_t best_of(const std::vector<Fit>& fits) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < fits.size(); ++k) {
+    if (fits[k].protocol != fits[0].protocol || fits[k].parameters.empty()) continue;
+    if (fits[best].parameters.empty() || fits[k].error.held_out_rmse < fits[best].error.held_out_rmse) best = k;
+  }
+  return best;
+}
+
+/// One noise floor a trace, that of the best fit: the floor is a property of the data.
+void share_floor(std::vector<Fit>& fits, std::size_t best) {
+  const Floor floor = fits[best].floor;
+  for (Fit& fit : fits) {
+    if (!fit.parameters.empty()) set_floor(floor, fit);
+  }
+}
+
+/// Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
+std::size_t values_per_slip(bool has_effects, FitDetail detail) {
+  constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
+  if (!has_effects) return kBare;
+  return detail == FitDetail::quick ? kQuick : kFull;
+}
+
+}  // namespace
+
+void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
+  const std::vector<Effect> effects = friction_effects(options.effects);
+  const Channels needs = FrictionModel(BaseLaw::exponential, effects).needs();
+  const Observations observations =
+      observe(trace.motion, trace.segmentation, needs, values_per_slip(!effects.empty(), detail));
+  if (observations.cycles < 3) {
+    trace.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
+    return;
+  }
+  const auto fits = planned_fits(options, effects);
+  trace.fits.resize(fits.size());
+  run_tasks(fits.size(), options.threads, [&](std::size_t k) {
+    trace.fits[k] =
+        fit_model(fits[k].first, trace.motion, trace.segmentation, observations, options.instruments, fits[k].second);
+  });
+  trace.best = best_of(trace.fits);
+  share_floor(trace.fits, trace.best);
+}
+
+}  // namespace tribofit

@@ -1,0 +1,111 @@
+#include "requested_effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <variant>
+
+#include "tribofit/fit/observations.hpp"
+#include "tribofit/friction/evaluate.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Starting values, the lower and the upper bounds of the parameters of a model with one effect.
+std::vector<std::vector<double>> corners_of(const FrictionModel& model) {
+  std::vector<std::vector<double>> corners(3);
+  for (const auto& slot : model.parameters()) {
+    const Parameter& q = slot.parameter;
+    corners[0].push_back(q.start * q.si);
+    corners[1].push_back(q.lower * q.si);
+    corners[2].push_back(q.upper * q.si);
+  }
+  return corners;
+}
+
+/// The term of a formula at every sample of a slip.
+std::vector<double> term_of(const Formula& formula, std::span<const double> p, const Slip& slip) {
+  std::vector<double> term(slip.size(), 0.0);
+  formula.modulate_all(p.data(), slip, slip.velocity, std::span<double>(term));
+  return term;
+}
+
+/// Why a formula cannot be fitted to a trace, as a sentence. Empty where it can.
+std::string trouble_with(const Formula& formula, const Identification& trace) {
+  const FrictionModel model(BaseLaw::coulomb, {formula});
+  const Observations observations = observe(trace.motion, trace.segmentation, model.needs());
+  const std::string key = formula.info().key;
+  bool acts = observations.slips.empty();
+  const std::vector<std::vector<double>> corners = corners_of(model);
+  for (const auto& range : observations.slips) {
+    const Slip slip = observations.slip(range);
+    for (const std::vector<double>& corner : corners) {
+      const bool at_starts = &corner == &corners.front();
+      if (acts && !at_starts) break;
+      const std::vector<double> term = term_of(formula, std::span(corner).subspan(model.base_count()), slip);
+      for (std::size_t i = 0; i < term.size(); ++i) {
+        acts |= term[i] != 0;
+        if (!at_starts || std::isfinite(term[i])) continue;
+        return fmt::format(
+            "'{}' is not finite on these data at its starting values, first at t = {:.4g} s, v_r = {:.4g} mm/s: it "
+            "divides by zero, overflows or leaves its domain",
+            key, slip.time[i], 1e3 * slip.velocity[i]);
+      }
+    }
+  }
+  return acts ? std::string() : fmt::format("'{}' is zero on these data for all values of its parameters", key);
+}
+
+}  // namespace
+
+std::vector<Effect> friction_effects(std::span<const Effect> effects) {
+  std::vector<Effect> out;
+  std::copy_if(effects.begin(), effects.end(), std::back_inserter(out),
+               [](const Effect& e) { return !is_kinematic(e); });
+  return out;
+}
+
+std::vector<Effect> kinematic_effects(std::span<const Effect> effects) {
+  std::vector<Effect> out;
+  std::copy_if(effects.begin(), effects.end(), std::back_inserter(out), is_kinematic);
+  return out;
+}
+
+MotionOptions with_corrections(MotionOptions options, std::span<const Effect> effects) {
+  for (const Effect& effect : effects) {
+    if (std::holds_alternative<RadiusOffset>(effect)) options.plateau = PlateauCorrection::radius;
+    if (std::holds_alternative<VelocityGain>(effect)) options.plateau = PlateauCorrection::gain;
+  }
+  return options;
+}
+
+void require_channels(std::span<const Effect> effects, Identification& trace) {
+  const Motion& motion = trace.motion;
+  const Channels needs = FrictionModel(BaseLaw::exponential, {effects.begin(), effects.end()}).needs();
+  const auto require = [&](bool needed, bool present, const char* channel) {
+    if (!needed || present) return;
+    trace.refuse(std::string("an effect needs the channel '") + channel + "', which this trace does not have");
+  };
+  require(needs.load, !motion.load.empty(), "load");
+  if (needs.force && motion.friction_kind != FrictionKind::force && motion.load.empty() &&
+      !motion.conditions.load.known()) {
+    trace.refuse("an effect needs the normal force, which is not known: give it with --load 50N");
+  }
+  require(needs.temperature, !motion.temperature.empty(), "temperature");
+  require(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
+}
+
+void require_formulas(std::span<const Effect> effects, Identification& trace) {
+  if (!trace.analysed) return;
+  for (const Effect& effect : effects) {
+    const auto* formula = std::get_if<Formula>(&effect);
+    if (formula == nullptr) continue;
+    const std::string trouble = trouble_with(*formula, trace);
+    if (!trouble.empty()) trace.refuse(trouble);
+  }
+}
+
+}  // namespace tribofit

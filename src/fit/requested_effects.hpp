@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/identification.hpp"
+#include "tribofit/friction/effects/all.hpp"
+
+namespace tribofit {
+
+/// The effects with a term in a friction model.
+std::vector<Effect> friction_effects(std::span<const Effect> effects);
+/// The effects of the motion, which are corrected before a law is fitted.
+std::vector<Effect> kinematic_effects(std::span<const Effect> effects);
+
+/// Motion options with the corrections that effects of the motion ask for.
+MotionOptions with_corrections(MotionOptions options, std::span<const Effect> effects);
+
+/// Refuses a trace without the channels that the effects need.
+void require_channels(std::span<const Effect> effects, Identification& trace);
+
+/// Refuses a trace on which one of the formulas among the effects cannot be fitted: it is not finite at its starting
+/// values, or zero whatever its parameters are. Nothing is checked on a trace that has been refused already.
+void require_formulas(std::span<const Effect> effects, Identification& trace);
+
+}  // namespace tribofit

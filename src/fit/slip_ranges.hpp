@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "tribofit/fit/observations.hpp"
+
+namespace tribofit {
+
+/// One range per slip of the segmentation that is selected; slips without stick are cut into pieces of about equal
+/// length. Values are not assigned yet.
+std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, const Segmentation& segmentation);
+
+}  // namespace tribofit

@@ -1,0 +1,33 @@
+#include "obstacles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace tribofit {
+
+namespace {
+
+constexpr std::size_t kFewestSamples = 16;
+
+bool is_constant(const std::vector<double>& channel) {
+  return std::all_of(channel.begin(), channel.end(), [&](double x) { return x == channel.front(); });
+}
+
+}  // namespace
+
+std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation, bool must_slip) {
+  if (motion.size() < kFewestSamples)
+    return {fmt::format("there are only {} samples: too few for any analysis", motion.size())};
+  std::vector<std::string> found;
+  if (is_constant(motion.friction))
+    found.emplace_back("friction is the same in every sample: the channel was not recorded");
+  if (is_constant(motion.relative_velocity) && !motion.sticks && motion.velocity_kind != VelocityKind::fixed_block)
+    found.emplace_back("the velocity is the same in every sample: the channel was not recorded");
+  if (found.empty() && must_slip && segmentation.kind == MotionKind::always_sticking)
+    found.emplace_back("nothing slips in this trace: there is no friction law to fit");
+  return found;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,222 @@
+#include "command.hpp"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "console.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
+
+namespace {
+
+constexpr std::size_t kHelpColumn = 30;
+
+/// Options that do not shape the analysis: where results go, and how runs are found and combined.
+constexpr std::array<std::string_view, 11> kNotOwn = {"--json",    "--csv",     "--report", "--quiet",
+                                                      "--figures", "--format",  "--out",    "--shard",
+                                                      "--again",   "--pattern", "--compare"};
+
+/// The option meant by a misspelt one, for the message.
+std::string nearest_option(const CLI::App& app, const std::string& message) {
+  const std::size_t at = message.find("--");
+  if (at == std::string::npos) return "";
+  const std::string word = message.substr(at, message.find_first_of("= ", at) - at);
+  std::vector<std::string> known;
+  for (const CLI::App* part : {&app, app.get_subcommands().empty() ? &app : app.get_subcommands().front()}) {
+    for (const CLI::Option* option : part->get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+  }
+  const std::string nearest = tribofit::nearest_name(word, known);
+  constexpr std::size_t kAlike = 4;  // two dashes and two letters: anything less is not a misspelling
+  return nearest.substr(0, kAlike) == word.substr(0, kAlike) ? "; did you mean " + nearest + "?" : "";
+}
+
+ExitStatus wrong_usage(const CLI::App& app, const std::string& text) {
+  const auto verbs = app.get_subcommands();
+  print_error(text + "\n`identify " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") +
+              "--help` lists the options");
+  return ExitStatus::wrong_usage;
+}
+
+/// A CLI11 check that says nothing but the words or numbers in the help and in the error.
+template <class Check>
+Option checked(CLI::Option* option, Check check) {
+  option->check(std::move(check));
+  return Option(option);
+}
+
+}  // namespace
+
+Option Option::group(const char* name) const {
+  parsed_->group(name);
+  return *this;
+}
+
+Option Option::required() const {
+  parsed_->required();
+  return *this;
+}
+
+Option Option::describe(const char* help) const {
+  parsed_->description(help);
+  return *this;
+}
+
+Option Option::show_default() const {
+  parsed_->capture_default_str();
+  return *this;
+}
+
+Option Option::one_value_each() const {
+  parsed_->allow_extra_args(false);
+  return *this;
+}
+
+Option Option::one_of(std::initializer_list<const char*> words) const {
+  return checked(parsed_, CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+}
+
+Option Option::range(double least, double most) const {
+  return checked(parsed_, CLI::Range(least, most));
+}
+
+Option Option::range(int least, int most) const {
+  return checked(parsed_, CLI::Range(least, most));
+}
+
+Command Command::add_verb(const char* name, const char* help) const {
+  return {*app_->add_subcommand(name, help), *status_};
+}
+
+void Command::footer(const char* text) const {
+  app_->footer(text);
+}
+
+void Command::narrow_help() const {
+  app_->get_formatter()->column_width(kHelpColumn);
+}
+
+void Command::requires_kind(const char* advice) const {
+  app_->require_subcommand(0, 1);
+  app_->callback([app = app_, advice] {
+    if (app->get_subcommands().empty()) throw UsageError(advice);
+  });
+}
+
+Option Command::add_option(const std::string& names, std::string& value, const std::string& help) const {
+  return Option(app_->add_option(names, value, help));
+}
+
+Option Command::add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const {
+  return Option(app_->add_option(names, values, help));
+}
+
+Option Command::add_option(const std::string& names, int& value, const std::string& help) const {
+  return Option(app_->add_option(names, value, help));
+}
+
+Option Command::add_option(const std::string& names, std::size_t& value, const std::string& help) const {
+  return Option(app_->add_option(names, value, help));
+}
+
+Option Command::add_option(const std::string& names, double& value, const std::string& help) const {
+  return Option(app_->add_option(names, value, help));
+}
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {
+  return Option(app_->add_flag(names, value, help));
+}
+
+Option Command::option(const char* name) const {
+  return Option(app_->get_option(name));
+}
+
+void Command::on_run(std::function<ExitStatus()> run) const {
+  app_->callback([app = app_, status = status_, run = std::move(run)] {
+    if (app->get_subcommands().empty()) *status = run();
+  });
+}
+
+void Command::before_verb(std::function<void(const std::string&)> check) const {
+  app_->parse_complete_callback([app = app_, check = std::move(check)] {
+    const auto verbs = app->get_subcommands();
+    if (!verbs.empty()) check(verbs.front()->get_name());
+  });
+}
+
+std::vector<Command::Typed> Command::typed() const {
+  std::vector<Typed> out;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->count() == 0) continue;
+    out.push_back(
+        {option->get_name(), option->results(), option->get_items_expected_max() == 0, option->get_positional()});
+  }
+  return out;
+}
+
+bool Command::has_option(const char* name) const {
+  return app_->get_option_no_throw(name) != nullptr;
+}
+
+void Command::refuse_empty_values() const {
+  for (const Typed& option : typed()) {
+    const auto& values = option.values;
+    if (option.is_flag || std::find(values.begin(), values.end(), "") == values.end()) continue;
+    const std::string name = option.is_positional ? "a trace" : option.name;
+    throw UsageError(name + " is given an empty value; give one or leave it out");
+  }
+}
+
+std::vector<std::string> Command::own_options() const {
+  const bool pools = has_option("--share");  // what is said of all runs together
+  std::vector<std::string> arguments;
+  for (const Typed& option : typed()) {
+    const std::string& name = option.name;
+    if (option.is_positional || std::find(kNotOwn.begin(), kNotOwn.end(), name) != kNotOwn.end()) continue;
+    if (pools && (name == "--share" || name == "--vary")) continue;
+    if (option.is_flag) {
+      arguments.push_back(option.values.front() == "false" ? "--no-" + name.substr(2) : name);
+      continue;
+    }
+    for (const std::string& value : option.values) arguments.insert(arguments.end(), {name, value});
+  }
+  return arguments;
+}
+
+ExitStatus run_program(const Program& program, int argc, char** argv,
+                       const std::function<void(const Command&)>& setup) {
+  CLI::App app(program.description, program.name);
+  app.footer(program.footer);
+  app.get_formatter()->column_width(kHelpColumn);
+  app.set_version_flag("--version", program.version, "Print the version and leave");
+  ExitStatus status = ExitStatus::done;
+  setup(Command(app, status));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    return wrong_usage(app, error.what() + nearest_option(app, error.what()));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) return wrong_usage(app, error.what());
+    app.exit(error);  // prints help or version
+  } catch (const UsageError& error) {
+    return wrong_usage(app, error.what());
+  }
+  return status;
+}
+
+void parse_words(std::vector<std::string> words, const std::function<void(const Command&)>& setup) {
+  CLI::App app;
+  ExitStatus ignored = ExitStatus::done;
+  setup(Command(app, ignored));
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+}

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "exit_status.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+/// One option of a command. It is filled in when the command line is parsed.
+class Option {
+ public:
+  explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
+
+  Option group(const char* name) const;
+  Option required() const;
+  Option describe(const char* help) const;
+  /// The help states the value it has unless typed.
+  Option show_default() const;
+  /// One value each time it is given; it may be given several times.
+  Option one_value_each() const;
+  Option one_of(std::initializer_list<const char*> words) const;
+  Option range(double least, double most) const;
+  Option range(int least, int most) const;
+
+ private:
+  CLI::Option* parsed_;
+};
+
+/// A command line of `identify`, or of one of its verbs: options, help, and what it runs.
+///
+/// The one place that knows the parser (CLI11): command.cpp. Its headers take 8 s to compile.
+class Command {
+ public:
+  Command(CLI::App& app, ExitStatus& status) : app_(&app), status_(&status) {}
+
+  Command add_verb(const char* name, const char* help) const;
+  void footer(const char* text) const;
+  void narrow_help() const;
+  /// The verb has kinds of its own; `advice` is the usage error where none is named.
+  void requires_kind(const char* advice) const;
+
+  Option add_option(const std::string& names, std::string& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const;
+  Option add_option(const std::string& names, int& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::size_t& value, const std::string& help) const;
+  Option add_option(const std::string& names, double& value, const std::string& help) const;
+  /// names: "--trim,!--no-trim" has a negative form.
+  Option add_flag(const std::string& names, bool& value, const std::string& help) const;
+  Option option(const char* name) const;
+
+  /// What it does once its options are read. Not called where a verb of it is named.
+  void on_run(std::function<ExitStatus()> run) const;
+  /// Called with the name of the verb before that runs.
+  void before_verb(std::function<void(const std::string& verb)> check) const;
+
+  /// An option as it was typed.
+  struct Typed {
+    std::string name;
+    std::vector<std::string> values;  ///< of a flag: "true" or "false"
+    bool is_flag = false, is_positional = false;
+  };
+  std::vector<Typed> typed() const;
+  bool has_option(const char* name) const;
+
+  /// Usage error: an option given an empty value.
+  void refuse_empty_values() const;
+  /// The options as typed that shape the analysis, for the next command.
+  std::vector<std::string> own_options() const;
+
+ private:
+  CLI::App* app_;
+  ExitStatus* status_;
+};
+
+/// Parses a command line and runs what it names. setup: adds options and verbs. Usage errors are printed; what a verb
+/// throws else is thrown on.
+struct Program {
+  const char* name;
+  const char* description;
+  const char* footer;
+  std::string version;
+};
+ExitStatus run_program(const Program& program, int argc, char** argv, const std::function<void(const Command&)>& setup);
+
+/// Parses words by the options that setup adds; throws UsageError where they do not fit.
+void parse_words(std::vector<std::string> words, const std::function<void(const Command&)>& setup);

@@ -1,0 +1,100 @@
+#include "results.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "tribofit/ingest/output_tables.hpp"
+#include "tribofit/report/page.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+PictureFormat picture_format(const Settings& s) {
+  if (s.picture_format == "pdf") return PictureFormat::pdf;
+  return s.picture_format == "png" ? PictureFormat::png : PictureFormat::svg;
+}
+
+/// Usage error: a page that this build cannot write, or one onto another output.
+void check_report(const Settings& s) {
+  if (s.report.empty()) return;
+  if (!has_report_page()) {
+    throw UsageError(
+        "--report: this build leaves the page out; build where npm is installed (scripts/setup page), or use --json or "
+        "--csv");
+  }
+  if (s.report == s.json || same_file(s.report, s.json)) throw UsageError("--report and --json are one file");
+}
+
+/// Usage error: pictures that cannot be drawn here, or whose folder is another output.
+void check_figures(const Settings& s) {
+  if (s.figures.empty()) {
+    if (!s.picture_format.empty()) throw UsageError("--format goes with --figures FOLDER");
+    return;
+  }
+  if (s.figures == s.json || s.figures == s.report) {
+    throw UsageError("--figures is a folder; name another than the file of --json or --report");
+  }
+  if (!can_write_pictures(picture_format(s))) {
+    throw UsageError("--format " + s.picture_format +
+                     ": this build leaves it out; use --format svg, or build where Cairo is installed "
+                     "(scripts/setup figures)");
+  }
+}
+
+}  // namespace
+
+ReportFiles::ReportFiles(const Settings& s, const std::function<Report()>& make) {
+  if (s.report.empty() && s.figures.empty()) return;
+  const Report report = make();
+  if (!s.figures.empty()) pictures_.emplace(report, s.figures, picture_format(s));
+  if (s.report.empty()) return;
+  page_.emplace(s.report);
+  page_->write(report_page(report));
+  page_->finish();
+}
+
+void ReportFiles::commit() {
+  if (pictures_) pictures_->commit();
+  if (page_) page_->commit();
+}
+
+void deliver(const Settings& s, const Outputs& outputs) {
+  std::optional<WholeFile> json;
+  if (!s.json.empty()) {
+    json.emplace(s.json == "-" ? "/dev/stdout" : s.json);
+    json->write(outputs.json());
+    json->finish();
+  }
+  ReportFiles drawn(s, outputs.report);
+  if (!s.csv.empty() && outputs.csv) outputs.csv(s.csv);
+  drawn.commit();
+  if (json) json->commit();
+  if (!s.quiet && s.json != "-") print(outputs.text());
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
+void refuse_overwriting(const Settings& s, const std::vector<std::string>& inputs) {
+  check_report(s);
+  check_figures(s);
+  for (const std::string& input : inputs) {
+    if (!s.report.empty() && same_file(s.report, input)) {
+      throw UsageError("--report would overwrite " + input);
+    }
+    if (!s.json.empty() && same_file(s.json, input)) throw UsageError("--json would overwrite " + input);
+    if (s.csv.empty()) continue;
+    const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();
+    for (const OwnFile& file : output_tables) {
+      if (same_file((s.csv / std::filesystem::path(file.name)).string(), input) ||
+          same_file((own_folder / file.name).string(), input)) {
+        throw UsageError("--csv would overwrite " + input + " with its own " + std::string(file.name));
+      }
+    }
+  }
+}
