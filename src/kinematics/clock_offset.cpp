@@ -1,6 +1,6 @@
 #include "tribofit/kinematics/clock_offset.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "ingest/clock.hpp"
+#include "statistics/golden_section.hpp"
+#include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -142,8 +144,8 @@ class ForceBalance {
     if (samples < 20 || !(variance > 0)) return 1;
     const Eigen::Matrix<double, count, 1> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
     const Eigen::Matrix<double, count, count> scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::Matrix<double, count, 1> solution = scaled.ldlt().solve(scale.asDiagonal() * right);
-    const double balanced = solution.dot(scale.asDiagonal() * right);
+    const Eigen::VectorXd scaled_right = scale.asDiagonal() * right;
+    const double balanced = scaled_right.dot(solve_symmetric_system(scaled, scaled_right).x);
     return std::clamp((squares - balanced) / variance, 0.0, 1.0);
   }
 
@@ -160,27 +162,9 @@ class ForceBalance {
         best = offset;
       }
     }
-    // golden section
-    const double ratio = (std::sqrt(5.0) - 1) / 2;
-    double low = best - 2 * reach / steps, high = best + 2 * reach / steps;
-    double left = high - ratio * (high - low), right = low + ratio * (high - low);
-    double left_cost = cost(left), right_cost = cost(right);
-    while (high - low > tolerance) {
-      if (left_cost < right_cost) {
-        high = right;
-        right = left;
-        right_cost = left_cost;
-        left = high - ratio * (high - low);
-        left_cost = cost(left);
-      } else {
-        low = left;
-        left = right;
-        left_cost = right_cost;
-        right = low + ratio * (high - low);
-        right_cost = cost(right);
-      }
-    }
-    return (low + high) / 2;
+    const double width = 4 * reach / steps;
+    const int cuts = std::max(0, static_cast<int>(std::ceil(std::log(tolerance / width) / std::log(0.618))));
+    return golden_section(cost, best - width / 2, best + width / 2, cuts).at;
   }
 
  private:

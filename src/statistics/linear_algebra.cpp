@@ -26,7 +26,7 @@ MatrixXd inverse_of_symmetric(const MatrixXd& matrix) {
 }
 
 SymmetricSystem solve_symmetric_system(const MatrixXd& matrix, const VectorXd& right) {
-  SymmetricSystem out;
+  SymmetricSystem out{VectorXd::Zero(matrix.rows()), MatrixXd::Zero(matrix.rows(), matrix.cols())};
   const Eigen::LDLT<MatrixXd> solver(matrix);
   if (solver.info() != Eigen::Success) return out;
   out.reciprocal_condition = solver.rcond();

@@ -28,7 +28,7 @@ Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& matrix);
 struct SymmetricSystem {
   Eigen::VectorXd x;
   Eigen::MatrixXd inverse;
-  double reciprocal_condition = 0;  ///< estimate, in the 1-norm; 0: no solution
+  double reciprocal_condition = 0;  ///< estimate, in the 1-norm; 0: no solution, all zero
 };
 SymmetricSystem solve_symmetric_system(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "golden_section.hpp"
 #include "reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
@@ -85,22 +86,10 @@ Line strongest_line(std::span<const double> signal, double step) {
   const auto bin = static_cast<double>(fundamental_bin(lines, strongest, first));
   const double mean = mean_of(signal);
   // Golden section between the neighbouring bins: the windowed spectrum has one maximum there.
-  double a = (bin - 1) * spectrum.bin_width, b = (bin + 1) * spectrum.bin_width;
-  constexpr double golden = 0.6180339887498949;
-  double x = b - golden * (b - a), y = a + golden * (b - a);
-  double fx = amplitude_at(signal, mean, step, x), fy = amplitude_at(signal, mean, step, y);
-  for (int k = 0; k < 20; ++k) {
-    if (fx > fy) {
-      b = y, y = x, fy = fx;
-      x = b - golden * (b - a), fx = amplitude_at(signal, mean, step, x);
-    } else {
-      a = x, x = y, fx = fy;
-      y = a + golden * (b - a), fy = amplitude_at(signal, mean, step, y);
-    }
-  }
-  const double frequency = 0.5 * (a + b);
-  // An average over blocks lets the sine pass by sin(x)/x; here one sample is one block.
-  return {frequency, std::max(fx, fy)};
+  constexpr int kSteps = 20;  // to 1e-4 of a bin
+  const auto cost = [&](double frequency) { return -amplitude_at(signal, mean, step, frequency); };
+  const Minimum peak = golden_section(cost, (bin - 1) * spectrum.bin_width, (bin + 1) * spectrum.bin_width, kSteps);
+  return {peak.at, -peak.value};
 }
 
 double block_transmission(double frequency, double block) {
