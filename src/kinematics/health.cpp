@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -242,7 +243,7 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
     item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
     const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;
     if (disc != 0) item.message += fmt::format(": {:+.1f} %", 100 * error);
-    if (std::abs(error) > 0.02) item.status = std::abs(error) > 0.2 ? Status::problem : Status::warning;
+    if (std::abs(error) > kSettled) item.status = std::abs(error) > 0.2 ? Status::problem : Status::warning;
   };
   if (recorded) {
     compare(recorded->block, recorded->disc, "the recorded speed times the radius");

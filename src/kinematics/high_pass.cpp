@@ -4,15 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "limits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 namespace {
-
-constexpr double least_corner = 0.01, largest_corner = 3;  // Hz
-constexpr double significance = 6;                         // standard errors
-constexpr double least_sag = 0.01;                         // of the plateau, over one plateau
 
 // Median and its standard error from the spread of the values.
 struct Centre {
@@ -59,10 +56,10 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& 
   estimate.first_half = a.value;
   estimate.second_half = b.value;
   const double sag = (2 * std::numbers::pi) * all.value * median(std::move(lengths));
-  const bool clear = all.value > significance * all.std_error && sag > least_sag;
+  const bool clear = all.value > kSignificance * all.std_error && sag > kLeastSag;
   const bool same = std::abs(a.value - b.value) < 0.2 * all.value + 3 * std::hypot(a.std_error, b.std_error) &&
                     a.value > 0.5 * all.value && b.value > 0.5 * all.value;
-  estimate.significant = clear && same && all.value > least_corner && all.value < largest_corner;
+  estimate.significant = clear && same && all.value > kLowestCorner && all.value < kHighestCorner;
   estimate.creeping = clear && !same;
   return estimate;
 }

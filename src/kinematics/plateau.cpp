@@ -4,15 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "limits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 namespace {
-
-constexpr double band = 0.12;      // of the largest excursion: what still counts as near the level
-constexpr double flatness = 0.10;  // of the band: how far the middle of a plateau may stand out from its shoulders
-constexpr std::size_t least_blocks = 4;
 
 // Half-sample mode (Robertson and Cryer 1974; Bickel 2002): halve to the densest half until few remain.
 double half_sample_mode(std::span<const double> sorted) {
@@ -34,11 +31,11 @@ double half_sample_mode(std::span<const double> sorted) {
 // A plateau is flat when its middle does not stand out from its shoulders.
 bool is_flat(std::span<const double> run, double half_band) {
   const std::size_t n = run.size(), eighth = std::max<std::size_t>(1, n / 8);
-  if (n < least_blocks) return false;
+  if (n < kFewestBlocks) return false;
   const auto middle = run.subspan(n / 2 - std::min(n / 2, eighth), 2 * eighth);
   const auto left = run.subspan(eighth / 2, 2 * eighth);
   const auto right = run.subspan(n - eighth / 2 - 2 * eighth, 2 * eighth);
-  return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right))) < flatness * half_band * 2;
+  return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right))) < kFlatness * half_band * 2;
 }
 
 double weighted_level(const std::vector<StickPlateau>& runs) {
@@ -59,7 +56,7 @@ double weighted_level(const std::vector<StickPlateau>& runs) {
 
 Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range) {
   Plateaus plateaus;
-  if (velocity.size() < least_blocks) return plateaus;
+  if (velocity.size() < kFewestBlocks) return plateaus;
   std::vector<double> sorted = thinned(velocity, std::size_t{1} << 15);
   std::sort(sorted.begin(), sorted.end());
   std::span<const double> candidates = sorted;
@@ -69,11 +66,11 @@ Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRang
     candidates =
         candidates.subspan(static_cast<std::size_t>(first - sorted.begin()), static_cast<std::size_t>(last - first));
   }
-  if (candidates.size() < least_blocks) return plateaus;
+  if (candidates.size() < kFewestBlocks) return plateaus;
   const double mode = half_sample_mode(candidates);
   const std::size_t tail = sorted.size() / 1000;
   plateaus.depth = std::max(sorted[sorted.size() - 1 - tail] - mode, mode - sorted[tail]);
-  const double half_band = band * plateaus.depth;
+  const double half_band = kPlateauBand * plateaus.depth;
   for (std::size_t i = 0; i < velocity.size();) {
     if (std::abs(velocity[i] - mode) > half_band) {
       ++i;

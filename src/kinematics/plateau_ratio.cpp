@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -15,8 +16,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-constexpr double after_high_pass = 1e-3;  // what sampling and the corner leave in the level of a restored plateau
-constexpr double part_of_creep = 0.5;     // of what is taken off: a real contact rings, and mu_s is not known that well
 constexpr std::size_t parts = 6, least_samples = 6 * parts, most_plateaus = 512;
 
 /// One stick in parts: 1 - v_r/(omega r), friction, and the largest mean friction over a part of it.
@@ -138,11 +137,11 @@ PlateauRatio plateau_ratio(const Motion& motion, const Plateaus& plateaus, std::
   const Estimate level = trimmed_mean(std::move(levels));
   ratio.value = ratio.in_motion = level.value;
   const double x = creeps ? median(creep.x) : 0;
-  ratio.std_error = std::hypot(level.std_error, x * creep.slope.std_error, part_of_creep * x * creep.slope.value);
+  ratio.std_error = std::hypot(level.std_error, x * creep.slope.std_error, kErrorOfCreep * x * creep.slope.value);
   if (motion.high_pass > 0 && motion.constant_disc_velocity != 0) {
     const Estimate net = net_velocity(motion, plateaus, factor);
     ratio.value -= net.value / motion.constant_disc_velocity;
-    ratio.std_error = std::hypot(ratio.std_error, net.std_error / motion.constant_disc_velocity, after_high_pass);
+    ratio.std_error = std::hypot(ratio.std_error, net.std_error / motion.constant_disc_velocity, kErrorAfterHighPass);
   }
   return ratio;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -197,7 +198,7 @@ std::size_t run_up_blocks(const PlateauSearch& s) {
       pieces.push_back({b, fit_line(v.subspan(b, length)).value});
     }
   }
-  const double tolerance = std::max(0.02 * std::abs(level), 4 * s.noise);
+  const double tolerance = std::max(kSettled * std::abs(level), 4 * s.noise);
   const auto settled = [&](const Piece& p) { return std::abs(p.level - level) <= tolerance; };
   // A disc that starts from rest begins well below its final speed; a disc that ripples does not settle.
   const std::size_t head = s.plateaus.runs.front().begin;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -14,14 +15,6 @@
 
 namespace tribofit::kinematics {
 namespace {
-
-constexpr int largest_order = 6;
-constexpr double least_revolutions = 1.95;  // between the middles of the first and the last plateau
-constexpr std::size_t least_plateaus = 12;
-constexpr double least_amplitude = 0.005, largest_amplitude = 0.25;
-constexpr double significance = 6;       // standard errors
-constexpr double least_explained = 0.5;  // of the variance of the levels
-constexpr double least_per_period = 4;   // plateaus in a period
 
 struct Level {
   double begin = 0, end = 0;  // [s]
@@ -201,8 +194,8 @@ struct OrderFit {
 
 OrderFit fit_best_order(const std::vector<Level>& levels, Design design, double omega, double turns) {
   OrderFit best{0, design, {}};
-  for (int n = 1; n <= largest_order; ++n) {
-    if (static_cast<double>(levels.size()) < least_per_period * n * turns) break;
+  for (int n = 1; n <= kHighestOrder; ++n) {
+    if (static_cast<double>(levels.size()) < kFewestPlateausAPeriod * n * turns) break;
     design.w = n * omega;
     LinearFit fit = fit_order(levels, design);
     if (fit.rss < best.fit.rss) best = {n, design, std::move(fit)};
@@ -270,9 +263,9 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plate
   RippleEstimate estimate;
   std::vector<Level> levels = levels_of(velocity, plateaus, time, friction);
   estimate.plateaus = levels.size();
-  if (levels.size() < least_plateaus || omega == 0) return estimate;
+  if (levels.size() < kFewestPlateaus || omega == 0) return estimate;
   const TimeSpan span = time_span_of(levels);
-  if (span.turns(omega) < least_revolutions) return estimate;
+  if (span.turns(omega) < kFewestRevolutions) return estimate;
   estimate.middle = span.middle;
 
   standardise(levels, &Level::mean);
@@ -285,7 +278,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plate
     leave_out_far(levels, best);
   }
   const Residuals residuals = residuals_of(levels, best);
-  const double fewest = std::max(static_cast<double>(least_plateaus), 0.7 * static_cast<double>(levels.size()));
+  const double fewest = std::max(static_cast<double>(kFewestPlateaus), 0.7 * static_cast<double>(levels.size()));
   if (residuals.left.count < fewest) return estimate;
   estimate.plateaus = static_cast<std::size_t>(residuals.left.count);
   estimate.level = best.fit.x(0);
@@ -295,10 +288,10 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plate
   estimate.explained = residuals.variance_explained();
 
   const DiscRipple& ripple = estimate.ripple;
-  estimate.significant =
-      is_same_in_both_halves(levels, best, ripple.amplitude_std_error * std::abs(estimate.level)) &&
-      ripple.amplitude >= std::max(least_amplitude, creep) && ripple.amplitude <= largest_amplitude &&
-      ripple.amplitude > significance * ripple.amplitude_std_error && estimate.explained > least_explained;
+  estimate.significant = is_same_in_both_halves(levels, best, ripple.amplitude_std_error * std::abs(estimate.level)) &&
+                         ripple.amplitude >= std::max(kLeastRipple, creep) && ripple.amplitude <= kLargestRipple &&
+                         ripple.amplitude > kSignificance * ripple.amplitude_std_error &&
+                         estimate.explained > kLeastExplained;
   if (estimate.significant) try_true_angle(levels, best.design, omega, residuals.left.squares, estimate);
   return estimate;
 }
