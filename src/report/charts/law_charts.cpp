@@ -13,6 +13,7 @@
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"
 #include "tribofit/segmentation/slip_branches.hpp"
+#include "tribofit/statistics/bins.hpp"
 
 namespace tribofit {
 namespace {
@@ -34,7 +35,7 @@ double speed_at(const Identification& trace, std::size_t i) {
 
 /// Bands of value(sample, direction) over speed, one for each branch that there is.
 template <class Value>
-std::vector<std::pair<Branch, DrawnBand>> bands_over_speed(const Identification& trace,
+std::vector<std::pair<Branch, CycleBand>> bands_over_speed(const Identification& trace,
                                                            const std::vector<SlipBranch>& pieces, double fastest,
                                                            Value value) {
   std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, fastest, kSpeedBins));
@@ -44,15 +45,15 @@ std::vector<std::pair<Branch, DrawnBand>> bands_over_speed(const Identification&
       band.add(speed_at(trace, i), value(i, piece.direction));
     band.end_cycle();
   }
-  std::vector<std::pair<Branch, DrawnBand>> out;
+  std::vector<std::pair<Branch, CycleBand>> out;
   for (std::size_t k = 0; k < bands.size(); ++k) {
-    DrawnBand band = bands[k].band();
+    CycleBand band = bands[k].band();
     if (!band.at.empty()) out.emplace_back(static_cast<Branch>(k), std::move(band));
   }
   return out;
 }
 
-ChartLine band_line(std::string name, const DrawnBand& band, Stroke stroke) {
+ChartLine band_line(std::string name, const CycleBand& band, Stroke stroke) {
   return {std::move(name), band.at, band.middle, stroke, band.low, band.high};
 }
 
@@ -166,7 +167,7 @@ Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
           .half = true};
 }
 
-void add_errors(const std::string& name, std::size_t k, const DrawnExtremes& errors, Chart& chart) {
+void add_errors(const std::string& name, std::size_t k, const BinExtremes& errors, Chart& chart) {
   constexpr std::array<Symbol, 3> kLargest = {Symbol::triangle_up, Symbol::square, Symbol::cross};
   const Stroke stroke = model_stroke(k);
   const bool shown = k < 2;
