@@ -31,11 +31,16 @@ const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law,
 
 ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
   std::vector<double> drops;
+  const auto level = [](const ResultFit& fit, std::string_view name) -> const ResultParameter* {
+    const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                                    [&](const ResultParameter& p) { return p.name == name && p.effect.empty(); });
+    return found == fit.parameters.end() ? nullptr : &*found;
+  };
   for (const std::size_t k : group.runs) {
     const ResultFit* fit = runs[k].fit(of.law, of.protocol);
-    if (fit != nullptr && fit->parameters.size() > 1) {
-      drops.push_back(fit->parameters[0].value - fit->parameters[1].value);
-    }
+    if (fit == nullptr) continue;
+    const ResultParameter *mu_s = level(*fit, "mu_s"), *mu_k = level(*fit, "mu_k");
+    if (mu_s != nullptr && mu_k != nullptr) drops.push_back(mu_s->value - mu_k->value);
   }
   return mean_over_runs(drops);
 }

@@ -21,7 +21,8 @@ const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::str
 /// Fits of a group with this law and protocol; null where there are none.
 const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol);
 
-/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means.
+/// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means; not known for a
+/// law without these levels.
 ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of);
 
 /// Amplitude of the fundamental of v_r over the runs of a group [mm/s]; none where no run has figures.

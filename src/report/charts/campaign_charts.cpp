@@ -130,7 +130,7 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
       "Joint protocol; bars: 95 % of the run's own error. Repeats that lie further apart differ from run to run.";
   chart.x = {.quantity = "run", .digits = 7};
   chart.panels.clear();
-  for (std::size_t p = 0; p < 3; ++p) {
+  for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
     std::string name, unit;
     for (std::size_t k = 0; k < of.shown.size(); ++k) {
       ChartLine line{
@@ -139,7 +139,7 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
         const RunResult& run = of.runs[runs[i]];
         const ResultFit* fit = run.fit(law, "joint");
-        if (fit == nullptr || fit->parameters.size() <= p) continue;
+        if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;
         const ResultParameter& value = fit->parameters[p];
         name = value.name, unit = value.unit;
         const bool known = std::isfinite(value.lower95) && std::isfinite(value.upper95);
