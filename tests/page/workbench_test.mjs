@@ -64,6 +64,16 @@ async function change(page, action) {
 }
 const shownError = async (page) => Number.parseFloat(await page.textContent("#shown-error"));
 
+/** The row of the model shown is marked, has its error, and its bar is as much shorter as the error is smaller. */
+async function checkLadder(page, before, after) {
+  const rows = await page.evaluate(() => [...document.querySelectorAll("#bench-rungs tbody tr")].map((row) => ({
+    current: row.className === "current", model: row.querySelector("button").textContent,
+    error: Number.parseFloat(row.cells[2].textContent), bar: row.querySelector(".bar").getBoundingClientRect().width })));
+  const [shown, ...others] = rows.filter((row) => row.current), bare = rows.find((row) => row.error === before);
+  assert.ok(shown && others.length === 0 && /frictional-lag/.test(shown.model) && shown.error === after, JSON.stringify(rows));
+  assert.ok(Math.abs(shown.bar / bare.bar - after / before) < 0.03, `bars of ${shown.bar} and ${bare.bar} px`);
+}
+
 /** The hidden effect is switched on and the error falls; then everything else that a person can change. */
 async function watchTheErrorFall(address, width) {
   const { page, complaints, close } = await open(address, width);
@@ -74,13 +84,7 @@ async function watchTheErrorFall(address, width) {
   console.log(`at ${width} px the held-out error falls from ${before} to ${after}; answered after ` +
     `${await page.evaluate(() => document.documentElement.dataset.answerMs)} ms`);
   assert.ok(after < 0.75 * before, `the error fell from ${before} to ${after} only`);
-  // The ladder: the row of this model is marked, has its error, and its bar is as much shorter as the error is smaller.
-  const rows = await page.evaluate(() => [...document.querySelectorAll("#bench-rungs tbody tr")].map((row) => ({
-    current: row.className === "current", model: row.querySelector("button").textContent,
-    error: Number.parseFloat(row.cells[2].textContent), bar: row.querySelector(".bar").getBoundingClientRect().width })));
-  const [shown, ...others] = rows.filter((row) => row.current), bare = rows.find((row) => row.error === before);
-  assert.ok(shown && others.length === 0 && /frictional-lag/.test(shown.model) && shown.error === after, JSON.stringify(rows));
-  assert.ok(Math.abs(shown.bar / bare.bar - after / before) < 0.03, `bars of ${shown.bar} and ${bare.bar} px`);
+  await checkLadder(page, before, after);
   await page.screenshot({ path: join(folder, `lag-${width}.png`), fullPage: false });
 
   // The command shown gives the same number.
