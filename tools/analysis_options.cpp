@@ -7,6 +7,7 @@
 
 #include "console.hpp"
 #include "parameter_options.hpp"
+#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -16,8 +17,7 @@ using namespace tribofit;
 
 namespace {
 
-const std::vector<std::string> kChannels = {"time", "mu",    "v_b",   "v_r",         "force", "torque",
-                                            "load", "speed", "angle", "temperature", "step"};
+const std::vector<std::string> kChannels(kChannelNames.begin(), kChannelNames.end());
 
 double positive(const std::string& text, Quantity quantity, const std::string& option,
                 const std::string& bare_unit = "") {

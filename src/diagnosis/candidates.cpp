@@ -74,9 +74,7 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
   if (needs.load && observations.load.empty()) return "there is no load channel";
   if (needs.angle && observations.angle.empty()) return "the disc angle is not known (give --speed)";
   if (needs.force && !seen.force_known) return "the normal force is not known (give --load)";
-  if (needs.angle && seen.revolutions < 2) {
-    return fmt::format("the record holds {:.1f} revolutions of the disc; two are needed", seen.revolutions);
-  }
+  if (seen.revolutions < info.excitation.revolutions) return too_few_revolutions(seen.revolutions, info);
   constexpr double kLeastLoadSpread = 0.03, kLeastTemperatureSpread = 2, kLeastStickRatio = 2.5;
   if (needs.load && seen.load_spread < kLeastLoadSpread) {
     return fmt::format("the load varies by {:.1f} % only", 100 * seen.load_spread);
@@ -90,40 +88,39 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
                              seen.median_stick_time)
                : std::string("too few stick times were recorded");
   }
-  if ((info.key == "asymmetry" || info.key == "sensor-offset") && !seen.both_directions) {
-    return "the block slides in one direction only";
-  }
-  if (info.key == "ringing" && !seen.breaks_away) return "there is no break-away to strike it";
-  if (info.key == "contact-spin" && !seen.breaks_away)
-    return "there is no break-away before which the block could creep";
+  if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";
+  const std::string& purpose = info.excitation.break_away;
+  if (!purpose.empty() && !seen.breaks_away) return "there is no break-away " + purpose;
   return {};
 }
 
 double scale_of(const Parameter& parameter, const Observations& observations) {
-  return parameter.si *
-         (parameter.friction_effects || parameter.of_force ? std::max(1.0, observations.largest_friction) : 1.0);
+  return parameter.si * (parameter.scales_with_friction || parameter.bounds_scale_with_force
+                             ? std::max(1.0, observations.largest_friction)
+                             : 1.0);
 }
 
 /// Values over the bounds from which a search begins, in SI.
 std::vector<double> grid_of(const Parameter& parameter, double lower, double upper, const Observations& observations) {
-  if (parameter.grid < 2) {
+  if (parameter.start_grid_points < 2) {
     const double neutral = std::isnan(parameter.neutral) ? parameter.start : parameter.neutral;
     const bool inside = neutral > parameter.lower && neutral < parameter.upper;
     return {std::clamp((inside ? neutral : parameter.start) * scale_of(parameter, observations), lower, upper)};
   }
   std::vector<double> values;
-  const auto n = static_cast<double>(parameter.grid);
-  if (parameter.unit == "rad") {
-    for (int k = 0; k < parameter.grid; ++k) values.push_back(2 * std::numbers::pi * (k / n - 0.5 + 0.5 / n));
+  const auto n = static_cast<double>(parameter.start_grid_points);
+  if (parameter.periodic) {
+    for (int k = 0; k < parameter.start_grid_points; ++k)
+      values.push_back(2 * std::numbers::pi * (k / n - 0.5 + 0.5 / n));
     return values;
   }
   if (parameter.neutral == 0 && lower == 0) {  // a size of which nothing is known: octaves about the usual one
-    for (int k = 0; k < parameter.grid; ++k) {
+    for (int k = 0; k < parameter.start_grid_points; ++k) {
       values.push_back(std::clamp(parameter.start * parameter.si * std::exp2(1 - k), lower, upper));
     }
     return values;
   }
-  for (int k = 0; k < parameter.grid; ++k) {
+  for (int k = 0; k < parameter.start_grid_points; ++k) {
     const double u = (k + 0.5) / n;
     const bool wide = lower > 0 && upper > 20 * lower;
     values.push_back(wide ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower));
@@ -170,7 +167,42 @@ std::vector<double> change_points(const Observations& observations, std::span<co
   return times;
 }
 
+/// Values of one parameter from which a search begins [SI], and how many independent places were looked at.
+struct ParameterStarts {
+  std::vector<double> values;
+  double places = 1;
+};
+
+ParameterStarts starts_at_line(const Parameter& parameter, const SpectralLine& line) {
+  return {{line.frequency > 0 ? line.frequency : parameter.start}, line.places};
+}
+
+/// bounds: in SI; longest: the end of the longest record [s].
+ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bounds, double longest,
+                                    const Record& first, const Observations& observations,
+                                    std::span<const double> residual) {
+  switch (parameter.search) {
+    case ParameterSearch::steady_line:
+      return starts_at_line(parameter, strongest_line(first, observations, residual, parameter.lower, parameter.upper));
+    case ParameterSearch::ringing_line:
+      return starts_at_line(parameter, strongest_ringing(observations, residual,
+                                                         std::max(parameter.lower, lowest_ringing(observations))));
+    case ParameterSearch::moment_of_change:
+      return {change_points(observations, residual), static_cast<double>(observations.slips.size())};
+    case ParameterSearch::grid:
+      break;
+  }
+  if (parameter.within_record) bounds.upper = std::min(bounds.upper, std::max(2 * longest, bounds.lower * 1.5));
+  return {grid_of(parameter, bounds.lower, bounds.upper, observations)};
+}
+
 }  // namespace
+
+std::string too_few_revolutions(double recorded, const EffectInfo& info) {
+  const std::string needed =
+      info.excitation.revolutions == 2 ? "two" : fmt::format("{:g}", info.excitation.revolutions);
+  return fmt::format("the record holds {:.1f} revolutions of the disc; {} are needed", recorded, needed);
+}
 
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
                                   const std::vector<Effect>& own, const Instruments& instruments) {
@@ -181,7 +213,8 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
     EffectInfo info = describe(effect);
     std::string why = obstacle(info, observations, seen);
     const Motion& motion = *records[0].motion;
-    const auto possible = allowed_beside_declared(instruments, info.key, motion.friction_kind, motion.conditions.load);
+    const auto possible =
+        allowed_beside_declared(instruments, info.declared_by, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
       EffectInfo other_info = describe(other);
@@ -204,36 +237,17 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
   for (const Record& record : records) last = std::max(last, record.motion->time.back());
   const auto& parameters = candidate.info.parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Parameter& parameter = parameters[k];
-    std::vector<double> values;
-    double places = 1;
-    if (parameter.unit == "Hz" && candidate.info.key == "interference") {
-      const SpectralLine line = strongest_line(records[0], observations, residual, parameter.lower, parameter.upper);
-      values = {line.frequency > 0 ? line.frequency : parameter.start};
-      places = line.places;
-    } else if (parameter.unit == "Hz" && candidate.info.key == "ringing") {
-      const SpectralLine line =
-          strongest_ringing(observations, residual, std::max(parameter.lower, lowest_ringing(observations)));
-      values = {line.frequency > 0 ? line.frequency : parameter.start};
-      places = line.places;
-    } else if (parameter.name == "t_c") {
-      values = change_points(observations, residual);
-      places = static_cast<double>(observations.slips.size());
-    } else {
-      const double lower = bounds.lower[2 + k];
-      const double upper =
-          parameter.unit == "s" ? std::min(bounds.upper[2 + k], std::max(2 * last, lower * 1.5)) : bounds.upper[2 + k];
-      values = grid_of(parameter, lower, upper, observations);
-    }
+    const ParameterStarts own = starts_of_parameter(parameters[k], {bounds.lower[2 + k], bounds.upper[2 + k]}, last,
+                                                    records[0], observations, residual);
     std::vector<std::vector<double>> all;
     for (const auto& start : out.values) {
-      for (const double value : values) {
+      for (const double value : own.values) {
         all.push_back(start);
         all.back().push_back(value);
       }
     }
     out.values = std::move(all);
-    out.places *= places;
+    out.places *= own.places;
   }
   return out;
 }

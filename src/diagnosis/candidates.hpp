@@ -24,6 +24,9 @@ struct Candidate {
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,
                                   const std::vector<Effect>& own, const Instruments& instruments = {});
 
+/// Why a record with so few revolutions of the disc cannot show an effect.
+std::string too_few_revolutions(double recorded, const EffectInfo& info);
+
 /// Where a search for the parameters of an effect must begin [SI], and in how many places independent of one another it
 /// looked before (for the correction of p-values).
 struct Starts {

@@ -219,7 +219,7 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
     std::vector<std::pair<std::string, std::string>> tests;  // with those of the group that each tells from the leader
     for (const std::size_t other : step.equivalent) {
       const std::string& key = all[other].info.key;
-      std::string test = telling_test(leader.key, key);
+      std::string test = discriminating_experiment(leader.key, key);
       if (test.empty()) test = all[other].info.experiment;
       const auto same = std::find_if(tests.begin(), tests.end(), [&](const auto& t) { return t.first == test; });
       if (same == tests.end()) {

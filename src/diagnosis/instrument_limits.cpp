@@ -16,20 +16,35 @@ bool is_used(const Condition& used, const std::optional<Declared>& declared) {
   return std::abs(used.value - declared->value) <= allowed;
 }
 
+std::optional<Declared> declared_value(const Instruments& instruments, InstrumentValue value, FrictionKind kind,
+                                       const Condition& load) {
+  const auto& sensor = instruments.force_sensor;
+  switch (value) {
+    case InstrumentValue::none:
+      break;
+    case InstrumentValue::force_zero:
+      return sensor.zero ? zero_of_friction(sensor, kind, load) : std::nullopt;
+    case InstrumentValue::force_crosstalk:
+      return sensor.crosstalk;
+    case InstrumentValue::force_mass_below:
+      return sensor.mass_below;
+    case InstrumentValue::force_bandwidth:
+      return sensor.bandwidth;
+    case InstrumentValue::vibrometer_delay:
+      return instruments.vibrometer.delay;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, std::string_view key,
+std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, InstrumentValue value,
                                                     FrictionKind kind, const Condition& load) {
-  const auto& sensor = instruments.force_sensor;
-  if (key == "force-bandwidth" && sensor.bandwidth) {
-    return AllowedRange{sensor.bandwidth->value - kSigmas * sensor.bandwidth->uncertainty, HUGE_VAL};
-  }
-  std::optional<Declared> declared;
-  if (key == "sensor-offset" && sensor.zero) declared = zero_of_friction(sensor, kind, load);
-  if (key == "crosstalk") declared = sensor.crosstalk;
-  if (key == "sensor-inertia") declared = sensor.mass_below;
-  if (key == "channel-delay") declared = instruments.vibrometer.delay;
+  const std::optional<Declared> declared = declared_value(instruments, value, kind, load);
   if (!declared) return std::nullopt;
+  if (value == InstrumentValue::force_bandwidth) {
+    return AllowedRange{declared->value - kSigmas * declared->uncertainty, HUGE_VAL};
+  }
   return AllowedRange{-kSigmas * declared->uncertainty, kSigmas * declared->uncertainty};
 }
 

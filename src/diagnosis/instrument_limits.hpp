@@ -1,8 +1,8 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
 
+#include "tribofit/friction/effect.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
@@ -15,17 +15,21 @@ struct AllowedRange {
 };
 
 /// What is possible beside what the instruments file declares, within three of the standard uncertainties declared;
-/// nothing where the file does not say. What was declared has been corrected: of force_sensor.zero (sensor-offset),
-/// force_sensor.crosstalk (crosstalk), force_sensor.mass_below (sensor-inertia) and vibrometer.delay (channel-delay) no
-/// more than the uncertainty is left. A filter (force-bandwidth) is not slower than force_sensor.bandwidth.
-/// kind, load: of the record; a zero in N is taken over the load.
-std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, std::string_view key,
+/// nothing where the file does not say. What was declared has been corrected: no more than its uncertainty is left. A
+/// filter is not slower than the declared bandwidth.
+/// value: that is about the effect; kind, load: of the record; a zero in N is taken over the load.
+std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, InstrumentValue value,
                                                     FrictionKind kind, const Condition& load);
 
 /// What the instruments file says of a plateau that is `ratio` of the stated omega r.
 struct PlateauSays {
   bool not_the_gain = false;    ///< vibrometer.gain is declared, and the gap is beyond its uncertainty
   bool not_the_radius = false;  ///< rig.radius and rig.speed are declared and used, and the gap is beyond theirs
+
+  /// The gap is not what `correction` would correct, and may be the other.
+  bool rules_out(PlateauCorrection correction) const {
+    return correction == PlateauCorrection::radius ? not_the_radius && !not_the_gain : not_the_gain && !not_the_radius;
+  }
 };
 PlateauSays plateau_says(const Instruments& instruments, const Conditions& used, double ratio);
 

@@ -32,19 +32,15 @@ bool is_plausible(const DiagnosisContext& bench, const Trial& trial, const Candi
   if (candidate.possible && !candidate.possible->holds(trial.p[offset])) return false;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
-    const bool telling = k == 0 || (std::isnan(q.neutral) && (q.unit == "s" || q.unit == "mm" || q.unit == "Hz"));
+    const bool decisive = k == 0 || q.decisive;
     const bool away = k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > 0.5 * (q.upper - q.lower) * q.si;
     const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, noise);
-    if (telling && trial.at_bound[offset + k] && !flat) return false;
-    if (info.key == "ringing" && q.unit == "Hz" && trial.p[offset + k] < lowest_ringing(bench.fine.observations))
-      return false;
+    if (decisive && trial.at_bound[offset + k] && !flat) return false;
+    const bool too_slow =
+        q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(bench.fine.observations);
+    if (too_slow) return false;
   }
   return true;
-}
-
-/// A line is seen only at full resolution.
-bool is_narrow(const EffectInfo& info) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const Parameter& q) { return q.name == "f"; });
 }
 
 /// The larger of the design effects of the free parameters of an effect, and how many of them there are.
@@ -101,7 +97,7 @@ CandidateResult compare(const DiagnosisContext& bench, const Level& level, const
   // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
   // line stands among as many frequencies as it likes.
   const auto cycles = static_cast<double>(trial.held_out.size());
-  const bool few = out.design_effect > 1.2 && !is_narrow(info);
+  const bool few = out.design_effect > 1.2 && !info.needs_full_resolution;
   const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
   out.p_value = std::min(
       1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
@@ -116,8 +112,8 @@ CandidateResult compare(const DiagnosisContext& bench, const Level& level, const
   const auto& slips = level.observations.slips;
   const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
   const bool sticks = breaks >= 30;
-  const bool obvious = !is_narrow(info) && sticks && out.fall > limits.obvious_size * bench.noise_squares() &&
-                       out.fall > limits.obvious_part * above;
+  const bool obvious = !info.needs_full_resolution && sticks &&
+                       out.fall > limits.obvious_size * bench.noise_squares() && out.fall > limits.obvious_part * above;
   const bool seen = out.fall > 0 && (out.p_value < limits.p_value || obvious);
   out.by_level = out.plausible && !seen && sticks && info.needs.stick_time &&
                  passes_by_level(level, poorer, trial, info, tests, limits, floor);
@@ -253,7 +249,7 @@ void CandidateScreening::search(std::size_t t, const Level& level, const Trial& 
 void CandidateScreening::judge_coarsely() {
   const std::vector<double> residual = residual_of(bench_, top_);
   run_tasks(out_.size(), bench_.threads, [&](std::size_t t) {
-    const bool narrow = is_narrow(info(t));
+    const bool narrow = info(t).needs_full_resolution;
     const Level& level = narrow ? bench_.fine : bench_.coarse;
     const Trial& beside = narrow ? top_ : coarse_top_;
     const Candidate& candidate = candidates_[out_[t].candidate];
@@ -268,7 +264,7 @@ void CandidateScreening::judge_coarsely() {
 
 bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
   const CandidateResult& judged = out_[t];
-  if (is_narrow(info(t))) {
+  if (info(t).needs_full_resolution) {
     // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
     constexpr double kPutOff = 0.3;
     return openings_[t].starts.empty() || openings_[t].promised < kPutOff * next_;
@@ -283,17 +279,17 @@ bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
 bool CandidateScreening::judge_promising() {
   double best = coarse_top_.held_out_squares;
   for (std::size_t t = 0; t < out_.size(); ++t) {
-    if (out_[t].trial.usable && out_[t].plausible && !is_narrow(info(t))) best = std::min(best, at_low_[t]);
+    if (out_[t].trial.usable && out_[t].plausible && !info(t).needs_full_resolution) best = std::min(best, at_low_[t]);
   }
   std::vector<std::size_t> promising;
   for (std::size_t t = 0; t < out_.size(); ++t) {
-    if (judged_finely_[t] || (!out_[t].trial.usable && !is_narrow(info(t)))) continue;
+    if (judged_finely_[t] || (!out_[t].trial.usable && !info(t).needs_full_resolution)) continue;
     out_[t].hopeless = is_hopeless(t, best);
     if (!out_[t].hopeless) promising.push_back(t);
   }
   run_tasks(promising.size(), bench_.threads, [&](std::size_t k) {
     const std::size_t t = promising[k];
-    if (is_narrow(info(t))) return search(t, bench_.fine, top_);
+    if (info(t).needs_full_resolution) return search(t, bench_.fine, top_);
     const Trial coarse = std::move(out_[t].trial);
     judge(t, bench_.fine, top_, coarse.model, coarse.p);
   });

@@ -117,7 +117,7 @@ Room room_about(const std::vector<double>& start, const Bounds& bounds) {
 /// A full turn more or less is the same phase.
 void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
   for (std::size_t k = 0; k < p.size(); ++k) {
-    if (model.parameters()[k].parameter.unit == "rad") p[k] = std::remainder(p[k], 2 * std::numbers::pi);
+    if (model.parameters()[k].parameter.periodic) p[k] = std::remainder(p[k], 2 * std::numbers::pi);
   }
 }
 
@@ -218,7 +218,7 @@ SearchStart opening_of(const DiagnosisContext& bench, const Level& level, const 
   const std::size_t added = candidate.info.parameters.size();
   const Starts starts = starts_of(candidate, bench.records, bench.fine.observations, residual);
 
-  const auto is_phase = [&](std::size_t k) { return candidate.info.parameters[k].unit == "rad"; };
+  const auto is_phase = [&](std::size_t k) { return candidate.info.parameters[k].periodic; };
   struct Promise {
     std::vector<double> start, place;  ///< place: the values that are no phases
     double score, squares;

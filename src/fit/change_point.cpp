@@ -66,7 +66,7 @@ Scan scan_of(const ChangePoint& point, const ModelResiduals& residuals, const Ob
 std::optional<ChangePoint> change_point_of(const FrictionModel& model) {
   const auto& parameters = model.parameters();
   for (std::size_t k = 1; k < parameters.size(); ++k) {
-    if (parameters[k].effect == "step" && parameters[k].parameter.name == "t_c") return ChangePoint{k, k - 1};
+    if (parameters[k].parameter.search == ParameterSearch::moment_of_change) return ChangePoint{k, k - 1};
   }
   return std::nullopt;
 }

@@ -10,7 +10,8 @@
 
 namespace tribofit {
 
-/// A parameter that is the time of a sudden change (`t_c` of `step`) and the size that changes there.
+/// A parameter that is the time of a sudden change and the size that changes there, which is the parameter before it
+/// (see ParameterSearch::moment_of_change).
 ///
 /// Its likelihood is flat while nothing slides and has walls elsewhere, so no derivative leads to it or says how well
 /// it is known: it is searched, and its interval is where the likelihood ratio stays below the point that holds 95 % of

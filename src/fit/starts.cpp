@@ -111,8 +111,8 @@ Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   Bounds bounds;
   for (const auto& slot : model.parameters()) {
     const Parameter& q = slot.parameter;
-    const double unit = q.si * (q.friction_effects || q.of_force ? scale : 1.0);
-    const double grown = growth_of(q.grows, observations);
+    const double unit = q.si * (q.scales_with_friction || q.bounds_scale_with_force ? scale : 1.0);
+    const double grown = growth_of(q.bound_scaling, observations);
     bounds.lower.push_back(q.lower * unit * (q.lower < 0 ? grown : 1.0));
     bounds.upper.push_back(q.upper * unit * grown);
   }
@@ -151,7 +151,7 @@ std::vector<double> start_from_data(const FrictionModel& model, const Observatio
   std::vector<double> p;
   const double scale = std::max(1.0, observations.largest_friction);
   for (const auto& slot : model.parameters()) {
-    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.friction_effects ? scale : 1.0));
+    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.scales_with_friction ? scale : 1.0));
   }
   const std::vector<SpeedBin> bins = bin_by_speed(observations);
   const auto [slowest, fastest] = decay_range(observations);
@@ -187,7 +187,7 @@ std::vector<std::vector<double>> make_starts(const FrictionModel& model, const O
     for (std::size_t k = model.base_count(); k < p.size(); ++k) {
       const Parameter& q = model.parameters()[k].parameter;
       const double neutral = std::isnan(q.neutral) ? q.start : q.neutral;
-      p[k] = std::clamp(neutral * q.si * (q.friction_effects ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
+      p[k] = std::clamp(neutral * q.si * (q.scales_with_friction ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
     }
     starts.push_back(p);
   }

@@ -1,4 +1,4 @@
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -27,11 +27,56 @@ std::span<const Effect> effect_catalogue() {
   return catalogue;
 }
 
-EffectInfo describe(const Effect& effect) {
+namespace {
+
+EffectInfo own_words(const Effect& effect) {
   EffectInfo info = std::visit([](const auto& e) { return e.info(); }, effect);
   info.kinematic_effect = is_kinematic(effect);
+  return info;
+}
+
+/// The catalogue in its own words, each pair of look-alikes in both of its effects.
+std::vector<EffectInfo> describe_catalogue() {
+  std::vector<EffectInfo> infos;
+  for (const Effect& effect : effect_catalogue()) infos.push_back(own_words(effect));
+  const std::vector<EffectInfo> stated = infos;
+  for (const EffectInfo& one : stated) {
+    for (const LookAlike& pair : one.pairs) {
+      const auto other =
+          std::find_if(infos.begin(), infos.end(), [&](const EffectInfo& info) { return info.key == pair.key; });
+      if (other != infos.end()) other->pairs.push_back({one.key, pair.test});
+    }
+  }
+  return infos;
+}
+
+const std::vector<EffectInfo>& described_catalogue() {
+  static const std::vector<EffectInfo> infos = describe_catalogue();
+  return infos;
+}
+
+}  // namespace
+
+EffectInfo describe(const Effect& effect) {
+  const std::vector<EffectInfo>& catalogue = described_catalogue();
+  if (effect.index() < catalogue.size()) return catalogue[effect.index()];
+  EffectInfo info = own_words(effect);
   info.pairs = look_alikes(info.key);
   return info;
+}
+
+std::vector<LookAlike> look_alikes(std::string_view key) {
+  for (const EffectInfo& info : described_catalogue()) {
+    if (info.key == key) return info.pairs;
+  }
+  return {};
+}
+
+std::string discriminating_experiment(std::string_view key_a, std::string_view key_b) {
+  for (const LookAlike& pair : look_alikes(key_a)) {
+    if (pair.key == key_b) return pair.test;
+  }
+  return "";
 }
 
 std::string_view to_string(EffectGroup group) {

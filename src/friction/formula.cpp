@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
@@ -31,6 +32,9 @@ constexpr std::array<Variable, 8> kVariables = {{{"v", "mm/s", 1e3},
                                                  {"stick_time", "s", 1},
                                                  {"load", "N", 1},
                                                  {"temperature", "degC", 1}}};
+
+/// A parameter of this name is the frequency of a line.
+constexpr std::string_view kLineFrequency = "f";
 
 std::string trim(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r\n");
@@ -94,11 +98,10 @@ std::string_view formula_unit(Quantity quantity) {
   }
 }
 
-/// AddsToReading "0.02", "25mm/s" or "25mm/s[5,60]" into a parameter whose unit is that of the formula's variables.
+/// Reads "0.02", "25mm/s" or "25mm/s[5,60]" into a parameter whose unit is that of the formula's variables.
 Parameter read_start(const std::string& name, const std::string& value, const std::string& text) {
   Parameter parameter;
   parameter.name = name;
-  parameter.unit = "1";
   std::string number = value, bounds;
   if (const auto open = value.find('['); open != std::string::npos) {
     if (value.back() != ']') reject("the bounds of '" + name + "' lack a closing bracket", text);
@@ -118,6 +121,9 @@ Parameter read_start(const std::string& name, const std::string& value, const st
     factor = unit->factor / (shown ? shown->factor : 1.0);
     parameter.si = 1;
   }
+  parameter.periodic = parameter.unit == "rad";
+  parameter.within_record = parameter.unit == "s";
+  parameter.decisive = parameter.unit == "s" || parameter.unit == "mm" || parameter.unit == "Hz";
   parameter.start = plain * factor;
   const double reach = parameter.start == 0 ? 1 : 10 * std::abs(parameter.start);
   parameter.lower = parameter.start > 0 ? 0 : -reach;
@@ -255,7 +261,10 @@ EffectInfo Formula::info() const {
           .experiment = "",
           .parameters = parsed_->parameters,
           .needs = parsed_->needs,
-          .group = EffectGroup::user};
+          .group = EffectGroup::user,
+          .needs_full_resolution =
+              std::any_of(parsed_->parameters.begin(), parsed_->parameters.end(),
+                          [](const Parameter& parameter) { return parameter.name == kLineFrequency; })};
 }
 
 bool Formula::same_as(const Formula& other) const {

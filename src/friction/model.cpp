@@ -58,10 +58,28 @@ FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(la
   });
   refuse_same(effects_);
   refuse_two_of_stick(effects_);
-  slots_.push_back({{"mu_s", "1", 1, 0, 5, 0.5}, ""});
-  slots_.push_back({{"mu_k", "1", 1, 0, 5, 0.3}, ""});
-  if (law == BaseLaw::exponential) slots_.push_back({{"alpha", "s/mm", 1e3, 1e-4, 10, 0.05}, ""});
-  if (law == BaseLaw::fractional) slots_.push_back({{"beta", "s/mm", 1e3, 1e-4, 10, 0.1}, ""});
+  slots_.push_back(
+      {{.name = "mu_s", .description = "static friction, the level at break-away", .upper = 5, .start = 0.5}, ""});
+  slots_.push_back(
+      {{.name = "mu_k", .description = "kinetic friction, the level at high speed", .upper = 5, .start = 0.3}, ""});
+  if (law == BaseLaw::exponential)
+    slots_.push_back({{.name = "alpha",
+                       .description = "decay of friction with speed",
+                       .unit = "s/mm",
+                       .si = 1e3,
+                       .lower = 1e-4,
+                       .upper = 10,
+                       .start = 0.05},
+                      ""});
+  if (law == BaseLaw::fractional)
+    slots_.push_back({{.name = "beta",
+                       .description = "decay of friction with speed",
+                       .unit = "s/mm",
+                       .si = 1e3,
+                       .lower = 1e-4,
+                       .upper = 10,
+                       .start = 0.1},
+                      ""});
   for (const Effect& effect : effects_) {
     const EffectInfo info = describe(effect);
     offsets_.push_back(slots_.size());

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <vector>
 
+#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
@@ -43,7 +44,7 @@ const std::vector<Names>& names_of_the_field() {
       {Channel::angle,
        {"angle", "discangle", "diskangle", "rotaryposition", "theta", "phi", "position", "winkel", "\u89d2\u5ea6"}},
       {Channel::temperature, {"temperature", "temp", "temperatur", "\u6e29\u5ea6"}},
-      {Channel::step, {"step", "recipestep", "stepnumber", "segment"}},
+      {Channel::step, {kStepColumn, "recipestep", "stepnumber", "segment"}},
   };
   return table;
 }

@@ -8,14 +8,14 @@
 #include <set>
 
 #include "column_names.hpp"
+#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr std::array<std::string_view, channel_count> channel_names = {
-    "time", "mu", "v_b", "v_r", "force", "torque", "load", "speed", "angle", "temperature", "step"};
+static_assert(kChannelNames.size() == channel_count);
 
 /// What the user asks of one channel.
 struct Request {
@@ -63,7 +63,7 @@ class Finder {
   InputLocation heading() const { return {table_.path, table_.columns.empty() ? 0 : table_.columns.front().line, ""}; }
 
   void read_requests(const ReadOptions& options) {
-    const std::vector<std::string> known(channel_names.begin(), channel_names.end());
+    const std::vector<std::string> known(kChannelNames.begin(), kChannelNames.end());
     const auto slot = [&](const std::string& name, const char* option) -> Request& {
       const auto at = std::find(known.begin(), known.end(), name);
       if (at == known.end()) {
@@ -325,7 +325,7 @@ class Finder {
 }  // namespace
 
 std::string_view to_string(Channel channel) {
-  return channel_names[index_of(channel)];
+  return kChannelNames[index_of(channel)];
 }
 
 const Column* Columns::find(Channel channel) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "input_file.hpp"
+#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -75,7 +76,7 @@ class InstrumentsReader {
     section(json, "force_sensor",
             {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
              {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key, f.zero_is_force); }},
-             {"crosstalk", any(f.crosstalk, Quantity::dimensionless)},
+             {kCrosstalkKey, any(f.crosstalk, Quantity::dimensionless)},
              {"mass_below", not_negative(f.mass_below, Quantity::mass)},
              {"gain", positive(f.gain, Quantity::dimensionless)},
              {"load_measured", [&](const Json& value, const std::string& key) {

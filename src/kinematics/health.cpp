@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -93,7 +94,7 @@ std::string describe(const char* name, const Band& band) {
 }  // namespace
 
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
-  HealthItem item{"sagging-plateau", Status::ok, "no stick plateau to look at"};
+  HealthItem item{health_check::kSaggingPlateau, Status::ok, "no stick plateau to look at"};
   if (declared) {
     item.message = fmt::format("the declared high-pass of {:.3g} Hz is undone", *declared);
   } else if (undone) {
@@ -124,7 +125,7 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
 
 HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step) {
   const Band a = band_of(friction, step);
-  HealthItem item{"bandwidth", Status::ok, describe("friction", a)};
+  HealthItem item{health_check::kBandwidth, Status::ok, describe("friction", a)};
   const Band b = velocity.empty() ? Band{} : band_of(velocity, step);
   if (!velocity.empty()) item.message += "; " + describe("velocity", b);
   item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
@@ -140,7 +141,7 @@ HealthItem check_bandwidth(std::span<const double> friction, std::span<const dou
 }
 
 HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
-  HealthItem item{"channel-delay", Status::ok, "no re-stick to compare the channels at"};
+  HealthItem item{health_check::kChannelDelay, Status::ok, "no re-stick to compare the channels at"};
   const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
   const std::size_t n = v.size();
   const double edge = 0.05 * plateaus.depth;
@@ -181,7 +182,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
 }
 
 HealthItem check_revolutions(const Motion& motion) {
-  HealthItem item{"revolutions", Status::ok, "the disc's speed is not known"};
+  HealthItem item{health_check::kRevolutions, Status::ok, "the disc's speed is not known"};
   double angle = 0;
   if (!motion.disc_angle.empty()) {
     angle = motion.disc_angle.back() - motion.disc_angle.front();
@@ -206,7 +207,7 @@ HealthItem check_revolutions(const Motion& motion) {
 }
 
 HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate) {
-  HealthItem item{"speed-ripple", Status::ok, "no stick plateaus to follow over the disc angle"};
+  HealthItem item{health_check::kSpeedRipple, Status::ok, "no stick plateaus to follow over the disc angle"};
   if (!motion.sticks || motion.velocity_kind != VelocityKind::block) return item;
   const DiscRipple& ripple = estimate.ripple;
   if (ripple.order == 0) {
@@ -227,7 +228,7 @@ HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estima
 }
 
 HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
-  HealthItem item{"run-up", Status::ok, "the record begins at full speed"};
+  HealthItem item{health_check::kRunUp, Status::ok, "the record begins at full speed"};
   if (found == 0) return item;
   const double time = static_cast<double>(found) * motion.step;
   item.message = fmt::format("the first {:.3g} s, before the plateau is within 2 % of its final value, {}", time,
@@ -238,7 +239,7 @@ HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
 
 HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known,
                                const std::optional<RecordedPlateau>& recorded) {
-  HealthItem item{"plateau-speed", Status::ok, "the record has no stick plateau"};
+  HealthItem item{health_check::kPlateauSpeed, Status::ok, "the record has no stick plateau"};
   const auto compare = [&](double block, double disc, const char* origin) {
     item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
     const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;

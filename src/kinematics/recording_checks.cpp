@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "health_checks.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // What the recorder did: a range that was too small, samples and times that are missing.
@@ -121,7 +122,7 @@ RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& v
 
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
                           std::optional<double> plateau) {
-  HealthItem item{"clipping", Status::ok, "no runs of identical samples at the end of a channel's range"};
+  HealthItem item{health_check::kClipping, Status::ok, "no runs of identical samples at the end of a channel's range"};
   const auto tell = [&](const char* name, const EndRuns& end, double factor, const char* unit) {
     if (end.count < 6) return;
     const double share = static_cast<double>(end.count) / static_cast<double>(trace.size());
@@ -151,12 +152,13 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
 
 HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
   const std::size_t n = trace.size();
-  if (n < 16) return {"drop-outs", Status::warning, fmt::format("only {} samples", n)};
+  if (n < 16) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
   const double step = trace.interval();
   const Gaps gaps = gaps_of(trace.time, step);
   const std::size_t spikes = lone_samples(trace.friction, friction) + lone_samples(trace.velocity, velocity);
   const Frozen frozen = longest_frozen(trace.friction, trace.velocity);
-  HealthItem item{"drop-outs", Status::ok, fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
+  HealthItem item{health_check::kDropOuts, Status::ok,
+                  fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
   if (frozen.length >= 16 && 20 * frozen.length > n && frozen.length < n) {
     item.status = Status::problem;
     item.message =

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "tribofit/oscillator/presets.hpp"
@@ -16,65 +15,7 @@ namespace tribofit {
 
 namespace {
 
-/// What a fingerprint is drawn over.
-enum class View {
-  loop,         ///< what the bare law leaves over v_r, both branches of one slip
-  curve,        ///< mu over v_r, with the effect and without
-  directions,   ///< |mu| over |v_r|, both directions
-  creep,        ///< v_r in stick over mu
-  stick_time,   ///< friction at break-away over stick time
-  time,         ///< what the bare law leaves of each slip, over time
-  distance,     ///< the same over sliding distance
-  angle,        ///< over the angle of the disc
-  load,         ///< over the load
-  temperature,  ///< over temperature
-  since_break_away,
-  acceleration,
-  load_channel,  ///< the load channel over mu
-  plateau,       ///< v_b in stick over time
-  ripple,        ///< v_b in stick over the angle of the disc
-  line,          ///< what the bare law leaves in stick over time
-};
-
-struct Sketch {
-  std::string_view key;
-  std::vector<double> values;  ///< in the units of the catalogue
-  View view;
-};
-
-const std::vector<Sketch>& sketches() {
-  static const std::vector<Sketch> all = {
-      {"viscous", {0.001}, View::curve},
-      {"stribeck-exponent", {1.8}, View::curve},
-      {"frictional-lag", {2}, View::loop},
-      {"rate-state", {100, 0}, View::loop},
-      {"bristle", {40, 0}, View::creep},
-      {"contact-spin", {4}, View::creep},
-      {"ageing", {0.02, 0.1}, View::stick_time},
-      {"asymmetry", {0.85}, View::directions},
-      {"heating", {0.1, 8}, View::time},
-      {"run-in", {0.15, 60}, View::distance},
-      {"drift", {0.003}, View::time},
-      {"step", {0.03, 20}, View::time},
-      {"load-dependence", {0.2}, View::load},
-      {"temperature-dependence", {0.005}, View::temperature},
-      {"runout", {0.08, 0}, View::angle},
-      {"disc-pattern", {0.06, 0, 0.02, 0}, View::angle},
-      {"speed-ripple", {0.08, 2, 0}, View::ripple},
-      {"load-coupling", {0.15}, View::load_channel},
-      {"ringing", {0.02, 200, 0.05, 0}, View::since_break_away},
-      {"sensor-inertia", {0.1}, View::acceleration},
-      {"sensor-offset", {0.03}, View::directions},
-      {"crosstalk", {0.03}, View::load},
-      {"force-bandwidth", {80, 0.7}, View::loop},
-      {"channel-delay", {2}, View::loop},
-      {"radius-offset", {1.05}, View::plateau},
-      {"velocity-gain", {0.92}, View::plateau},
-      {"velocity-highpass", {0.3}, View::plateau},
-      {"interference", {0.01, 50, 0}, View::line},
-  };
-  return all;
-}
+using View = SketchView;
 
 const FingerprintAxis kMu = {"mu", "", 1}, kLeft = {"mu minus bare law", "", 1}, kSpeed = {"v_r", "mm/s", 1e-3},
                       kTime = {"time", "s", 1};
@@ -328,12 +269,8 @@ std::string conditions(const EffectInfo& info, const std::vector<double>& values
 
 Fingerprint fingerprint(const Effect& effect) {
   const EffectInfo info = describe(effect);
-  const auto known =
-      std::find_if(sketches().begin(), sketches().end(), [&](const Sketch& sketch) { return sketch.key == info.key; });
-  Sketch sketch{info.key, {}, View::loop};
-  if (known != sketches().end()) {
-    sketch = *known;
-  } else {
+  Sketch sketch = info.sketch;
+  if (sketch.values.empty()) {
     for (const Parameter& q : info.parameters) sketch.values.push_back(q.lower + 0.3 * (q.upper - q.lower));
   }
   std::vector<double> p;

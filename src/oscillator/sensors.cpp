@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "normal_stream.hpp"
@@ -123,9 +122,9 @@ void sense_record(const E& effect, const double* q, const SimulatedMotion& motio
 std::vector<double> true_load(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p) {
   std::vector<double> load = motion.load;
   for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
-    if constexpr (std::is_same_v<E, LoadCoupling>) {
+    if constexpr (requires { E::load_at_contact(q, 1.0, 0.0); }) {
       if (load.empty()) load.assign(motion.size(), motion.mean_load);
-      for (std::size_t i = 0; i < load.size(); ++i) load[i] *= 1 + q[0] * motion.friction[i];
+      for (std::size_t i = 0; i < load.size(); ++i) load[i] = E::load_at_contact(q, load[i], motion.friction[i]);
     }
   });
   return load;

@@ -1,6 +1,5 @@
 #include "tribofit/oscillator/simulate_recording.hpp"
 
-#include <type_traits>
 #include <utility>
 
 #include "tribofit/friction/evaluate.hpp"
@@ -10,8 +9,11 @@ namespace tribofit {
 Drive true_drive(const Drive& stated, const FrictionModel& model, std::span<const double> p) {
   Drive drive = stated;
   for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
-    if constexpr (std::is_same_v<E, SpeedRipple>) drive.speed = rippled_speed(drive.speed, q[0], q[1], q[2]);
-    if constexpr (std::is_same_v<E, RadiusOffset>) drive.radius *= q[0];
+    if constexpr (requires { E::speed_swing(q); }) {
+      const SpeedSwing swing = E::speed_swing(q);
+      drive.speed = rippled_speed(drive.speed, swing.amplitude, swing.order, swing.phase);
+    }
+    if constexpr (requires { E::true_radius(q, 1.0); }) drive.radius = E::true_radius(q, drive.radius);
   });
   return drive;
 }
@@ -19,8 +21,8 @@ Drive true_drive(const Drive& stated, const FrictionModel& model, std::span<cons
 Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::span<const double> p) {
   Sensors sensors = stated;
   for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
-    if constexpr (std::is_same_v<E, VelocityGain>) sensors.velocity_gain *= q[0];
-    if constexpr (std::is_same_v<E, VelocityHighPass>) sensors.velocity_high_pass = q[0];
+    if constexpr (requires { E::velocity_gain(q); }) sensors.velocity_gain *= E::velocity_gain(q);
+    if constexpr (requires { E::velocity_high_pass(q); }) sensors.velocity_high_pass = E::velocity_high_pass(q);
   });
   return sensors;
 }

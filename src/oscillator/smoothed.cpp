@@ -289,7 +289,7 @@ double SmoothedLaw::crest() const {
 }
 
 SmoothedLaw smoothed_law(const FrictionModel& model, std::span<const double> p, double sharpness) {
-  const std::size_t viscous = model.offset_of("viscous");
+  const std::size_t viscous = model.offset_of(Viscous::key);
   const bool is_viscous = viscous < model.parameters().size();
   if (model.law() != BaseLaw::exponential || model.effects().size() != (is_viscous ? 1U : 0U)) {
     throw InputError("the smoothed law is that of the exponential law, alone or with 'viscous', not of " + model.name(),

@@ -8,6 +8,7 @@
 
 #include "numbers.hpp"
 #include "tribofit/fit/identification.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 
 namespace tribofit {
 namespace {
@@ -86,8 +87,9 @@ std::string undetermined(const Fit& fit) {
 std::string open_problems(const Identification& r) {
   std::string names;
   for (const HealthItem& item : r.motion.health) {
-    const bool bears = item.check == "plateau-speed" || item.check == "speed-ripple" || item.check == "channel-delay" ||
-                       item.check == "clipping" || item.check == "drop-outs";
+    const bool bears = item.check == health_check::kPlateauSpeed || item.check == health_check::kSpeedRipple ||
+                       item.check == health_check::kChannelDelay || item.check == health_check::kClipping ||
+                       item.check == health_check::kDropOuts;
     if (bears && item.status != HealthItem::Status::ok) names += (names.empty() ? "" : ", ") + item.check;
   }
   return names.empty() ? "" : " The values stand or fall with what the health check says of " + names + ".";

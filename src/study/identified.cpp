@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
-#include <string_view>
 
 #include "kinematics/corrections.hpp"
+#include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit {
 namespace {
@@ -36,20 +35,29 @@ double mean_speed(const Motion& motion, double radius) {
   return sum / static_cast<double>(motion.disc_velocity.size()) / radius;
 }
 
-bool has(const Fit& fit, std::string_view key) {
-  return fit.model.offset_of(key) < fit.model.parameters().size();
+/// What the effects of a fit say through one of their hooks, summed; 0 where none has it.
+template <class Say>
+double sum_over_effects(const Fit& fit, Say say) {
+  const std::vector<double> p = fit.values();
+  double sum = 0;
+  for_each_effect(fit.model, p.data(), [&](const auto& effect, const double* q) { sum += say(effect, q); });
+  return sum;
 }
 
 /// How much later than v_b the fit has friction [s].
 double lateness(const Fit& fit) {
-  const std::vector<double> p = fit.values();
-  double late = 0;
-  if (has(fit, "channel-delay")) late += p[fit.model.offset_of("channel-delay")];
-  if (has(fit, "force-bandwidth")) {  // group delay of a second-order low-pass, corner and damping ratio
-    const std::size_t k = fit.model.offset_of("force-bandwidth");
-    late += 2 * p[k + 1] / (2 * std::numbers::pi * p[k]);
-  }
-  return late;
+  return sum_over_effects(fit, []<class E>(const E&, const double* q) {
+    if constexpr (requires { E::reading_delay(q); }) return E::reading_delay(q);
+    return 0.0;
+  });
+}
+
+/// Mass that the fit finds below the force sensor [kg].
+double mass_below_sensor(const Fit& fit) {
+  return sum_over_effects(fit, []<class E>(const E&, const double* q) {
+    if constexpr (requires { E::mass_below_sensor(q); }) return E::mass_below_sensor(q);
+    return 0.0;
+  });
 }
 
 }  // namespace
@@ -88,8 +96,7 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
     out.covariance.friction.clear();
     out.notes.push_back("the errors of the law are not known: it is taken as exact");
   }
-  if (has(fit, "sensor-inertia")) {
-    const double below = out.machine.parameters[fit.model.offset_of("sensor-inertia")];
+  if (const double below = mass_below_sensor(fit); below != 0) {
     out.machine.rig.mass += rig.per_unit_load ? below / rig.load : below;
     out.notes.push_back("the mass that the law finds below the force sensor is added to that of the rig");
   }

@@ -3,10 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include "tribofit/friction/effects/all.hpp"
+
 namespace {
 
 using namespace tribofit;
 using namespace tribofit::diagnosis;
+
+InstrumentValue declared_by(const char* key) {
+  return describe(make_effect(key)).declared_by;
+}
 
 TEST(Declared, LeavesThreeOfItsUncertainties) {
   Instruments lab;
@@ -14,7 +20,7 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
   lab.force_sensor.mass_below = {0.1, 0.005};
   lab.vibrometer.delay = {-1e-3, 2e-5};
   const auto left = [&](const char* key) {
-    const auto possible = allowed_beside_declared(lab, key, FrictionKind::coefficient, {});
+    const auto possible = allowed_beside_declared(lab, declared_by(key), FrictionKind::coefficient, {});
     if (possible) {
       EXPECT_EQ(possible->lower, -possible->upper) << key;
     }
@@ -33,15 +39,16 @@ TEST(Declared, AZeroInNewtonsIsTakenOverTheLoad) {
   lab.force_sensor.zero = {0.5, 0.05};
   lab.force_sensor.zero_is_force = true;
   const Condition load = {50, "test"};
-  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, "sensor-offset", FrictionKind::coefficient, load)->upper,
+  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, declared_by("sensor-offset"), FrictionKind::coefficient, load)->upper,
                    3 * 0.05 / 50);
-  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, "sensor-offset", FrictionKind::force, load)->upper, 3 * 0.05);
+  EXPECT_DOUBLE_EQ(allowed_beside_declared(lab, declared_by("sensor-offset"), FrictionKind::force, load)->upper,
+                   3 * 0.05);
 }
 
 TEST(Declared, AFilterIsNotSlowerThanDeclared) {
   Instruments lab;
   lab.force_sensor.bandwidth = {1000, 50};
-  const auto possible = allowed_beside_declared(lab, "force-bandwidth", FrictionKind::coefficient, {});
+  const auto possible = allowed_beside_declared(lab, declared_by("force-bandwidth"), FrictionKind::coefficient, {});
   ASSERT_TRUE(possible);
   EXPECT_FALSE(possible->holds(300));
   EXPECT_TRUE(possible->holds(850));

@@ -204,13 +204,13 @@ TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
 TEST(Pairs, AreOfTheCatalogueAndMutual) {
   for (const std::string& key : catalogue_keys()) {
     for (const LookAlike& pair : describe(make_effect(key)).pairs) {
-      EXPECT_EQ(telling_test(key, pair.key), pair.test);
-      EXPECT_EQ(telling_test(pair.key, key), pair.test);
+      EXPECT_EQ(discriminating_experiment(key, pair.key), pair.test);
+      EXPECT_EQ(discriminating_experiment(pair.key, key), pair.test);
       EXPECT_EQ(describe(make_effect(pair.key)).key, pair.key);
     }
   }
-  EXPECT_NE(telling_test("heating", "run-in").find("pause"), std::string::npos);
-  EXPECT_EQ(telling_test("heating", "interference"), "");
+  EXPECT_NE(discriminating_experiment("heating", "run-in").find("pause"), std::string::npos);
+  EXPECT_EQ(discriminating_experiment("heating", "interference"), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(every_name()), [](const auto& key) {

@@ -108,7 +108,7 @@ struct Experiment {
 };
 Experiment& operator+=(Experiment& all, const Experiment& more);
 
-/// The experiment that telling_test() of the catalogue names for two effects; empty where it names none. The order of
+/// The experiment that discriminating_experiment() of the catalogue names for two effects; empty where it names none. The order of
 /// the keys does not matter.
 Experiment telling_experiment(std::string_view key_a, std::string_view key_b);
 

@@ -109,7 +109,8 @@ TEST(HiddenEffects, TheNextExperimentTellsWhatLooksAlike) {
     for (const std::string& partner : o.partners) {
       EXPECT_NE(o.experiment.find(partner), std::string::npos) << o.of.name << ": " << o.experiment;
     }
-    EXPECT_NE(o.experiment.find(tribofit::telling_test(o.of.hidden[0].key, o.of.partner)), std::string::npos);
+    EXPECT_NE(o.experiment.find(tribofit::discriminating_experiment(o.of.hidden[0].key, o.of.partner)),
+              std::string::npos);
   }
 }
 

@@ -14,8 +14,8 @@ namespace tribofit {
 ///   hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s
 /// Variables: v [mm/s] (the speed |v_r|), acceleration [mm/s^2], t [s], angle [rad], distance [mm], stick_time [s],
 /// load [N], temperature [degC]. The values behind the semicolon are starts; a unit behind a value converts it to the
-/// unit of the variables above. Bounds may follow a start in brackets: v0=25mm/s[5,60] (in the same units). Parsed by
-/// muParser.
+/// unit of the variables above. A parameter named f is the frequency of a spectral line. Bounds may follow a start in
+/// brackets: v0=25mm/s[5,60] (in the same units). Parsed by muParser.
 class Formula {
  public:
   /// Throws InputError that shows where a formula does not parse, names unknown names (with the nearest known one) and

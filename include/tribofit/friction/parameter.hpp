@@ -15,20 +15,43 @@ enum class BoundScaling {
   with_slip_length  ///< beyond slips of 5 mm
 };
 
+/// To which data one value of a parameter belongs.
+enum class ParameterScope {
+  all_records,  ///< the contact, the rig or the instruments: the same in every record of them
+  record        ///< where the clock or the disc stood when a record began: another value in each
+};
+
+/// How a search for a parameter begins.
+enum class ParameterSearch {
+  grid,             ///< from `start_grid_points` values
+  steady_line,      ///< from the strongest spectral line that runs through the whole record
+  ringing_line,     ///< from the strongest line that begins anew at each break-away
+  moment_of_change  ///< from the times at which the parameter before it may have begun to act
+};
+
 /// One parameter of a law or of an effect as a person sees it.
-/// Values inside the library are SI; `lower`, `upper` and `start` are in `unit`.
+/// Values inside the library are SI; `lower`, `upper`, `start` and `neutral` are in `unit`.
 struct Parameter {
-  std::string name;
-  std::string unit;             ///< as shown and written, "1" for a pure number
-  double si = 1;                ///< SI value of one `unit`
-  double lower = 0, upper = 0;  ///< plausible bounds for dry contacts [unit]
-  double start = 0;             ///< where a search begins when the data say nothing better [unit]
-  /// Where the effect says nothing, or as little as its bounds allow [unit]; NaN: at `start`.
-  double neutral = std::numeric_limits<double>::quiet_NaN();
-  bool friction_effects = false;  ///< scales with friction, so it has newtons in its unit where friction is a force
-  bool of_force = false;          ///< its bounds grow with the force where friction is one, its unit does not
-  int grid = 1;  ///< values over its bounds from which a search must begin so that it ends at the best one
-  BoundScaling grows = BoundScaling::never;
+  std::string name = {};
+  std::string description = {};  ///< what it is, in one line without a full stop
+  std::string unit = "1";        ///< as shown and written, "1" for a pure number
+  double si = 1;                 ///< SI value of one `unit`
+  double lower = 0, upper = 0;   ///< plausible bounds for dry contacts
+  double start = 0;              ///< where a search begins when the data say nothing better
+  /// Where the effect says nothing, or as little as its bounds allow; NaN: at `start`.
+  double neutral = kNoNeutralValue;
+  bool scales_with_friction = false;     ///< it has newtons in its unit where friction is a force
+  bool bounds_scale_with_force = false;  ///< its bounds grow with the force where friction is one, its unit does not
+  BoundScaling bound_scaling = BoundScaling::never;
+  ParameterScope scope = ParameterScope::all_records;
+  ParameterSearch search = ParameterSearch::grid;
+  int start_grid_points = 1;  ///< values over its bounds from which a search must begin so that it ends at the best one
+  bool periodic = false;      ///< an angle: a full turn more or less is the same value
+  /// A time that is only searched for up to twice the length of the record: beyond that all values look alike.
+  bool within_record = false;
+  /// On one of its bounds it would make another effect of this one, so a fit that puts it there does not count. The
+  /// first parameter of an effect is always decisive.
+  bool decisive = false;
 };
 
 }  // namespace tribofit

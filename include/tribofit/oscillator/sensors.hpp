@@ -36,7 +36,7 @@ struct Recording {
 };
 
 /// Records a motion: the effects of the model that belong to the instruments over the whole record, then `sensors`.
-/// Radius and a constant speed are stated as the drive states them; load-coupling shows in the load channel.
+/// Radius and a constant speed are stated as the drive states them; the load channel shows the load at the contact.
 /// Output depends on the seed only, not on the standard library (mt19937_64, Boost.Random normal).
 /// Throws InputError for a negative noise, bandwidth or mass, a gain of zero, a colour outside [0, 1).
 Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,

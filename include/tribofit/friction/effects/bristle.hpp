@@ -1,6 +1,7 @@
 #pragma once
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/contact_spin.hpp"
+#include "tribofit/friction/effects/motion_effects.hpp"
 
 namespace tribofit {
 
@@ -9,21 +10,44 @@ namespace tribofit {
 /// With F = sigma0 z the model reads dF/dt = (sigma0 |v|/f)(f sign(v) - F): friction relaxes towards its steady value
 /// over the distance f/sigma0, and moves elastically while F is small. It acts in stick too: the block creeps there.
 struct Bristle {
+  static constexpr std::string_view key = "bristle";
   static constexpr bool acts_in_stick = true;
 
   static EffectInfo info() {
-    return {.key = "bristle",
-            .statement =
-                "the contacts bend like bristles before they slide, so the block creeps in stick and "
-                "friction is rounded at break-away",
-            .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
-            .source =
-                "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
-                "(1995) 419, doi:10.1109/9.376053",
-            .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
-            .parameters = {{"sigma0", "1/mm", 1e3, 10, 2000, 100, 2000, true, false, 4},
-                           {"sigma1", "s/mm", 1e3, 0, 0.1, 0, 0, true}},
-            .needs = {.lead = true}};
+    return {
+        .key = std::string(key),
+        .statement =
+            "the contacts bend like bristles before they slide, so the block creeps in stick and "
+            "friction is rounded at break-away",
+        .equation = "dz/dt = v_r - sigma0 |v_r| z/f(v), mu = sigma0 z + sigma1 dz/dt",
+        .source =
+            "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE Trans. Autom. Control 40 "
+            "(1995) 419, doi:10.1109/9.376053",
+        .experiment = "reverse the disc 5 to 50 um below break-away: an elastic return is a bristle",
+        .parameters = {{.name = "sigma0",
+                        .description = "stiffness of the bristles: friction per unit of their deflection",
+                        .unit = "1/mm",
+                        .si = 1e3,
+                        .lower = 10,
+                        .upper = 2000,
+                        .start = 100,
+                        .neutral = 2000,
+                        .scales_with_friction = true,
+                        .start_grid_points = 4},
+                       {.name = "sigma1",
+                        .description = "damping of the bristles: friction per unit of their rate of deflection",
+                        .unit = "s/mm",
+                        .si = 1e3,
+                        .lower = 0,
+                        .upper = 0.1,
+                        .neutral = 0,
+                        .scales_with_friction = true}},
+        .needs = {.lead = true},
+        .sketch = {.view = SketchView::creep, .values = {40, 0}},
+        .pairs = {looks_like<VelocityHighPass>(VelocityHighPass::stop_the_disc),
+                  looks_like<RadiusOffset>(VelocityHighPass::stop_the_disc),
+                  looks_like<ContactSpin>(
+                      "compare 9 mm at 8 rpm with 18 mm at 4 rpm: the sliding speed is the same, the spin is half")}};
   }
 
   template <class T>

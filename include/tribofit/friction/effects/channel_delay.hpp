@@ -5,22 +5,44 @@
 #include <span>
 #include <vector>
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/force_bandwidth.hpp"
+#include "tribofit/friction/effects/sensor_inertia.hpp"
 
 namespace tribofit {
 
 /// Friction is recorded later than velocity (positive) or earlier: reading(t) = mu(t - delay).
 struct ChannelDelay {
+  static constexpr std::string_view key = "channel-delay";
+  /// Distinguishes a delay from a lag and from a memory of the contact.
+  static constexpr std::string_view tap_the_block =
+      "tap the resting block and compare the edges: the shift between them is the delay, for vibrometer.delay of the "
+      "instruments file (negative where friction comes late); without sliding there is neither lag nor memory";
+
   static EffectInfo info() {
-    return {.key = "channel-delay",
+    return {.key = std::string(key),
             .statement = "the friction channel is recorded later (positive) or earlier than the velocity channel",
             .equation = "reading(t) = mu(t - delay)",
             .source = "latency of acquisition chains",
             .experiment =
                 "tap the block and align the edges; at twice the speed a delay stays the same in ms, also at re-stick",
-            .parameters = {{"delay", "ms", 1e-3, -5, 5, 0, 0, false, false, 4}},
-            .group = EffectGroup::measurement};
+            .parameters = {{.name = "delay",
+                            .description = "how much later than the velocity friction is recorded; negative: earlier",
+                            .unit = "ms",
+                            .si = 1e-3,
+                            .lower = -5,
+                            .upper = 5,
+                            .neutral = 0,
+                            .start_grid_points = 4}},
+            .group = EffectGroup::measurement,
+            .declared_by = InstrumentValue::vibrometer_delay,
+            .sketch = {.view = SketchView::loop, .values = {2}},
+            .pairs = {looks_like<ForceBandwidth>(
+                          "tap the block: an edge that is shifted is a delay, for vibrometer.delay of the instruments "
+                          "file (negative where friction comes late), one that is slower is a filter"),
+                      looks_like<SensorInertia>(tap_the_block)}};
   }
+
+  static double reading_delay(const double* p) { return p[0]; }
 
   /// Before break-away friction is the spring's straight line; after re-stick it is what was read there.
   template <class T>

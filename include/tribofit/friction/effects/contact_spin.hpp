@@ -14,12 +14,13 @@ namespace tribofit {
 /// fall of friction over the pad, for v_r -> 0 and for v_r -> infinity; at alpha omega R_c = 0.25 mu is 0.2 % off.
 /// There is no rigid stick: below mu_s the block creeps at omega R_c g^-1(mu/mu_s).
 struct ContactSpin {
+  static constexpr std::string_view key = "contact-spin";
   static constexpr bool acts_in_stick = true;
   /// Spin never falls below this speed at the rim [m/s]: it keeps friction finite where the disc stands still, and
   /// lies below what a vibrometer sees.
   static constexpr double least_rim_speed = 2e-5;
   static EffectInfo info() {
-    return {.key = "contact-spin",
+    return {.key = std::string(key),
             .statement =
                 "the disc turns under the pad, so part of the contact always slides and the block creeps before "
                 "break-away",
@@ -29,8 +30,18 @@ struct ContactSpin {
                 "doi:10.1103/PhysRevLett.90.248302",
             .experiment =
                 "9 mm at 8 rpm against 18 mm at 4 rpm: the same sliding speed with half the spin; or a smaller pad",
-            .parameters = {{"R_c", "mm", 1e-3, 0, 10, 2, 0, false, false, 5}},
-            .needs = {.plateau = true}};
+            .parameters = {{.name = "R_c",
+                            .description = "radius of the contact",
+                            .unit = "mm",
+                            .si = 1e-3,
+                            .lower = 0,
+                            .upper = 10,
+                            .start = 2,
+                            .neutral = 0,
+                            .start_grid_points = 5}},
+            .needs = {.plateau = true},
+            .excitation = {.break_away = "before which the block could creep"},
+            .sketch = {.view = SketchView::creep, .values = {4}}};
   }
 
   template <class T>

@@ -8,19 +8,46 @@ namespace tribofit {
 
 /// Friction varies around the disc: two and three waves a revolution.
 struct DiscPattern {
+  static constexpr std::string_view key = "disc-pattern";
   static EffectInfo info() {
     return {
-        .key = "disc-pattern",
+        .key = std::string(key),
         .statement = "friction differs around the disc (spots, transfer film), with more than one wave a revolution",
         .equation = "mu = f(v) (1 + A_2 cos(2 theta + phase_2) + A_3 cos(3 theta + phase_3))",
         .source = "Fourier terms of any pattern fixed to the disc; needs at least two revolutions",
         .experiment = "turn the disc by a quarter on its hub: the pattern turns with it",
-        .parameters = {{"A_2", "1", 1, 0, 0.1, 0.01, 0},
-                       {"phase_2", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4},
-                       {"A_3", "1", 1, 0, 0.1, 0.005, 0},
-                       {"phase_3", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
+        .parameters = {{.name = "A_2",
+                        .description = "relative amplitude of two waves a revolution",
+                        .lower = 0,
+                        .upper = 0.1,
+                        .start = 0.01,
+                        .neutral = 0},
+                       {.name = "phase_2",
+                        .description = "their phase at the first sample of the record",
+                        .unit = "rad",
+                        .lower = -6.3,
+                        .upper = 6.3,
+                        .scope = ParameterScope::record,
+                        .start_grid_points = 4,
+                        .periodic = true},
+                       {.name = "A_3",
+                        .description = "relative amplitude of three waves a revolution",
+                        .lower = 0,
+                        .upper = 0.1,
+                        .start = 0.005,
+                        .neutral = 0},
+                       {.name = "phase_3",
+                        .description = "their phase at the first sample of the record",
+                        .unit = "rad",
+                        .lower = -6.3,
+                        .upper = 6.3,
+                        .scope = ParameterScope::record,
+                        .start_grid_points = 4,
+                        .periodic = true}},
         .needs = {.angle = true},
-        .group = EffectGroup::rig};
+        .excitation = {.revolutions = 2},
+        .group = EffectGroup::rig,
+        .sketch = {.view = SketchView::angle, .values = {0.06, 0, 0.02, 0}}};
   }
 
   template <class T>

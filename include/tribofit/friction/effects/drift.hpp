@@ -6,13 +6,26 @@ namespace tribofit {
 
 /// Friction changes along a straight line in time.
 struct Drift {
+  static constexpr std::string_view key = "drift";
+  /// Distinguishes a drift from what levels off.
+  static constexpr std::string_view record_longer =
+      "record ten times as long at a quarter of the disc speed on fresh, cool surfaces too: a drift goes on at the "
+      "same "
+      "rate, heating levels off and run-in takes the same distance; or pause ten minutes and restart: heating comes "
+      "back";
+
   static EffectInfo info() {
-    return {.key = "drift",
+    return {.key = std::string(key),
             .statement = "friction or its reading drifts along a straight line in time",
             .equation = "mu = f(v) (1 + d t)",
             .source = "first term of any slow change",
             .experiment = "a longer record: a line goes on where an exponential levels off",
-            .parameters = {{"d", "1/s", 1, -0.005, 0.005, 0}}};
+            .parameters = {{.name = "d",
+                            .description = "relative change of friction in unit time",
+                            .unit = "1/s",
+                            .lower = -0.005,
+                            .upper = 0.005}},
+            .sketch = {.view = SketchView::time, .values = {0.003}}};
   }
 
   template <class T>

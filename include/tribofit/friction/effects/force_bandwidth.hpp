@@ -4,21 +4,44 @@
 #include <numbers>
 #include <span>
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/sensor_inertia.hpp"
 
 namespace tribofit {
 
 /// The force channel is a second-order low-pass: y'' + 2 zeta w y' + w^2 y = w^2 mu, w = 2 pi f_0.
 struct ForceBandwidth {
+  static constexpr std::string_view key = "force-bandwidth";
+  /// Distinguishes a filter from a lag and from a memory of the contact.
+  static constexpr std::string_view tap_the_block =
+      "tap the resting block: without sliding only a filter makes the edge slower; where the edge is sharp, give what "
+      "it "
+      "allows as force_sensor.bandwidth of the instruments file; where it is not, record with a spring four times as "
+      "stiff too: slips take half as long, and a lag, a memory and a filter then part";
+
   static EffectInfo info() {
-    return {.key = "force-bandwidth",
-            .statement = "the force sensor or its amplifier is too slow to follow friction",
-            .equation = "y'' + 2 zeta w y' + w^2 y = w^2 mu, w = 2 pi f_0",
-            .source = "second-order response of any seismic or filtered sensor",
-            .experiment = "tap the block: a slower edge is a filter, a shifted edge a delay",
-            .parameters = {{"f_0", "Hz", 1, 20, 2000, 300, 2000}, {"zeta", "1", 1, 0.3, 1, 0.7}},
-            .group = EffectGroup::measurement};
+    return {
+        .key = std::string(key),
+        .statement = "the force sensor or its amplifier is too slow to follow friction",
+        .equation = "y'' + 2 zeta w y' + w^2 y = w^2 mu, w = 2 pi f_0",
+        .source = "second-order response of any seismic or filtered sensor",
+        .experiment = "tap the block: a slower edge is a filter, a shifted edge a delay",
+        .parameters =
+            {{.name = "f_0",
+              .description = "corner frequency of the filter",
+              .unit = "Hz",
+              .lower = 20,
+              .upper = 2000,
+              .start = 300,
+              .neutral = 2000},
+             {.name = "zeta", .description = "damping ratio of the filter", .lower = 0.3, .upper = 1, .start = 0.7}},
+        .group = EffectGroup::measurement,
+        .declared_by = InstrumentValue::force_bandwidth,
+        .sketch = {.view = SketchView::loop, .values = {80, 0.7}},
+        .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps)}};
   }
+
+  /// Group delay of the filter far below its corner.
+  static double reading_delay(const double* p) { return 2 * p[1] / (2 * std::numbers::pi * p[0]); }
 
   /// Exact for straight lines between samples: what is left of the ramp response of the filter, its state (y, y'/w),
   /// turns and shrinks by e^(-zeta w dt) over every interval.

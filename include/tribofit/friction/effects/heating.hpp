@@ -1,19 +1,38 @@
 #pragma once
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/drift.hpp"
+#include "tribofit/friction/effects/run_in.hpp"
 
 namespace tribofit {
 
 /// Friction approaches another level exponentially in time.
 struct Heating {
+  static constexpr std::string_view key = "heating";
   static EffectInfo info() {
     return {
-        .key = "heating",
+        .key = std::string(key),
         .statement = "friction changes as the parts warm up, exponentially in time",
         .equation = "mu = f(v) (1 - h (1 - exp(-t/tau_h)))",
         .source = "first-order thermal response, cf. J. C. Jaeger, Proc. R. Soc. N.S.W. 76 (1942) 203",
         .experiment = "pause ten minutes and restart: heating comes back, run-in does not",
-        .parameters = {{"h", "1", 1, -0.3, 0.3, 0}, {"tau_h", "s", 1, 3, 600, 20, kNoNeutralValue, false, false, 5}}};
+        .parameters = {{.name = "h",
+                        .description = "share of friction that is lost once the parts are warm",
+                        .lower = -0.3,
+                        .upper = 0.3},
+                       {.name = "tau_h",
+                        .description = "time in which the parts warm up",
+                        .unit = "s",
+                        .lower = 3,
+                        .upper = 600,
+                        .start = 20,
+                        .start_grid_points = 5,
+                        .within_record = true,
+                        .decisive = true}},
+        .sketch = {.view = SketchView::time, .values = {0.1, 8}},
+        .pairs = {looks_like<RunIn>(
+                      "record 30 s at four times the disc speed on fresh, cool surfaces too: heating keeps its time, "
+                      "run-in its distance; or pause ten minutes and restart: heating comes back, run-in does not"),
+                  looks_like<Drift>(Drift::record_longer)}};
   }
 
   template <class T>

@@ -9,16 +9,39 @@ namespace tribofit {
 
 /// A line of fixed frequency on the friction channel.
 struct Interference {
+  static constexpr std::string_view key = "interference";
   static EffectInfo info() {
-    return {.key = "interference",
+    return {.key = std::string(key),
             .statement = "mains hum or another line of fixed frequency rides on the friction channel",
             .equation = "reading = mu + A cos(2 pi f t + phase)",
             .source = "narrow-band pick-up",
             .experiment = "record with the disc at rest: the line stays",
-            .parameters = {{"A", "1", 1, 0, 0.03, 0.003, 0, true},
-                           {"f", "Hz", 1, 2, 10000, 50},
-                           {"phase", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
-            .group = EffectGroup::measurement};
+            .parameters = {{.name = "A",
+                            .description = "amplitude of the line",
+                            .lower = 0,
+                            .upper = 0.03,
+                            .start = 0.003,
+                            .neutral = 0,
+                            .scales_with_friction = true},
+                           {.name = "f",
+                            .description = "frequency of the line",
+                            .unit = "Hz",
+                            .lower = 2,
+                            .upper = 10000,
+                            .start = 50,
+                            .search = ParameterSearch::steady_line,
+                            .decisive = true},
+                           {.name = "phase",
+                            .description = "phase of the line at the first sample of the record",
+                            .unit = "rad",
+                            .lower = -6.3,
+                            .upper = 6.3,
+                            .scope = ParameterScope::record,
+                            .start_grid_points = 4,
+                            .periodic = true}},
+            .group = EffectGroup::measurement,
+            .needs_full_resolution = true,
+            .sketch = {.view = SketchView::line, .values = {0.01, 50, 0}}};
   }
 
   template <class T>

@@ -1,15 +1,19 @@
 #pragma once
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/bristle.hpp"
+#include "tribofit/friction/effects/channel_delay.hpp"
+#include "tribofit/friction/effects/force_bandwidth.hpp"
+#include "tribofit/friction/effects/sensor_inertia.hpp"
 
 namespace tribofit {
 
 /// Friction remembers over a sliding distance: d phi/ds = (f(v) - phi)/D_c, mu = phi + a asinh(|v|/(2 v0)).
 struct RateState {
+  static constexpr std::string_view key = "rate-state";
   static constexpr double reference_velocity = 1e-3;  ///< v0 = 1 mm/s [m/s]
 
   static EffectInfo info() {
-    return {.key = "rate-state",
+    return {.key = std::string(key),
             .statement =
                 "the contacts are renewed over a sliding distance D_c, so friction follows its steady value "
                 "with a memory of that length",
@@ -19,8 +23,29 @@ struct RateState {
                 "J. R. Rice, N. Lapusta, K. Ranjith, J. Mech. Phys. Solids 49 (2001) 1865, "
                 "doi:10.1016/S0022-5096(01)00042-4",
             .experiment = "1, 2, 4 and 8 rpm: the loop closes over a constant distance, not a constant time",
-            .parameters = {{"D_c", "um", 1e-6, 0.5, 200, 20, 0.5, false, false, 4, BoundScaling::with_slip_length},
-                           {"a", "1", 1, 0, 0.02, 0, 0, true}},
+            .parameters = {{.name = "D_c",
+                            .description = "sliding distance over which the contacts are renewed",
+                            .unit = "um",
+                            .si = 1e-6,
+                            .lower = 0.5,
+                            .upper = 200,
+                            .start = 20,
+                            .neutral = 0.5,
+                            .bound_scaling = BoundScaling::with_slip_length,
+                            .start_grid_points = 4},
+                           {.name = "a",
+                            .description = "direct effect: rise of friction with the logarithm of speed, at once",
+                            .lower = 0,
+                            .upper = 0.02,
+                            .neutral = 0,
+                            .scales_with_friction = true}},
+            .sketch = {.view = SketchView::loop, .values = {100, 0}},
+            .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps),
+                      looks_like<ChannelDelay>(ChannelDelay::tap_the_block),
+                      looks_like<ForceBandwidth>(ForceBandwidth::tap_the_block),
+                      looks_like<Bristle>(
+                          "record at half the disc speed too and look at the stick: with a bristle v_r is not zero "
+                          "there; or reverse the disc 5 to 50 um below break-away: an elastic return is a bristle")},
             .forms = {
                 {"healing", "contacts also grow older at rest (Dieterich), so break-away grows with the stick time"}}};
   }

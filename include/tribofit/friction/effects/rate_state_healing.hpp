@@ -9,10 +9,12 @@ namespace tribofit {
 ///
 /// What acts at once (`viscous`, the direct term) is taken at v.
 struct RateStateHealing {
+  static constexpr std::string_view key = RateState::key;
   static EffectInfo info() {
     EffectInfo info = RateState::info();
     info.option = "healing";
     info.forms.clear();
+    info.pairs.clear();  // RateState states them for both
     info.statement =
         "the contacts grow older with time, at rest as well, and are renewed over a sliding distance D_c, so friction "
         "has a memory of that length and break-away grows with the stick time";

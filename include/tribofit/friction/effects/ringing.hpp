@@ -9,17 +9,45 @@ namespace tribofit {
 
 /// A second mode of the rig rings down after each break-away.
 struct Ringing {
+  static constexpr std::string_view key = "ringing";
   static EffectInfo info() {
-    return {.key = "ringing",
+    return {.key = std::string(key),
             .statement = "a second mode of the rig is struck by each break-away and rings down",
             .equation = "reading = mu + A exp(-zeta w s) cos(w s + phase), w = 2 pi f, s = time since break-away",
             .source = "free vibration of a damped mode, textbook",
             .experiment = "tap the rig: the mode answers at the same frequency without sliding",
-            .parameters = {{"A", "1", 1, 0, 0.05, 0.003, 0, true},
-                           {"f", "Hz", 1, 30, 2000, 200},
-                           {"zeta", "1", 1, 0.002, 0.1, 0.02, kNoNeutralValue, false, false, 3},
-                           {"phase", "rad", 1, -6.3, 6.3, 0, kNoNeutralValue, false, false, 4}},
-            .group = EffectGroup::rig};
+            .parameters = {{.name = "A",
+                            .description = "amplitude right after break-away",
+                            .lower = 0,
+                            .upper = 0.05,
+                            .start = 0.003,
+                            .neutral = 0,
+                            .scales_with_friction = true},
+                           {.name = "f",
+                            .description = "frequency of the mode",
+                            .unit = "Hz",
+                            .lower = 30,
+                            .upper = 2000,
+                            .start = 200,
+                            .search = ParameterSearch::ringing_line,
+                            .decisive = true},
+                           {.name = "zeta",
+                            .description = "damping ratio of the mode",
+                            .lower = 0.002,
+                            .upper = 0.1,
+                            .start = 0.02,
+                            .start_grid_points = 3},
+                           {.name = "phase",
+                            .description = "phase of the mode at break-away",
+                            .unit = "rad",
+                            .lower = -6.3,
+                            .upper = 6.3,
+                            .start_grid_points = 4,
+                            .periodic = true}},
+            .excitation = {.break_away = "to strike it"},
+            .group = EffectGroup::rig,
+            .needs_full_resolution = true,
+            .sketch = {.view = SketchView::since_break_away, .values = {0.02, 200, 0.05, 0}}};
   }
 
   template <class T>

@@ -1,20 +1,34 @@
 #pragma once
 
-#include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/effects/drift.hpp"
 
 namespace tribofit {
 
 /// Friction approaches another level exponentially in sliding distance.
 struct RunIn {
+  static constexpr std::string_view key = "run-in";
   static EffectInfo info() {
-    return {
-        .key = "run-in",
-        .statement = "the surfaces wear in, so friction changes exponentially with the distance slid",
-        .equation = "mu = f(v) (1 + w exp(-s/L))",
-        .source = "P. J. Blau, Tribol. Int. 38 (2005) 1007",
-        .experiment = "pause ten minutes and restart: run-in does not come back, heating does",
-        .parameters = {{"w", "1", 1, -0.5, 0.5, 0}, {"L", "mm", 1e-3, 10, 1e5, 300, kNoNeutralValue, false, false, 6}},
-        .needs = {.distance = true}};
+    return {.key = std::string(key),
+            .statement = "the surfaces wear in, so friction changes exponentially with the distance slid",
+            .equation = "mu = f(v) (1 + w exp(-s/L))",
+            .source = "P. J. Blau, Tribol. Int. 38 (2005) 1007",
+            .experiment = "pause ten minutes and restart: run-in does not come back, heating does",
+            .parameters = {{.name = "w",
+                            .description = "share by which friction is higher on fresh surfaces",
+                            .lower = -0.5,
+                            .upper = 0.5},
+                           {.name = "L",
+                            .description = "sliding distance over which the surfaces wear in",
+                            .unit = "mm",
+                            .si = 1e-3,
+                            .lower = 10,
+                            .upper = 1e5,
+                            .start = 300,
+                            .start_grid_points = 6,
+                            .decisive = true}},
+            .needs = {.distance = true},
+            .sketch = {.view = SketchView::distance, .values = {0.15, 60}},
+            .pairs = {looks_like<Drift>(Drift::record_longer)}};
   }
 
   template <class T>

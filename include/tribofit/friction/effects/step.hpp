@@ -8,14 +8,30 @@ namespace tribofit {
 
 /// Friction steps at one time (debris, a transfer film that breaks).
 struct StepChange {
+  static constexpr std::string_view key = "step";
   static EffectInfo info() {
-    return {.key = "step",
+    return {.key = std::string(key),
             .statement = "friction steps once, as when debris enters the contact or a transfer film breaks",
             .equation = "mu = f(v) + delta for t >= t_c",
             .source = "change point, cf. E. S. Page, Biometrika 41 (1954) 100, doi:10.1093/biomet/41.1-2.100",
             .experiment = "repeat the run on fresh surfaces: a step does not come back at the same time",
-            .parameters = {{"delta", "1", 1, -0.1, 0.1, 0.01, 0, true},
-                           {"t_c", "s", 1, 0, 1e4, 10, kNoNeutralValue, false, false}}};
+            .parameters = {{.name = "delta",
+                            .description = "change of friction",
+                            .lower = -0.1,
+                            .upper = 0.1,
+                            .start = 0.01,
+                            .neutral = 0,
+                            .scales_with_friction = true},
+                           {.name = "t_c",
+                            .description = "time of the change, from the first sample of the record",
+                            .unit = "s",
+                            .lower = 0,
+                            .upper = 1e4,
+                            .start = 10,
+                            .scope = ParameterScope::record,
+                            .search = ParameterSearch::moment_of_change,
+                            .decisive = true}},
+            .sketch = {.view = SketchView::time, .values = {0.03, 20}}};
   }
 
   /// The change takes 20 ms, shorter than a cycle, so that its time has a derivative.

@@ -8,9 +8,10 @@ namespace tribofit {
 
 /// The fall of friction is steeper or gentler than the base law: x = decay v becomes x^delta.
 struct StribeckExponent {
+  static constexpr std::string_view key = "stribeck-exponent";
   static EffectInfo info() {
     return {
-        .key = "stribeck-exponent",
+        .key = std::string(key),
         .statement = "friction falls with speed over a sharper or wider range than the base law",
         .equation = "mu = mu_k + (mu_s - mu_k) exp(-(alpha v)^delta), or 1/(1 + (beta v)^delta) for the last term",
         .source =
@@ -18,7 +19,13 @@ struct StribeckExponent {
             "Dupont, "
             "C. Canudas de Wit, Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7",
         .experiment = "four times the disc speed, or slips faster than 3/alpha: the end of the fall shows its shape",
-        .parameters = {{"delta", "1", 1, 0.5, 2, 1}}};
+        .parameters = {{.name = "delta",
+                        .description =
+                            "exponent of the reduced speed; above 1 the fall is sharper than that of the base law",
+                        .lower = 0.5,
+                        .upper = 2,
+                        .start = 1}},
+        .sketch = {.view = SketchView::curve, .values = {1.8}}};
   }
 
   template <class T>

@@ -6,16 +6,22 @@ namespace tribofit {
 
 /// Friction coefficient depends on temperature: mu (1 + k_T (T - T0)).
 struct TemperatureDependence {
+  static constexpr std::string_view key = "temperature-dependence";
   static EffectInfo info() {
     return {
-        .key = "temperature-dependence",
+        .key = std::string(key),
         .statement = "friction coefficient changes with the temperature of the contact",
         .equation = "mu = f(v) (1 + k_T (T - T0)), T0 the mean temperature of the record",
         .source =
             "linear term of any smooth dependence; for brake materials cf. A. E. Anderson, ASM Handbook 18 (1992) 569",
         .experiment = "the same run with the disc heated from outside",
-        .parameters = {{"k_T", "1/K", 1, -0.01, 0.01, 0}},
-        .needs = {.temperature = true}};
+        .parameters = {{.name = "k_T",
+                        .description = "relative change of friction per kelvin",
+                        .unit = "1/K",
+                        .lower = -0.01,
+                        .upper = 0.01}},
+        .needs = {.temperature = true},
+        .sketch = {.view = SketchView::temperature, .values = {0.005}}};
   }
 
   template <class T>

@@ -1,0 +1,17 @@
+#pragma once
+
+/// Names of the checks of the data, as reports and JSON have them (HealthItem::check). Some coincide with the key of an
+/// effect that would show there; a check says what the data show, an effect is found by the diagnosis.
+namespace tribofit::health_check {
+
+inline constexpr const char* kClipping = "clipping";
+inline constexpr const char* kDropOuts = "drop-outs";
+inline constexpr const char* kSaggingPlateau = "sagging-plateau";
+inline constexpr const char* kBandwidth = "bandwidth";
+inline constexpr const char* kChannelDelay = "channel-delay";
+inline constexpr const char* kRevolutions = "revolutions";
+inline constexpr const char* kSpeedRipple = "speed-ripple";
+inline constexpr const char* kRunUp = "run-up";
+inline constexpr const char* kPlateauSpeed = "plateau-speed";
+
+}  // namespace tribofit::health_check
