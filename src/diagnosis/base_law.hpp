@@ -14,6 +14,6 @@ std::vector<BaseLaw> base_laws(std::span<const Record> records, std::vector<Base
 
 /// The ladder to tell: see better_ladder. Where Coulomb friction is among them, a law that only rises in a straight
 /// line does not compete: it is Coulomb friction with something more, and the ladder from there says what.
-std::size_t told_ladder(const DiagnosisContext& bench, const std::vector<Ladder>& ladders);
+std::size_t reported_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders);
 
 }  // namespace tribofit::diagnosis

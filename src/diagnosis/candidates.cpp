@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "fit/starts.hpp"
+#include "limits.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -37,7 +38,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
     if (std::isfinite(slip.stick_time) && slip.stick_time > 0) sticks.push_back(slip.stick_time);
   }
   out.both_directions = forth && back;
-  if (sticks.size() >= 6) {
+  if (sticks.size() >= limits::kFewestSticks) {
     out.median_stick_time = median(sticks);
     out.stick_time_ratio = quantile(sticks, 0.95) / quantile(sticks, 0.05);
     std::sort(sticks.rbegin(), sticks.rend());
@@ -75,14 +76,14 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
   if (needs.angle && observations.angle.empty()) return "the disc angle is not known (give --speed)";
   if (needs.force && !seen.force_known) return "the normal force is not known (give --load)";
   if (seen.revolutions < info.excitation.revolutions) return too_few_revolutions(seen.revolutions, info);
-  constexpr double kLeastLoadSpread = 0.03, kLeastTemperatureSpread = 2, kLeastStickRatio = 2.5;
-  if (needs.load && seen.load_spread < kLeastLoadSpread) {
+  if (needs.load && seen.load_spread < limits::kLeastLoadSpread) {
     return fmt::format("the load varies by {:.1f} % only", 100 * seen.load_spread);
   }
-  if (needs.temperature && seen.temperature_spread < kLeastTemperatureSpread) {
+  if (needs.temperature && seen.temperature_spread < limits::kLeastTemperatureSpread) {
     return fmt::format("the temperature varies by {:.1f} K only", seen.temperature_spread);
   }
-  if (needs.stick_time && seen.stick_time_ratio < kLeastStickRatio && seen.longest_stick_ratio < kLeastStickRatio) {
+  if (needs.stick_time && seen.stick_time_ratio < limits::kLeastStickRatio &&
+      seen.longest_stick_ratio < limits::kLeastStickRatio) {
     return seen.median_stick_time > 0
                ? fmt::format("the stick times are all about {:.2g} s: a longer stick cannot be told from a shorter one",
                              seen.median_stick_time)
@@ -213,15 +214,15 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
     EffectInfo info = describe(effect);
     std::string why = obstacle(info, observations, seen);
     const Motion& motion = *records[0].motion;
-    const auto possible =
+    const auto allowed =
         allowed_beside_declared(instruments, info.declared_by, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
       EffectInfo other_info = describe(other);
       std::string why_not = obstacle(other_info, observations, seen);
-      out.push_back({other, std::move(other_info), std::move(why_not), possible});
+      out.push_back({other, std::move(other_info), std::move(why_not), allowed});
     }
-    out.push_back({effect, std::move(info), std::move(why), possible});
+    out.push_back({effect, std::move(info), std::move(why), allowed});
   }
   for (const Effect& effect : own) out.push_back({effect, describe(effect), {}, {}});
   return out;

@@ -14,8 +14,8 @@ namespace tribofit::diagnosis {
 struct Candidate {
   Effect effect;
   EffectInfo info;
-  std::string untestable;                     ///< why these data cannot show it; empty where they can
-  std::optional<AllowedRange> possible = {};  ///< beside what the instruments file declares
+  std::string untestable;                    ///< why these data cannot show it; empty where they can
+  std::optional<AllowedRange> allowed = {};  ///< beside what the instruments file declares
 };
 
 /// Every effect of the catalogue with its forms (of the same key) and the user's own, each checked for its channels and

@@ -6,6 +6,7 @@
 
 #include "base_law.hpp"
 #include "findings.hpp"
+#include "limits.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -16,9 +17,7 @@ namespace {
 
 using namespace diagnosis;
 
-constexpr std::size_t kFewestCycles = 12;
-
-/// Says what is being done, one voice at a time.
+/// Says what is being done, one thread at a time.
 class ProgressReporter {
  public:
   explicit ProgressReporter(const DiagnosisOptions& options) : progress_(options.progress) {}
@@ -63,7 +62,7 @@ std::size_t count_cycles(std::span<const Record> records) {
     const auto& all = record.segmentation->cycles;
     const auto taken = std::count_if(all.begin(), all.end(),
                                      [&](const Cycle& cycle) { return record.segmentation->is_selected(cycle); });
-    cycles += sticks ? static_cast<std::size_t>(taken) : kFewestCycles;
+    cycles += sticks ? static_cast<std::size_t>(taken) : limits::kFewestCycles;
   }
   return cycles;
 }
@@ -80,6 +79,98 @@ Floor floor_of(std::span<const Record> records) {
   out.noise = std::sqrt(noise);
   out.scatter = std::sqrt(scatter);
   return out;
+}
+
+Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
+  Diagnosis out;
+  out.verdict = Verdict::not_enough_data;
+  out.messages.push_back(
+      fmt::format("there are {} cycles; {} are needed to hold some of them out", cycles, limits::kFewestCycles));
+  double duration = 0;
+  for (const Record& record : records) duration += record.motion->duration();
+  out.next_experiment =
+      cycles > 0 ? fmt::format("Record for at least {:.0f} s under the same conditions.",
+                               std::ceil(1.2 * duration * limits::kFewestCycles / static_cast<double>(cycles)))
+                 : "Record until the block has broken away a dozen times.";
+  return out;
+}
+
+/// The ladder to report, of those from every base law.
+Ladder reported_of(const DiagnosisContext& context, const std::vector<BaseLaw>& laws, const std::vector<Candidate>& all,
+                   const DiagnosisOptions& options, ProgressReporter& progress) {
+  std::vector<Candidate> from_the_start;
+  for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});
+  std::vector<Ladder> ladders =
+      climb(context, laws, from_the_start, all, Limits(), options.most_effects,
+            [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
+  return std::move(ladders[reported_ladder(context, ladders)]);
+}
+
+/// Fits every rung as `identify` does. A rung that cannot be fitted at full resolution ends the ladder below it.
+std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, const FitOptions& options,
+                           Ladder& ladder) {
+  std::vector<Fit> fits(ladder.steps.size());
+  run_tasks(ladder.steps.size(), context.threads, [&](std::size_t k) {
+    const Trial& trial = ladder.steps[k].trial;
+    FitOptions warm = options;
+    warm.start = trial.p;
+    fits[k] = fit_model(trial.model, context.records, context.fine.observations, instruments, warm);
+  });
+  const auto failed = std::find_if(fits.begin() + 1, fits.end(), [](const Fit& rung) {
+    return rung.parameters.empty() || !(rung.error.held_out_rmse > 0);
+  });
+  ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
+  fits.erase(failed, fits.end());
+  return fits;
+}
+
+/// One noise floor for all rungs: the sensor noise of the records, and the scatter that the last rung sees.
+double share_floor(double noise, std::vector<Fit>& fits) {
+  Floor floor = fits.back().floor;
+  const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
+  floor.noise = noise;
+  floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
+  for (Fit& rung : fits) set_floor(floor, rung);
+  return floor.rmse;
+}
+
+/// Where the base law fails, and what the last rung leaves.
+void add_shares(const Ladder& ladder, const std::vector<Probe>& structure, Diagnosis& diagnosis) {
+  double left = 0;
+  for (const Probe& probe : structure) left = std::max(left, probe.fall);
+  const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;
+  diagnosis.where = shares_of(ladder.steps.front().probes, climbed + left);
+  add_share_of_stick(ladder, climbed + left, diagnosis.where);
+  diagnosis.remaining = shares_of(ladder.steps.back().probes, left);
+}
+
+std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& all, const std::vector<Fit>& fits) {
+  std::vector<Rung> rungs;
+  for (std::size_t s = 0; s < ladder.steps.size(); ++s) {
+    const LadderStep& step = ladder.steps[s];
+    Rung rung;
+    if (step.added) rung.added = all[*step.added].info.key;
+    rung.rmse = fits[s].error.rmse;
+    rung.held_out_rmse = fits[s].error.held_out_rmse;
+    rung.held_out_std_error = held_out_std_error(fits[s]);
+    for (const std::size_t k : step.equivalent) rung.equivalent.push_back(all[k].info.key);
+    rungs.push_back(std::move(rung));
+  }
+  return rungs;
+}
+
+/// Far above the floor, an error that goes with no variable of these data is not explained either.
+void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
+  const bool added = fits.size() > 1;
+  diagnosis.verdict = structured ? Verdict::unexplained : added ? Verdict::effect_found : Verdict::sufficient;
+  const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
+  const double left_over = fits.back().error.held_out_rmse / diagnosis.floor_rmse;
+  if (structured || !(left_over > far)) return;
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.messages.push_back(
+      fmt::format("what remains is {:.1f} times the noise floor and goes with no variable of these data more than "
+                  "chance would make it: it changes from cycle to cycle, or with something that was not recorded",
+                  left_over));
 }
 
 }  // namespace
@@ -100,7 +191,7 @@ std::string_view to_string(Verdict verdict) {
 
 std::string_view to_string(EffectStatus status) {
   switch (status) {
-    case EffectStatus::missing:
+    case EffectStatus::found:
       return "missing";
     case EffectStatus::equivalent:
       return "equivalent";
@@ -119,102 +210,41 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   Diagnosed out;
   Diagnosis& diagnosis = out.diagnosis;
   const std::size_t cycles = count_cycles(records);
-  if (cycles < kFewestCycles) {
-    diagnosis.verdict = Verdict::not_enough_data;
-    diagnosis.messages.push_back(
-        fmt::format("there are {} cycles; {} are needed to hold some of them out", cycles, kFewestCycles));
-    double duration = 0;
-    for (const Record& record : records) duration += record.motion->duration();
-    diagnosis.next_experiment =
-        cycles > 0 ? fmt::format("Record for at least {:.0f} s under the same conditions.",
-                                 std::ceil(1.2 * duration * kFewestCycles / static_cast<double>(cycles)))
-                   : "Record until the block has broken away a dozen times.";
-    return out;
-  }
-  ProgressReporter voice(options);
-  voice.say("reading slips", 0.02);
+  if (cycles < limits::kFewestCycles) return {too_few_cycles(records, cycles), {}};
+  ProgressReporter progress(options);
+  progress.say("reading slips", 0.02);
   const Channels channels = all_channels(records);
-  constexpr std::size_t kFineValues = 20000, kCoarseValues = 5000;
-  const Floor leaves = floor_of(records);
-  const Observations fine =
-      observe_all(records, channels, std::clamp<std::size_t>(kFineValues / cycles, 80, 400), leaves.noise);
+  const Floor floor = floor_of(records);
+  const Observations fine = observe_all(
+      records, channels, std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine), floor.noise);
   const Observations coarse =
-      observe_all(records, channels, std::clamp<std::size_t>(kCoarseValues / cycles, 16, 40), leaves.noise);
-  DiagnosisContext bench(records, fine, coarse, leaves.noise, leaves.scatter);
-  bench.threads = options.threads;
-  bench.cancelled = options.cancelled;
+      observe_all(records, channels,
+                  std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse), floor.noise);
+  DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
+  context.threads = options.threads;
+  context.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
-  const std::vector<BaseLaw> laws = base_laws(records, given);
-  std::vector<Candidate> given_effects;
-  for (const Effect& effect : options.from_the_start) given_effects.push_back({effect, describe(effect), {}, {}});
-  for (const Candidate& effect : given_effects) diagnosis.from_the_start.push_back(effect.info.spelled());
-  std::vector<Ladder> ladders = climb(bench, laws, given_effects, all, Limits(), options.most_effects,
-                                      [&](std::string_view what, double part) { voice.say(what, 0.05 + 0.75 * part); });
-  Ladder& ladder = ladders[told_ladder(bench, ladders)];
+  for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
+  Ladder ladder = reported_of(context, base_laws(records, given), all, options, progress);
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;
     diagnosis.messages.push_back("no base law could be fitted");
     return out;
   }
-
-  voice.say("fitting every rung", 0.85);
-  out.fits.resize(ladder.steps.size());
-  run_tasks(ladder.steps.size(), options.threads, [&](std::size_t k) {
-    const Trial& trial = ladder.steps[k].trial;
-    FitOptions warm = fit;
-    warm.start = trial.p;
-    out.fits[k] = fit_model(trial.model, records, fine, instruments, warm);
-  });
-  // A rung that cannot be fitted at full resolution is none.
-  const auto failed = std::find_if(out.fits.begin() + 1, out.fits.end(), [](const Fit& rung) {
-    return rung.parameters.empty() || !(rung.error.held_out_rmse > 0);
-  });
-  ladder.steps.resize(static_cast<std::size_t>(failed - out.fits.begin()));
-  out.fits.erase(failed, out.fits.end());
-  Floor floor = out.fits.back().floor;
-  const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
-  floor.noise = bench.noise;
-  floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
-  for (Fit& rung : out.fits) set_floor(floor, rung);
-  diagnosis.floor_rmse = floor.rmse;
-
+  progress.say("fitting every rung", 0.85);
+  out.fits = fit_rungs(context, instruments, fit, ladder);
+  diagnosis.floor_rmse = share_floor(context.noise, out.fits);
   const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes);
-  double left = 0;
-  for (const Probe& probe : structure) left = std::max(left, probe.fall);
-  const double climbed = ladder.steps[0].trial.held_out_squares - ladder.top().held_out_squares;
-  diagnosis.where = shares_of(ladder.steps.front().probes, climbed + left);
-  add_share_of_stick(ladder, climbed + left, diagnosis.where);
-  diagnosis.remaining = shares_of(ladder.steps.back().probes, left);
-  diagnosis.effects = findings_of(bench, ladder, all, out.fits, floor.rmse);
-  for (std::size_t s = 0; s < ladder.steps.size(); ++s) {
-    const LadderStep& step = ladder.steps[s];
-    Rung rung;
-    if (step.added) rung.added = all[*step.added].info.key;
-    rung.rmse = out.fits[s].error.rmse;
-    rung.held_out_rmse = out.fits[s].error.held_out_rmse;
-    rung.held_out_std_error = held_out_std_error(out.fits[s]);
-    for (const std::size_t k : step.equivalent) rung.equivalent.push_back(all[k].info.key);
-    diagnosis.ladder.push_back(std::move(rung));
-  }
-  diagnosis.verdict = !structure.empty()        ? Verdict::unexplained
-                      : ladder.steps.size() > 1 ? Verdict::effect_found
-                                                : Verdict::sufficient;
-  // Far above the floor, an error that goes with no variable of these data is not explained either.
-  const double kFar = ladder.steps.size() > 1 ? 2 : 1.5;
-  const double left_over = out.fits.back().error.held_out_rmse / floor.rmse;
-  if (structure.empty() && left_over > kFar) {
-    diagnosis.verdict = Verdict::unexplained;
-    diagnosis.messages.push_back(
-        fmt::format("what remains is {:.1f} times the floor and goes with no variable of these data more than chance "
-                    "would make it: it changes from cycle to cycle, or with something that was not recorded",
-                    left_over));
-  }
+  add_shares(ladder, structure, diagnosis);
+  diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
+  diagnosis.ladder = rungs_of(ladder, all, out.fits);
+  decide(out.fits, !structure.empty(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
-  voice.say("a closed form of the rest", 0.95);
-  if (!structure.empty()) diagnosis.formula = closed_form(bench, ladder.top(), structure.front());
-  voice.say("done", 1);
+  progress.say("a closed form of the rest", 0.95);
+  if (!structure.empty()) diagnosis.formula = closed_form(context, ladder.top(), structure.front());
+  progress.say("done", 1);
   return out;
 }
 

@@ -11,7 +11,7 @@ namespace tribofit::diagnosis {
 
 /// What became of every candidate, from the ladder and the fits of its rungs.
 /// fits: one a step of the ladder.
-std::vector<EffectFinding> findings_of(const DiagnosisContext& bench, const Ladder& ladder,
+std::vector<EffectFinding> findings_of(const DiagnosisContext& context, const Ladder& ladder,
                                        const std::vector<Candidate>& all, const std::vector<Fit>& fits, double floor);
 
 /// Shares of the probes, largest first; those that chance would make too are left out.
@@ -26,6 +26,6 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
                             const std::vector<Probe>& structure);
 
 /// A closed form of what a probe found, as --formula takes it; empty where none fits.
-std::string closed_form(const DiagnosisContext& bench, const Trial& top, const Probe& probe);
+std::string closed_form(const DiagnosisContext& context, const Trial& top, const Probe& probe);
 
 }  // namespace tribofit::diagnosis

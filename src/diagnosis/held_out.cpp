@@ -67,13 +67,12 @@ Eigen::VectorXd spread_out(const Eigen::VectorXd& step, const std::vector<Eigen:
 
 /// Step from the normal equations of the kept cycles, in the basis in which all cycles know one of everything.
 Eigen::VectorXd step_of(const Normal& kept, const Eigen::MatrixXd& basis) {
-  constexpr double kLeastKnown = 0.1;
   if (basis.cols() == 0) return Eigen::VectorXd::Zero(basis.rows());
   const SymmetricEigen known = symmetric_eigen(basis.transpose() * kept.curvature * basis);
   Eigen::VectorXd pull = known.vectors.transpose() * (basis.transpose() * kept.gradient);
   for (Eigen::Index i = 0; i < pull.size(); ++i) {
     const double part = known.values(i);
-    pull(i) = part >= kLeastKnown ? pull(i) / part : 0;
+    pull(i) = part >= limits::kLeastKnown ? pull(i) / part : 0;
   }
   return -(basis * (known.vectors * pull));
 }
@@ -164,6 +163,10 @@ double fall_p_value(double fall, std::size_t parameters, double noise, double de
   if (!(fall > 0) || !(noise > 0)) return 1;
   const auto k = static_cast<double>(parameters);
   return f_p_value(fall / (k * noise * design_effect), k, std::max(1.0, freedom));
+}
+
+double few_frequencies(double cycles) {
+  return std::max(3.0, 0.4 * std::pow(cycles, 2.0 / 3));
 }
 
 double sum(const std::vector<double>& x) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fit/model_residuals.hpp"
+#include "limits.hpp"
 #include "tribofit/fit/observations.hpp"
 
 namespace tribofit::diagnosis {
@@ -17,7 +18,9 @@ namespace tribofit::diagnosis {
 class Blocks {
  public:
   explicit Blocks(const Observations& observations)
-      : count_(std::clamp<std::size_t>(observations.cycles / 5, 2, 10)), of_(blocks_of(observations, count_)) {}
+      : count_(std::clamp<std::size_t>(observations.cycles / limits::kCyclesOfBlock, limits::kFewestBlocks,
+                                       limits::kMostBlocks)),
+        of_(blocks_of(observations, count_)) {}
   /// From the block of every cycle.
   explicit Blocks(std::vector<std::size_t> of)
       : count_(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1), of_(std::move(of)) {}
@@ -60,6 +63,9 @@ double design_effect(const Linearised& model, std::size_t k, double noise);
 /// p-value of a fall of the squares by `fall` for `parameters` more parameters, when independent residuals of variance
 /// `noise` count for 1/design_effect each and the variance is known with `freedom` degrees of freedom (F test).
 double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom);
+
+/// Degrees of freedom of a variance of what correlates between cycles: see standard_error_of_mean().
+double few_frequencies(double cycles);
 
 double sum(const std::vector<double>& x);
 

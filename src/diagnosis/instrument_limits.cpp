@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limits.hpp"
+
 namespace tribofit::diagnosis {
 
 namespace {
-
-constexpr double kSigmas = 3;
 
 /// The value in use is the declared one.
 bool is_used(const Condition& used, const std::optional<Declared>& declared) {
@@ -43,19 +43,21 @@ std::optional<AllowedRange> allowed_beside_declared(const Instruments& instrumen
   const std::optional<Declared> declared = declared_value(instruments, value, kind, load);
   if (!declared) return std::nullopt;
   if (value == InstrumentValue::force_bandwidth) {
-    return AllowedRange{declared->value - kSigmas * declared->uncertainty, HUGE_VAL};
+    return AllowedRange{declared->value - limits::kDeclaredSigmas * declared->uncertainty, HUGE_VAL};
   }
-  return AllowedRange{-kSigmas * declared->uncertainty, kSigmas * declared->uncertainty};
+  return AllowedRange{-limits::kDeclaredSigmas * declared->uncertainty,
+                      limits::kDeclaredSigmas * declared->uncertainty};
 }
 
 PlateauSays plateau_says(const Instruments& instruments, const Conditions& used, double ratio) {
   PlateauSays out;
   const double off = std::abs(ratio - 1);
   const auto relative = [](const Declared& d) { return d.uncertainty / std::abs(d.value); };
-  if (instruments.vibrometer.gain) out.not_the_gain = off > kSigmas * relative(*instruments.vibrometer.gain);
+  if (instruments.vibrometer.gain)
+    out.not_the_gain = off > limits::kDeclaredSigmas * relative(*instruments.vibrometer.gain);
   const auto& rig = instruments.rig;
   if (is_used(used.radius, rig.radius) && is_used(used.speed, rig.speed)) {
-    out.not_the_radius = off > kSigmas * std::hypot(relative(*rig.radius), relative(*rig.speed));
+    out.not_the_radius = off > limits::kDeclaredSigmas * std::hypot(relative(*rig.radius), relative(*rig.speed));
   }
   return out;
 }

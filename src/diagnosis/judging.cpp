@@ -14,30 +14,31 @@ namespace {
 /// The data draw a parameter that is on its bound beyond it: a tenth of its range inside, the others following, the
 /// squares are larger than chance would make them.
 bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
-  constexpr double kInside = 0.1, kSigmas = 3;
   const Parameter& q = trial.model.parameters()[k].parameter;
   const double range = (q.upper - q.lower) * q.si, middle = 0.5 * (q.upper + q.lower) * q.si;
   Linearised inside = trial.linear;
   const double before = sum(squares_after(inside, gauss_newton_step(inside)));
-  const double step = kInside * range * (trial.p[k] > middle ? -1 : 1);
+  const double step = limits::kInside * range * (trial.p[k] > middle ? -1 : 1);
   for (Eigen::MatrixXd& rows : inside.rows) rows.col(rows.cols() - 1) += rows.col(static_cast<Eigen::Index>(k)) * step;
-  return sum(squares_after(inside, gauss_newton_step(inside))) - before > kSigmas * kSigmas * least_squares;
+  return sum(squares_after(inside, gauss_newton_step(inside))) - before >
+         limits::kDrawnSigmas * limits::kDrawnSigmas * least_squares;
 }
 
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what
 /// the effect says, where the data draw it there. noise: variance of a residual, correlation counted.
-bool is_plausible(const DiagnosisContext& bench, const Trial& trial, const Candidate& candidate, double noise) {
+bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Candidate& candidate, double noise) {
   const EffectInfo& info = candidate.info;
   const std::size_t offset = trial.model.offset_of(info.key);
-  if (candidate.possible && !candidate.possible->holds(trial.p[offset])) return false;
+  if (candidate.allowed && !candidate.allowed->holds(trial.p[offset])) return false;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
     const bool decisive = k == 0 || q.decisive;
-    const bool away = k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > 0.5 * (q.upper - q.lower) * q.si;
+    const bool away =
+        k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > limits::kAwayFromNone * (q.upper - q.lower) * q.si;
     const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, noise);
     if (decisive && trial.at_bound[offset + k] && !flat) return false;
     const bool too_slow =
-        q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(bench.fine.observations);
+        q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(context.fine.observations);
     if (too_slow) return false;
   }
   return true;
@@ -60,32 +61,25 @@ Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, 
   return out;
 }
 
-/// Degrees of freedom of what correlates between n cycles: see standard_error_of_mean().
-double few_frequencies(double n) {
-  return std::max(3.0, 0.4 * std::pow(n, 2.0 / 3));
-}
-
 /// Whether an effect of the stick time explains what otherwise is scatter of break-away from cycle to cycle.
 ///
 /// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
 /// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
 /// Here the squares themselves are compared, with the correlation between cycles as it is.
 bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info, double tests,
-                     const Limits& limits, double floor) {
-  // A break-away that is high by chance makes its own stick longer, and explains some of itself like that.
-  constexpr double kLeastSize = 0.15;
+                     const Limits& least, double floor) {
   const double fall = poorer.plain_minimum - trial.plain_minimum;
-  if (poorer.plain_held_out - trial.plain_held_out <= kLeastSize * floor) return false;
+  if (poorer.plain_held_out - trial.plain_held_out <= limits::kLeastSizeOfLevel * floor) return false;
   const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
   const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
-  return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < limits.p_value;
+  return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < least.p_value;
 }
 
 }  // namespace
 
-CandidateResult compare(const DiagnosisContext& bench, const Level& level, const Trial& poorer, Trial richer,
-                        const Candidate& candidate, double tests, const Limits& limits) {
+CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
+                        const Candidate& candidate, double tests, const Limits& least) {
   const EffectInfo& info = candidate.info;
   CandidateResult out;
   out.trial = std::move(richer);
@@ -97,40 +91,40 @@ CandidateResult compare(const DiagnosisContext& bench, const Level& level, const
   // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
   // line stands among as many frequencies as it likes.
   const auto cycles = static_cast<double>(trial.held_out.size());
-  const bool few = out.design_effect > 1.2 && !info.needs_full_resolution;
+  const bool few = out.design_effect > limits::kCorrelated && !info.needs_full_resolution;
   const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
   out.p_value = std::min(
       1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
   out.fall = poorer.held_out_squares - trial.held_out_squares;
-  const double floor = bench.floor_squares(trial.whitening);
-  out.size = std::max(out.fall / bench.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
-  out.plausible = is_plausible(bench, trial, candidate, noise * out.design_effect);
+  const double floor = context.floor_squares(trial.whitening);
+  out.size = std::max(out.fall / context.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
+  out.plausible = is_plausible(context, trial, candidate, noise * out.design_effect);
   // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
-  // cycles that took no part, needs no such test.
-  const double above = poorer.held_out_squares - bench.noise_squares();
+  // cycles that were held out, needs no such test.
+  const double above = poorer.held_out_squares - context.noise_squares();
   // Not in records that never stick: their few steps of speed go with time.
   const auto& slips = level.observations.slips;
   const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
-  const bool sticks = breaks >= 30;
+  const bool sticks = breaks >= limits::kBreakAwaysOfStickSlip;
   const bool obvious = !info.needs_full_resolution && sticks &&
-                       out.fall > limits.obvious_size * bench.noise_squares() && out.fall > limits.obvious_part * above;
-  const bool seen = out.fall > 0 && (out.p_value < limits.p_value || obvious);
+                       out.fall > least.obvious_size * context.noise_squares() && out.fall > least.obvious_part * above;
+  const bool seen = out.fall > 0 && (out.p_value < least.p_value || obvious);
   out.by_level = out.plausible && !seen && sticks && info.needs.stick_time &&
-                 passes_by_level(level, poorer, trial, info, tests, limits, floor);
-  out.passes = out.plausible && out.size > limits.least_size && (seen || out.by_level);
+                 passes_by_level(level, poorer, trial, info, tests, least, floor);
+  out.passes = out.plausible && out.size > least.least_size && (seen || out.by_level);
   return out;
+}
+
+bool are_distinguishable(const DiagnosisContext& context, const CandidateResult& better, const CandidateResult& worse) {
+  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
+  return difference > limits::kDistinguishable * noise_of(context.fine, better.trial) * better.design_effect &&
+         difference > limits::kDistinguishableSize * context.noise_squares();
 }
 
 namespace {
 
-bool told_apart(const DiagnosisContext& bench, const CandidateResult& better, const CandidateResult& worse) {
-  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
-  return difference > kToldApart * noise_of(bench.fine, better.trial) * better.design_effect &&
-         difference > kToldApartSize * bench.noise_squares();
-}
-
 /// Of the forms of one effect one has the name: the plain one, unless the data tell another from it.
-void keep_one_form(const DiagnosisContext& bench, const std::vector<Candidate>& candidates,
+void keep_one_form(const DiagnosisContext& context, const std::vector<Candidate>& candidates,
                    std::vector<CandidateResult>& judged) {
   for (CandidateResult& form : judged) {
     const EffectInfo& info = candidates[form.candidate].info;
@@ -140,15 +134,15 @@ void keep_one_form(const DiagnosisContext& bench, const std::vector<Candidate>& 
       return known.key == info.key && known.option.empty();
     });
     if (plain == judged.end() || !plain->passes) continue;
-    (told_apart(bench, form, *plain) ? *plain : form).passes = false;
+    (are_distinguishable(context, form, *plain) ? *plain : form).passes = false;
   }
 }
 
 }  // namespace
 
-Choice choose(const DiagnosisContext& bench, std::vector<CandidateResult>& judged,
+Choice choose(const DiagnosisContext& context, std::vector<CandidateResult>& judged,
               const std::vector<Candidate>& candidates) {
-  keep_one_form(bench, candidates, judged);
+  keep_one_form(context, candidates, judged);
   Choice choice;
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < judged.size(); ++k) {
@@ -159,19 +153,19 @@ Choice choose(const DiagnosisContext& bench, std::vector<CandidateResult>& judge
   choice.leader = best;
   // The simplest of those that do as well leads.
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    if (!judged[k].passes || are_distinguishable(context, judged[*best], judged[k])) continue;
     const std::size_t now = judged[*choice.leader].trial.p.size(), other = judged[k].trial.p.size();
     const bool lower = judged[k].trial.held_out_squares < judged[*choice.leader].trial.held_out_squares;
     if (other < now || (other == now && lower)) choice.leader = k;
   }
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (k == *choice.leader || !judged[k].passes || told_apart(bench, judged[*best], judged[k])) continue;
+    if (k == *choice.leader || !judged[k].passes || are_distinguishable(context, judged[*best], judged[k])) continue;
     choice.group.push_back(judged[k].candidate);
   }
   // What the declared uncertainty of an instrument leaves room for is no reason to name anything else.
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes || !candidates[judged[k].candidate].possible) continue;
-    if (told_apart(bench, judged[*best], judged[k])) continue;
+    if (!judged[k].passes || !candidates[judged[k].candidate].allowed) continue;
+    if (are_distinguishable(context, judged[*best], judged[k])) continue;
     choice.leader = k;
     choice.group.clear();
   }
@@ -184,8 +178,8 @@ namespace {
 /// or be in the leader's group, at full resolution.
 class CandidateScreening {
  public:
-  CandidateScreening(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
-                     const std::vector<Candidate>& candidates, const Limits& limits);
+  CandidateScreening(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                     const std::vector<Candidate>& candidates, const Limits& least);
 
   void judge_coarsely();
   /// Judges anew at full resolution what promises enough beside the best; false where nothing more does.
@@ -199,28 +193,26 @@ class CandidateScreening {
   void search(std::size_t t, const Level& level, const Trial& beside);
   bool is_hopeless(std::size_t t, double best) const;
 
-  const DiagnosisContext& bench_;
+  const DiagnosisContext& context_;
   const Trial &top_, &coarse_top_;
   const std::vector<Candidate>& candidates_;
-  const Limits& limits_;
-  // What is too small to be named, or small beside what is wrong for another reason, need not be fitted.
-  static constexpr double kLeastPart = 0.02;
+  const Limits& least_passing_;
   double least_ = 0, least_plain_ = 0;
   double next_ = 0;  ///< what may be added before a line
   std::vector<CandidateResult> out_;
-  std::vector<SearchStart> openings_;
+  std::vector<SearchStart> search_starts_;
   std::vector<double> at_low_;  ///< held-out squares at low resolution
   std::vector<bool> judged_finely_;
 };
 
-CandidateScreening::CandidateScreening(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& limits)
-    : bench_(bench), top_(top), coarse_top_(coarse_top), candidates_(candidates), limits_(limits) {
+CandidateScreening::CandidateScreening(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& least)
+    : context_(context), top_(top), coarse_top_(coarse_top), candidates_(candidates), least_passing_(least) {
   const auto enough = [&](double floor, double squares) {
-    return std::max(0.5 * limits.least_size * floor, kLeastPart * (squares - floor));
+    return std::max(limits::kWorthFitting * least.least_size * floor, limits::kWorthPart * (squares - floor));
   };
-  least_ = enough(bench.noise_squares(), coarse_top.squares);
-  least_plain_ = enough(bench.floor_squares(top.whitening), coarse_top.plain_squares);
+  least_ = enough(context.noise_squares(), coarse_top.squares);
+  least_plain_ = enough(context.floor_squares(top.whitening), coarse_top.plain_squares);
   const std::vector<std::string> present = top.model.effect_keys();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     if (!candidates[k].untestable.empty()) continue;
@@ -228,33 +220,33 @@ CandidateScreening::CandidateScreening(const DiagnosisContext& bench, const Tria
     if (!top.model.acts_with(candidates[k].effect)) continue;
     out_.emplace_back().candidate = k;
   }
-  openings_.resize(out_.size());
+  search_starts_.resize(out_.size());
   judged_finely_.assign(out_.size(), false);
 }
 
 void CandidateScreening::judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
                                const std::vector<double>& start) {
   const std::size_t candidate = out_[t].candidate;
-  const double tests = openings_[t].places * static_cast<double>(candidates_.size());
-  out_[t] =
-      compare(bench_, level, beside, try_model(bench_, level, model, start), candidates_[candidate], tests, limits_);
+  const double tests = search_starts_[t].places * static_cast<double>(candidates_.size());
+  out_[t] = compare(context_, level, beside, try_model(context_, level, model, start), candidates_[candidate], tests,
+                    least_passing_);
   out_[t].candidate = candidate;
 }
 
 void CandidateScreening::search(std::size_t t, const Level& level, const Trial& beside) {
   const FrictionModel model = with_effect(top_.model, candidates_[out_[t].candidate].effect);
-  judge(t, level, beside, model, nearest(level, model, beside.whitening, openings_[t].starts));
+  judge(t, level, beside, model, nearest(level, model, beside.whitening, search_starts_[t].starts));
 }
 
 void CandidateScreening::judge_coarsely() {
-  const std::vector<double> residual = residual_of(bench_, top_);
-  run_tasks(out_.size(), bench_.threads, [&](std::size_t t) {
+  const std::vector<double> residual = residual_of(context_, top_);
+  run_tasks(out_.size(), context_.threads, [&](std::size_t t) {
     const bool narrow = info(t).needs_full_resolution;
-    const Level& level = narrow ? bench_.fine : bench_.coarse;
+    const Level& level = narrow ? context_.fine : context_.coarse;
     const Trial& beside = narrow ? top_ : coarse_top_;
     const Candidate& candidate = candidates_[out_[t].candidate];
-    openings_[t] = opening_of(bench_, level, beside, candidate, residual, least_, least_plain_);
-    if (!narrow && !openings_[t].starts.empty()) search(t, level, beside);
+    search_starts_[t] = search_start_of(context_, level, beside, candidate, residual, least_, least_plain_);
+    if (!narrow && !search_starts_[t].starts.empty()) search(t, level, beside);
   });
   for (const CandidateResult& judged : out_) {
     at_low_.push_back(judged.trial.held_out_squares);
@@ -266,13 +258,13 @@ bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
   const CandidateResult& judged = out_[t];
   if (info(t).needs_full_resolution) {
     // A line beside something much larger can wait: it is as clear, and sooner found, once that is out of the way.
-    constexpr double kPutOff = 0.3;
-    return openings_[t].starts.empty() || openings_[t].promised < kPutOff * next_;
+    return search_starts_[t].starts.empty() || search_starts_[t].promised < limits::kPutOffLine * next_;
   }
   const double fallen = coarse_top_.held_out_squares - best;
-  const bool small = judged.size < 0.5 * limits_.least_size || (judged.p_value > 0.5 && !judged.passes) ||
-                     (judged.fall < least_ && judged.fall < kLeastPart * fallen);
-  const bool far = at_low_[t] - best > 0.08 * fallen + 0.05 * bench_.noise_squares();
+  const bool small = judged.size < limits::kWorthFitting * least_passing_.least_size ||
+                     (judged.p_value > limits::kHopelessChance && !judged.passes) ||
+                     (judged.fall < least_ && judged.fall < limits::kWorthPart * fallen);
+  const bool far = at_low_[t] - best > limits::kFarPart * fallen + limits::kFarNoise * context_.noise_squares();
   return !judged.by_level && (far || judged.fall < 0 || small);
 }
 
@@ -287,11 +279,11 @@ bool CandidateScreening::judge_promising() {
     out_[t].hopeless = is_hopeless(t, best);
     if (!out_[t].hopeless) promising.push_back(t);
   }
-  run_tasks(promising.size(), bench_.threads, [&](std::size_t k) {
+  run_tasks(promising.size(), context_.threads, [&](std::size_t k) {
     const std::size_t t = promising[k];
-    if (info(t).needs_full_resolution) return search(t, bench_.fine, top_);
+    if (info(t).needs_full_resolution) return search(t, context_.fine, top_);
     const Trial coarse = std::move(out_[t].trial);
-    judge(t, bench_.fine, top_, coarse.model, coarse.p);
+    judge(t, context_.fine, top_, coarse.model, coarse.p);
   });
   for (const std::size_t t : promising) judged_finely_[t] = true;
   return !promising.empty();
@@ -304,14 +296,14 @@ std::vector<CandidateResult> CandidateScreening::result() && {
 
 }  // namespace
 
-std::vector<CandidateResult> judge_all(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& limits) {
-  CandidateScreening round(bench, top, coarse_top, candidates, limits);
-  round.judge_coarsely();
+std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& least) {
+  CandidateScreening screening(context, top, coarse_top, candidates, least);
+  screening.judge_coarsely();
   // Which turn out implausible at full resolution stand before the others no longer, and those get their turn.
-  while (round.judge_promising()) {
+  while (screening.judge_promising()) {
   }
-  return std::move(round).result();
+  return std::move(screening).result();
 }
 
 }  // namespace tribofit::diagnosis

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "limits.hpp"
 #include "trial.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 
@@ -20,26 +21,12 @@ struct CandidateResult {
   double p_value = 1;  ///< corrected for the number of candidates and of places looked at
   double design_effect = 1;
   bool hopeless = false;  ///< far behind the best already at low resolution, and judged there only
-  bool plausible = true;  ///< no telling parameter on its bound
+  bool plausible = true;  ///< no decisive parameter on its bound
   bool passes = false;
   bool by_level = false;  ///< it passes by the levels of break-away alone
 };
 
-/// What must be passed for a name.
-struct Limits {
-  double p_value = 0.01;
-  double least_size = 0.02;   ///< of the squares that sensor noise leaves
-  double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
-  double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is no chance
-};
-
-/// Two models are told apart when their squares differ by more than chance would make them: with the right one known
-/// the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond three
-/// standard deviations, with some room for the models themselves being approximations.
-inline constexpr double kToldApart = 40;
-inline constexpr double kToldApartSize = 0.003;  ///< and by this part of the squares of the noise
-
-/// The leader among those that pass, with those that cannot be told from it.
+/// The leader among those that pass, with those that are not distinguishable from it.
 struct Choice {
   std::optional<std::size_t> leader;  ///< index in `judged`
   std::vector<std::size_t> group;     ///< candidates
@@ -47,15 +34,18 @@ struct Choice {
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect. tests: the p-value is corrected for
 /// as many.
-CandidateResult compare(const DiagnosisContext& bench, const Level& level, const Trial& poorer, Trial richer,
-                        const Candidate& candidate, double tests, const Limits& limits);
+CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
+                        const Candidate& candidate, double tests, const Limits& least);
 
 /// Every testable candidate beside the top of a ladder (top, and the same at low resolution).
-std::vector<CandidateResult> judge_all(const DiagnosisContext& bench, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& limits);
+std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<Candidate>& candidates, const Limits& least);
 
-/// Who leads, and who cannot be told from the leader. Of the forms of one effect one passes afterwards.
-Choice choose(const DiagnosisContext& bench, std::vector<CandidateResult>& judged,
+/// The two fit differently well, by more than chance would make them differ.
+bool are_distinguishable(const DiagnosisContext& context, const CandidateResult& better, const CandidateResult& worse);
+
+/// Who leads, and who is not distinguishable from the leader. Of the forms of one effect one passes afterwards.
+Choice choose(const DiagnosisContext& context, std::vector<CandidateResult>& judged,
               const std::vector<Candidate>& candidates);
 
 }  // namespace tribofit::diagnosis

@@ -12,6 +12,7 @@
 
 #include "candidates.hpp"
 #include "instrument_limits.hpp"
+#include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 
 namespace tribofit::diagnosis {
@@ -47,7 +48,7 @@ FoundBeforeFit found_before_fit(const Effect& effect, const Motion& motion, cons
 EffectFinding finding_of(const EffectInfo& info, const FoundBeforeFit& found) {
   EffectFinding finding;
   finding.key = info.key;
-  finding.status = EffectStatus::missing;
+  finding.status = EffectStatus::found;
   finding.held_out_rmse = finding.error_reduction = kNaN;
   finding.p_value = 0;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
@@ -162,7 +163,7 @@ std::vector<Rung> rungs_before_fit(const std::vector<EffectFinding>& found, cons
     rungs[0].held_out_std_error = held_out_std_error(*uncorrected);
   }
   for (const EffectFinding& finding : found) {
-    if (finding.status != EffectStatus::missing) continue;
+    if (finding.status != EffectStatus::found) continue;
     Rung rung = base;
     rung.added = finding.key;
     for (const EffectFinding& other : found) {
@@ -191,16 +192,15 @@ void add_plateau_experiment(Diagnosis& diagnosis) {
 }  // namespace
 
 bool is_gap(double gap, double std_error) {
-  constexpr double kLeast = 0.004, kSigmas = 5;
-  return std::abs(gap) > std::max(kLeast, kSigmas * std_error);
+  return std::abs(gap) > std::max(limits::kLeastGap, limits::kGapSigmas * std_error);
 }
 
 bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
   const double off = std::abs(motion.plateau_ratio - 1);
   const bool open =
       instruments.vibrometer.gain && !plateau_says(instruments, motion.conditions, motion.plateau_ratio).not_the_gain;
-  return !open && is_gap(off, motion.plateau_ratio_std_error) && motion.plateau_ratio > 0.85 &&
-         motion.plateau_ratio < 1.15;
+  return !open && is_gap(off, motion.plateau_ratio_std_error) && motion.plateau_ratio > 1 - limits::kLargestGap &&
+         motion.plateau_ratio < 1 + limits::kLargestGap;
 }
 
 void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,

@@ -38,12 +38,12 @@ struct Ladder {
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
-std::vector<Ladder> climb(const DiagnosisContext& bench, const std::vector<BaseLaw>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<BaseLaw>& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
-                          const Limits& limits, int most_effects,
+                          const Limits& least, int most_effects,
                           const std::function<void(std::string_view, double)>& progress = {});
 
 /// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.
-std::size_t better_ladder(const DiagnosisContext& bench, const std::vector<Ladder>& ladders);
+std::size_t better_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders);
 
 }  // namespace tribofit::diagnosis

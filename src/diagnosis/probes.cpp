@@ -61,7 +61,7 @@ struct ProbeInputs {
   std::vector<double> level;            ///< |model| at break-away
 };
 
-ProbeInputs ground_of(const Observations& observations, const Trial& trial) {
+ProbeInputs probe_inputs(const Observations& observations, const Trial& trial) {
   ProbeInputs out{observations, {}, {}};
   for (const auto& range : observations.slips) {
     const Slip slip = observations.slip(range);
@@ -89,7 +89,7 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
 }
 
 /// Judges a probe and returns its coefficients.
-Eigen::VectorXd judge_probe(const DiagnosisContext& bench, const Level& level, const Trial& trial,
+Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level, const Trial& trial,
                             const Columns& columns, double places, Probe& probe) {
   const Observations& observations = level.observations;
   const std::vector<std::size_t> all = all_slips(observations);
@@ -104,25 +104,25 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& bench, const Level& level, c
   const Eigen::VectorXd step = gauss_newton_step(wide);
   const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
   const double after = sum(squares_after(wide, step));
-  probe.fall = sum(held_out_squares(trial.linear, bench.blocks)) - sum(held_out_squares(wide, bench.blocks));
+  probe.fall = sum(held_out_squares(trial.linear, context.blocks)) - sum(held_out_squares(wide, context.blocks));
   ModelResiduals plain(trial.model, observations, all);
   Linearised flat;
   flat.rows = plain.white_rows(trial.p.data(), columns);
   flat.free = wide.free;
   const double left = sum(squares_after(flat, gauss_newton_step(flat))) - trial.stick.rigid;
   const double fall = trial.plain_squares - left;
-  probe.size = std::max(probe.fall / bench.noise_squares(), fall / bench.floor_squares(trial.whitening));
+  probe.size = std::max(probe.fall / context.noise_squares(), fall / context.floor_squares(trial.whitening));
   for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
   const double noise = (after - trial.stick.left) / level.values;
   double design = 1;
   for (std::size_t k = own; k < width; ++k) design = std::max(design, design_effect(wide, k, noise));
-  const double freedom = std::max(3.0, 0.4 * std::pow(static_cast<double>(wide.rows.size()), 2.0 / 3));
+  const double freedom = few_frequencies(static_cast<double>(wide.rows.size()));
   probe.p_value = std::min(1.0, places * fall_p_value(before - after, width - own, noise, design, freedom));
   return step.tail(static_cast<Eigen::Index>(width - own));
 }
 
-Probe over_velocity(const DiagnosisContext& bench, const Trial& trial) {
-  const Observations& o = bench.coarse.observations;
+Probe over_velocity(const DiagnosisContext& context, const Trial& trial) {
+  const Observations& o = context.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 12));
   Probe probe;
   probe.variable = "velocity";
@@ -131,14 +131,14 @@ Probe over_velocity(const DiagnosisContext& bench, const Trial& trial) {
     const bool at_rest = range.begin + i == range.end;
     return hats(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
   };
-  const Eigen::VectorXd found = judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
   probe.at = hats.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
 
-Probe over_branch(const DiagnosisContext& bench, const Trial& trial) {
-  const Observations& o = bench.coarse.observations;
+Probe over_branch(const DiagnosisContext& context, const Trial& trial) {
+  const Observations& o = context.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 6));
   Probe probe;
   probe.variable = "branch";
@@ -157,22 +157,22 @@ Probe over_branch(const DiagnosisContext& bench, const Trial& trial) {
     const double sign = at < peak[k] ? 1 : -1;
     return Eigen::RowVectorXd(sign * hats(std::abs(o.velocity[at])));
   };
-  judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
   return probe;
 }
 
 /// Columns that scale |mu| of a whole slip by functions of the slip.
 template <class Functions>
-Columns scaling(const ProbeInputs& ground, Eigen::Index count, Functions functions) {
-  return columns_of(ground.observations, count, [&ground, functions](std::size_t k, std::size_t i) {
-    const bool at_rest = i == ground.mu[k].size();
-    return Eigen::RowVectorXd((at_rest ? ground.level[k] : ground.mu[k][i]) * functions(k, i));
+Columns scaling(const ProbeInputs& inputs, Eigen::Index count, Functions functions) {
+  return columns_of(inputs.observations, count, [&inputs, functions](std::size_t k, std::size_t i) {
+    const bool at_rest = i == inputs.mu[k].size();
+    return Eigen::RowVectorXd((at_rest ? inputs.level[k] : inputs.mu[k][i]) * functions(k, i));
   });
 }
 
 /// Period of the strongest swing of the levels of the slips over time, and the number of periods looked at.
-std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
-  const Observations& o = ground.observations;
+std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
+  const Observations& o = inputs.observations;
   std::vector<double> times, levels, weights;
   double mean = 0, total = 0;
   for (std::size_t k = 0; k < o.slips.size(); ++k) {
@@ -180,7 +180,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
     if (range.record != 0 || range.end == range.begin) continue;
     double up = 0, down = 0;
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const double mu = ground.mu[k][i - range.begin];
+      const double mu = inputs.mu[k][i - range.begin];
       up += o.weight[i] * mu * (range.direction * o.friction[i] - mu);
       down += o.weight[i] * mu * mu;
     }
@@ -191,7 +191,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
     mean += up;
     total += down;
   }
-  if (times.size() < 12) return {0, 1};
+  if (times.size() < limits::kFewestCycles) return {0, 1};
   mean /= total;
   const double span = times.back() - times.front();
   const double highest = 0.35 * static_cast<double>(times.size()) / span;
@@ -210,12 +210,12 @@ std::pair<double, double> strongest_swing(const ProbeInputs& ground) {
   return {frequency > 0 ? 1 / frequency : 0, highest * span};
 }
 
-Probe over_time(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
-  const Observations& o = bench.coarse.observations;
+Probe over_time(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
+  const Observations& o = context.coarse.observations;
   Probe probe;
   probe.variable = "time";
-  const auto [period, places] = strongest_swing(ground);
-  std::vector<double> lasts(bench.records.size(), 0.0);
+  const auto [period, places] = strongest_swing(inputs);
+  std::vector<double> lasts(context.records.size(), 0.0);
   for (const auto& range : o.slips) lasts[range.record] = std::max(lasts[range.record], o.time[range.end - 1]);
   constexpr int kCosines = 4;
   const bool swings = period > 0;
@@ -231,8 +231,8 @@ Probe over_time(const DiagnosisContext& bench, const Trial& trial, const ProbeIn
     }
     return out;
   };
-  const Eigen::VectorXd found =
-      judge_probe(bench, bench.coarse, trial, scaling(ground, kCosines + (swings ? 2 : 0), functions), places, probe);
+  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial,
+                                            scaling(inputs, kCosines + (swings ? 2 : 0), functions), places, probe);
   if (swings && found.size() == kCosines + 2) {
     probe.period = period;
     probe.value = {std::hypot(found(kCosines), found(kCosines + 1)), std::atan2(found(kCosines), found(kCosines + 1))};
@@ -240,8 +240,8 @@ Probe over_time(const DiagnosisContext& bench, const Trial& trial, const ProbeIn
   return probe;
 }
 
-std::optional<Probe> over_angle(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
-  const Observations& o = bench.coarse.observations;
+std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
+  const Observations& o = context.coarse.observations;
   if (o.angle.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
   if (*most - *least < 2 * (2 * std::numbers::pi)) return std::nullopt;
@@ -258,15 +258,15 @@ std::optional<Probe> over_angle(const DiagnosisContext& bench, const Trial& tria
     }
     return out;
   };
-  judge_probe(bench, bench.coarse, trial, scaling(ground, 2 * kHarmonics, functions), 1, probe);
+  judge_probe(context, context.coarse, trial, scaling(inputs, 2 * kHarmonics, functions), 1, probe);
   return probe;
 }
 
-std::optional<Probe> over_load(const DiagnosisContext& bench, const Trial& trial, const ProbeInputs& ground) {
-  const Observations& o = bench.coarse.observations;
+std::optional<Probe> over_load(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
+  const Observations& o = context.coarse.observations;
   if (o.load.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.load.begin(), o.load.end());
-  if (*most - *least < 0.03 * std::abs(o.mean_load)) return std::nullopt;
+  if (*most - *least < limits::kLeastLoadSpread * std::abs(o.mean_load)) return std::nullopt;
   const Hats hats(even_knots(*least, *most, 4));
   Probe probe;
   probe.variable = "load";
@@ -274,7 +274,7 @@ std::optional<Probe> over_load(const DiagnosisContext& bench, const Trial& trial
     const auto& range = o.slips[k];
     return hats(o.load[std::min(range.begin + i, range.end - 1)]);
   };
-  judge_probe(bench, bench.coarse, trial, scaling(ground, hats.count(), functions), 1, probe);
+  judge_probe(context, context.coarse, trial, scaling(inputs, hats.count(), functions), 1, probe);
   return probe;
 }
 
@@ -288,17 +288,17 @@ std::vector<double> log_stick_times(const Observations& o) {
   return out;
 }
 
-std::optional<Probe> over_stick_time(const DiagnosisContext& bench, const Trial& trial) {
-  const Observations& o = bench.coarse.observations;
+std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Trial& trial) {
+  const Observations& o = context.coarse.observations;
   const std::vector<double> given = log_stick_times(o);
   std::vector<double> sticks;
   for (const double x : given) {
     if (std::isfinite(x)) sticks.push_back(x);
   }
-  if (sticks.size() < 12) return std::nullopt;
+  if (sticks.size() < limits::kFewestCycles) return std::nullopt;
   std::sort(sticks.begin(), sticks.end());
   const double low = sticks[sticks.size() / 20], high = sticks[sticks.size() - 1 - sticks.size() / 20];
-  if (high - low < std::log(2.5)) return std::nullopt;
+  if (high - low < std::log(limits::kLeastStickRatio)) return std::nullopt;
   const Hats hats(even_knots(low, high, 4));
   Probe probe;
   probe.variable = "stick-time";
@@ -311,14 +311,14 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& bench, const Trial&
     const double fade = trial.model.base_count() == 3 ? std::exp(-trial.p[2] * speed) : (at_rest ? 1 : 0);
     return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? given[k] : low));
   };
-  judge_probe(bench, bench.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
   return probe;
 }
 
-std::optional<Probe> over_frequency(const DiagnosisContext& bench, const Trial& fine,
+std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial& fine,
                                     std::span<const double> residual) {
-  const Observations& o = bench.fine.observations;
-  const SpectralLine line = strongest_line(bench.records[0], o, residual, 2, 0.4 * observation_rate(o));
+  const Observations& o = context.fine.observations;
+  const SpectralLine line = strongest_line(context.records[0], o, residual, 2, 0.4 * observation_rate(o));
   if (!(line.frequency > 0)) return std::nullopt;
   Probe probe;
   probe.variable = "frequency";
@@ -333,39 +333,37 @@ std::optional<Probe> over_frequency(const DiagnosisContext& bench, const Trial& 
     }
     return out;
   };
-  judge_probe(bench, bench.fine, fine, columns, line.places, probe);
+  judge_probe(context, context.fine, fine, columns, line.places, probe);
   return probe;
 }
 
 }  // namespace
 
-std::vector<Probe> probe_all(const DiagnosisContext& bench, const Trial& coarse, const Trial& fine,
+std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual) {
-  const ProbeInputs ground = ground_of(bench.coarse.observations, coarse);
+  const ProbeInputs inputs = probe_inputs(context.coarse.observations, coarse);
   std::vector<Probe> out;
   const auto add = [&](std::optional<Probe> probe) {
     if (probe) out.push_back(std::move(*probe));
   };
-  add(over_velocity(bench, coarse));
-  add(over_branch(bench, coarse));
-  add(over_time(bench, coarse, ground));
-  add(over_angle(bench, coarse, ground));
-  add(over_stick_time(bench, coarse));
-  add(over_load(bench, coarse, ground));
-  add(over_frequency(bench, fine, residual));
+  add(over_velocity(context, coarse));
+  add(over_branch(context, coarse));
+  add(over_time(context, coarse, inputs));
+  add(over_angle(context, coarse, inputs));
+  add(over_stick_time(context, coarse));
+  add(over_load(context, coarse, inputs));
+  add(over_frequency(context, fine, residual));
   return out;
 }
 
 std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
-  constexpr double kChance = 0.01;          // p-value below which structure is no chance
-  constexpr double kLeastStructure = 0.05;  // of the squares that noise leaves
   std::vector<Probe> out;
   for (const Probe& probe : probes) {
-    const bool chance = probe.p_value * static_cast<double>(probes.size()) >= kChance;
+    const bool chance = probe.p_value * static_cast<double>(probes.size()) >= limits::kChance;
     // What a break-away level does to its own stick time is taken out to first order only: enough to say where an error
     // sits, not to carry a verdict.
     if (probe.variable == "stick-time") continue;
-    if (!chance && probe.fall > 0 && probe.size > kLeastStructure) out.push_back(probe);
+    if (!chance && probe.fall > 0 && probe.size > limits::kLeastStructure) out.push_back(probe);
   }
   std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;

@@ -18,12 +18,12 @@ struct Probe {
   std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|
 };
 
-/// Every variable that these data can tell apart: velocity, branch, time, angle, stick-time, load, frequency.
-/// trial: at the coarse level of the bench.
-std::vector<Probe> probe_all(const DiagnosisContext& bench, const Trial& coarse, const Trial& fine,
+/// Every variable that these data can distinguish: velocity, branch, time, angle, stick-time, load, frequency.
+/// trial: at the coarse level of the context.
+std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual);
 
-/// The probes that no chance makes and that are large enough to matter, largest first.
+/// The probes that chance does not make and that are large enough to matter, largest first.
 std::vector<Probe> remaining_structure(const std::vector<Probe>& probes);
 
 }  // namespace tribofit::diagnosis

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "fit/starts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -41,13 +43,12 @@ ModelResiduals::StickSquares all_sticks(const std::vector<ModelResiduals::StickS
 /// Whether a law of creep has earned what it gains in stick: of all that v_r shows there beyond its noise it must
 /// explain most; less than that, something else moves the block.
 bool is_earned(const ModelResiduals::StickSquares& stick, double noise) {
-  constexpr double kLeastPart = 0.5;
   const double gain = stick.rigid - stick.left, shown = stick.rigid - stick.rows * noise * noise;
-  return gain <= 0 || gain >= kLeastPart * shown;
+  return gain <= 0 || gain >= limits::kCreepPart * shown;
 }
 
 /// Fills what a trial says from its parameters; what is to be taken off the squares for the stick is returned.
-double judge(const DiagnosisContext& bench, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
+double judge(const DiagnosisContext& context, const ModelResiduals& residuals, const Bounds& bounds, Trial& trial) {
   trial.linear.rows = residuals.white_rows(trial.p.data());
   trial.usable = trial.linear.finite();
   if (!trial.usable) return 0;
@@ -60,12 +61,12 @@ double judge(const DiagnosisContext& bench, const ModelResiduals& residuals, con
     trial.linear.free[k] = !trial.at_bound[k];
   }
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
-  trial.held_out = held_out_squares(trial.linear, bench.blocks);
+  trial.held_out = held_out_squares(trial.linear, context.blocks);
   pay_for_scatter(trial.whitening, squares);
   pay_for_scatter(trial.whitening, trial.held_out);
   const std::vector<ModelResiduals::StickSquares> sticks = residuals.stick_squares(trial.p.data());
   trial.stick = all_sticks(sticks);
-  const bool earned = is_earned(trial.stick, bench.noise);
+  const bool earned = is_earned(trial.stick, context.noise);
   double off = 0;
   for (std::size_t c = 0; c < sticks.size(); ++c) {
     const double own = earned ? sticks[c].rigid : sticks[c].left;
@@ -103,11 +104,11 @@ SolverOptions quick_search(int iterations) {
 }
 
 /// How far a step may go.
-struct Room {
+struct StepRange {
   Eigen::VectorXd lower, upper;
 };
 
-Room room_about(const std::vector<double>& start, const Bounds& bounds) {
+StepRange step_range(const std::vector<double>& start, const Bounds& bounds) {
   const auto n = static_cast<Eigen::Index>(start.size());
   const Eigen::Map<const Eigen::VectorXd> from(start.data(), n);
   return {Eigen::Map<const Eigen::VectorXd>(bounds.lower.data(), n) - from,
@@ -145,9 +146,9 @@ double noise_of(const Level& level, const Trial& trial) {
   return (trial.squares - trial.stick.left + trial.stick.rigid) / level.values;
 }
 
-Trial try_model(const DiagnosisContext& bench, const Level& level, const FrictionModel& model,
+Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
                 std::vector<double> start) {
-  if (bench.cancelled && bench.cancelled()) throw DiagnosisCancelled();
+  if (context.cancelled && context.cancelled()) throw DiagnosisCancelled();
   Trial trial;
   trial.model = model;
   const Observations& observations = level.observations;
@@ -160,8 +161,8 @@ Trial try_model(const DiagnosisContext& bench, const Level& level, const Frictio
   trial.whitening = residuals_of(observations, model, {}).whitening_at(trial.p.data());
   const ModelResiduals again = residuals_of(observations, model, trial.whitening);
   trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
-  const double off = judge(bench, again, bounds, trial);
-  if (trial.usable) judge_plainly(bench.blocks, residuals_of(observations, model, {}), off, trial);
+  const double off = judge(context, again, bounds, trial);
+  if (trial.usable) judge_plainly(context.blocks, residuals_of(observations, model, {}), off, trial);
   return trial;
 }
 
@@ -178,15 +179,15 @@ std::vector<double> nearest(const Level& level, const FrictionModel& model, cons
   return best.p;
 }
 
-Trial try_base(const DiagnosisContext& bench, const Level& level, const FrictionModel& model) {
+Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model) {
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals plain = residuals_of(level.observations, model, {});
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
-  return try_model(bench, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
+  return try_model(context, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
 }
 
-std::vector<double> residual_of(const DiagnosisContext& bench, const Trial& trial) {
-  const Observations& observations = bench.fine.observations;
+std::vector<double> residual_of(const DiagnosisContext& context, const Trial& trial) {
+  const Observations& observations = context.fine.observations;
   std::vector<double> residual(observations.size()), mu;
   for (const auto& range : observations.slips) {
     const Slip slip = observations.slip(range);
@@ -205,85 +206,105 @@ FrictionModel with_effect(const FrictionModel& model, const Effect& effect) {
   return FrictionModel(model.law(), std::move(effects));
 }
 
-SearchStart opening_of(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                       std::span<const double> residual, double least, double least_plain) {
+namespace {
+
+/// A start of a model with one effect more, and what a linear step from there promises.
+struct Promise {
+  std::vector<double> start;  ///< of all parameters
+  std::vector<double> place;  ///< the values of the effect that are no phases
+  double score = 0, squares = 0;
+};
+
+/// The start with the effect's `values` among the parameters of the base: the model has an order of its own.
+Promise start_with(const Trial& base, const EffectInfo& effect, std::size_t offset, const std::vector<double>& values,
+                   const Bounds& bounds) {
+  Promise promise;
+  std::size_t from_base = 0;
+  const std::size_t added = effect.parameters.size();
+  for (std::size_t k = 0; k < base.p.size() + added; ++k) {
+    const bool own = k >= offset && k < offset + added;
+    promise.start.push_back(std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
+    if (!own) ++from_base;
+    if (own && !effect.parameters[k - offset].periodic) promise.place.push_back(values[k - offset]);
+  }
+  return promise;
+}
+
+/// Squares at a start and after a linear step from it, less those of a rigid stick; nothing where they are not finite.
+struct StepSquares {
+  double here = 0, there = 0;
+};
+std::optional<StepSquares> squares_of_step(const ModelResiduals& residuals, const std::vector<double>& start,
+                                           const Bounds& bounds) {
+  Linearised linear;
+  linear.rows = residuals.white_rows(start.data());
+  if (!linear.finite()) return std::nullopt;
+  linear.free.assign(start.size(), true);
+  const StepRange range = step_range(start, bounds);
+  const double rigid = all_sticks(residuals.stick_squares(start.data())).rigid;
+  return StepSquares{sum(squares_after(linear, Eigen::VectorXd::Zero(range.lower.size()))) - rigid,
+                     sum(squares_after(linear, bounded_step(linear, range.lower, range.upper))) - rigid};
+}
+
+/// Of the starts in one place, which differ in their phases alone, the best is kept.
+void keep_best_of_place(Promise promise, std::vector<Promise>& promises) {
+  const auto same = std::find_if(promises.begin(), promises.end(),
+                                 [&](const Promise& other) { return other.place == promise.place; });
+  if (same == promises.end()) {
+    promises.push_back(std::move(promise));
+  } else if (promise.score < same->score) {
+    *same = std::move(promise);
+  }
+}
+
+}  // namespace
+
+SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
+                            const Candidate& candidate, std::span<const double> residual, double least,
+                            double least_plain) {
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
-  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
-  const double now = sum(squares_after(base.linear, stay)) - base.stick.rigid;
-
-  // Parameters of the new effect lie somewhere among the others: the model has an order of its own.
   const std::size_t offset = model.offset_of(candidate.info.key);
-  const std::size_t added = candidate.info.parameters.size();
-  const Starts starts = starts_of(candidate, bench.records, bench.fine.observations, residual);
-
-  const auto is_phase = [&](std::size_t k) { return candidate.info.parameters[k].periodic; };
-  struct Promise {
-    std::vector<double> start, place;  ///< place: the values that are no phases
-    double score, squares;
-  };
-  std::vector<Promise> promises;  // the best of every place
+  const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
+  std::vector<Promise> promises;
   for (const auto& values : starts.values) {
-    Promise promise;
-    std::size_t from_base = 0;
-    for (std::size_t k = 0; k < base.p.size() + added; ++k) {
-      const bool own = k >= offset && k < offset + added;
-      promise.start.push_back(
-          std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
-      if (!own) ++from_base;
-      if (own && !is_phase(k - offset)) promise.place.push_back(values[k - offset]);
-    }
-    Linearised linear;
-    linear.rows = residuals.white_rows(promise.start.data());
-    if (!linear.finite()) continue;
-    linear.free.assign(promise.start.size(), true);
-    const Room room = room_about(promise.start, bounds);
-    const double rigid = all_sticks(residuals.stick_squares(promise.start.data())).rigid;
-    const double here = sum(squares_after(linear, Eigen::VectorXd::Zero(room.lower.size()))) - rigid;
-    const double there = sum(squares_after(linear, bounded_step(linear, room.lower, room.upper))) - rigid;
-    promise.squares = std::min(here, there);
+    Promise promise = start_with(base, candidate.info, offset, values, bounds);
+    const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds);
+    if (!step) continue;
+    promise.squares = std::min(step->here, step->there);
     // A linear step promises the same from every phase; the start that is lower now is the nearer one.
-    promise.score = there + 1e-2 * here;
-    const auto same = std::find_if(promises.begin(), promises.end(),
-                                   [&](const Promise& other) { return other.place == promise.place; });
-    if (same == promises.end()) {
-      promises.push_back(std::move(promise));
-    } else if (promise.score < same->score) {
-      *same = std::move(promise);
-    }
+    promise.score = step->there + 1e-2 * step->here;
+    keep_best_of_place(std::move(promise), promises);
   }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.score < b.score; });
-  SearchStart opening;
-  opening.places = starts.places;
-  if (promises.empty()) return opening;
-  opening.promised = now - promises[0].squares;
-  if (opening.promised < least) {
+  SearchStart found;
+  found.places = starts.places;
+  if (promises.empty()) return found;
+  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
+  found.promised = sum(squares_after(base.linear, stay)) - base.stick.rigid - promises[0].squares;
+  if (found.promised < least) {
     // What acts through the level of break-away may look like its scatter, which has been taken out.
-    Linearised plain;
-    const ModelResiduals flat = residuals_of(level.observations, model, {});
-    plain.rows = flat.white_rows(promises[0].start.data());
-    plain.free.assign(promises[0].start.size(), true);
-    const Room room = room_about(promises[0].start, bounds);
-    const double left = sum(squares_after(plain, bounded_step(plain, room.lower, room.upper))) -
-                        all_sticks(flat.stick_squares(promises[0].start.data())).rigid;
-    if (base.plain_squares - left < least_plain) return opening;
+    const auto plain = squares_of_step(residuals_of(level.observations, model, {}), promises[0].start, bounds);
+    if (!plain || base.plain_squares - plain->there < least_plain) return found;
   }
-  constexpr std::size_t kMost = 2;
-  for (std::size_t k = 0; k < std::min(kMost, promises.size()); ++k) opening.starts.push_back(promises[k].start);
-  return opening;
+  for (std::size_t k = 0; k < std::min(limits::kMostStarts, promises.size()); ++k) {
+    found.starts.push_back(promises[k].start);
+  }
+  return found;
 }
 
-Trial try_with(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& effect) {
+Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
   constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
-  const SearchStart opening = opening_of(bench, level, base, effect, residual_of(bench, base), kAnyFall, kAnyFall);
+  const SearchStart search_start =
+      search_start_of(context, level, base, effect, residual_of(context, base), kAnyFall, kAnyFall);
   const FrictionModel model = with_effect(base.model, effect.effect);
-  if (opening.starts.empty()) return try_base(bench, level, model);
-  return try_model(bench, level, model, nearest(level, model, base.whitening, opening.starts));
+  if (search_start.starts.empty()) return try_base(context, level, model);
+  return try_model(context, level, model, nearest(level, model, base.whitening, search_start.starts));
 }
 
-Trial try_without(const DiagnosisContext& bench, const Level& level, const Trial& full, std::size_t effect) {
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::size_t effect) {
   std::vector<Effect> effects;
   std::vector<double> start(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
   for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
@@ -292,7 +313,7 @@ Trial try_without(const DiagnosisContext& bench, const Level& level, const Trial
     const std::size_t count = describe(effects.back()).parameters.size();
     for (std::size_t i = 0; i < count; ++i) start.push_back(full.p[full.model.offset(k) + i]);
   }
-  return try_model(bench, level, FrictionModel(full.model.law(), effects), std::move(start));
+  return try_model(context, level, FrictionModel(full.model.law(), effects), std::move(start));
 }
 
 }  // namespace tribofit::diagnosis

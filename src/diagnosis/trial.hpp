@@ -71,7 +71,7 @@ struct DiagnosisContext {
 double noise_of(const Level& level, const Trial& trial);
 
 /// Fits a model from a start, with the scatter of break-away as the model sees it there.
-Trial try_model(const DiagnosisContext& bench, const Level& level, const FrictionModel& model,
+Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
                 std::vector<double> start);
 
 /// The start from which a few steps lead lowest, after those steps.
@@ -79,10 +79,10 @@ std::vector<double> nearest(const Level& level, const FrictionModel& model, cons
                             const std::vector<std::vector<double>>& starts);
 
 /// Fits a model from the data alone.
-Trial try_base(const DiagnosisContext& bench, const Level& level, const FrictionModel& model);
+Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model);
 
 /// What the model of a trial leaves at each value of the fine observations [1 or N].
-std::vector<double> residual_of(const DiagnosisContext& bench, const Trial& trial);
+std::vector<double> residual_of(const DiagnosisContext& context, const Trial& trial);
 
 /// Where one effect more begins to lower what a trial leaves.
 struct SearchStart {
@@ -95,16 +95,17 @@ struct SearchStart {
 /// The best two of the starts of an effect beside the model of `base`, a trial at `level`.
 /// residual: see residual_of; least, least_plain: falls of the whitened and of the plain squares, one of which a start
 /// must promise.
-SearchStart opening_of(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& candidate,
-                       std::span<const double> residual, double least, double least_plain);
+SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
+                            const Candidate& candidate, std::span<const double> residual, double least,
+                            double least_plain);
 
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
 
 /// The trial's model with one effect more, fitted from the best of its starts.
-Trial try_with(const DiagnosisContext& bench, const Level& level, const Trial& base, const Candidate& effect);
+Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect);
 
 /// The trial's model without one of its effects.
-Trial try_without(const DiagnosisContext& bench, const Level& level, const Trial& full, std::size_t effect);
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::size_t effect);
 
 }  // namespace tribofit::diagnosis

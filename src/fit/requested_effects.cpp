@@ -76,8 +76,8 @@ std::vector<Effect> kinematic_effects(std::span<const Effect> effects) {
 
 MotionOptions with_corrections(MotionOptions options, std::span<const Effect> effects) {
   for (const Effect& effect : effects) {
-    if (std::holds_alternative<RadiusOffset>(effect)) options.plateau = PlateauCorrection::radius;
-    if (std::holds_alternative<VelocityGain>(effect)) options.plateau = PlateauCorrection::gain;
+    const PlateauCorrection correction = describe(effect).plateau_correction;
+    if (correction != PlateauCorrection::none) options.plateau = correction;
   }
   return options;
 }

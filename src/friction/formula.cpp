@@ -174,6 +174,66 @@ struct Formula::Parsed {
   }
 };
 
+namespace {
+
+/// The expression of a formula assigns nothing.
+void refuse_assignment(const std::string& expression, const std::string& text) {
+  const auto is = [&](std::size_t k, const char* any) {
+    return k < expression.size() && std::string_view(any).find(expression[k]) != std::string_view::npos;
+  };
+  for (std::size_t i = 0; i < expression.size(); ++i) {
+    if (is(i, "=") && !is(i + 1, "=") && (i == 0 || !is(i - 1, "=<>!"))) {
+      reject("there is an assignment in its expression", text);
+    }
+  }
+}
+
+void refuse_name(const std::string& name, const std::string& text) {
+  const auto name_char = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), name_char)) {
+    reject("its name must be letters, digits, '-' or '_'", text);
+  }
+}
+
+/// Parameters with their starts: what stands after the semicolon.
+std::vector<Parameter> read_parameters(std::string_view starts, const std::string& text) {
+  std::vector<Parameter> parameters;
+  for (const std::string& part : split(starts, ',')) {
+    if (part.empty()) continue;
+    const auto assign = part.find('=');
+    const std::string key = trim(part.substr(0, assign));
+    if (assign == std::string::npos || key.empty()) reject("'" + part + "' is not 'parameter=start'", text);
+    for (const Variable& variable : kVariables) {
+      if (key == variable.name) reject("'" + key + "' is a variable and cannot be a parameter", text);
+    }
+    for (const Parameter& known : parameters) {
+      if (known.name == key) reject("the parameter '" + key + "' is given twice", text);
+    }
+    parameters.push_back(read_start(key, trim(part.substr(assign + 1)), text));
+  }
+  return parameters;
+}
+
+/// Every name in the expression is known, and every parameter is used.
+template <class UsedNames>
+void check_names(const UsedNames& used, const std::vector<Parameter>& parameters, const std::string& text) {
+  std::vector<std::string> known;
+  for (const Variable& variable : kVariables) known.emplace_back(variable.name);
+  for (const Parameter& parameter : parameters) known.push_back(parameter.name);
+  for (const auto& [name, unused] : used) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      reject("'" + name + "' is neither a variable nor a parameter with a start (nearest: '" +
+                 nearest_name(name, known) + "')",
+             text);
+    }
+  }
+  for (const Parameter& parameter : parameters) {
+    if (!used.contains(parameter.name)) reject("the parameter '" + parameter.name + "' is not used", text);
+  }
+}
+
+}  // namespace
+
 Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
   Parsed& p = *parsed_;
   p.text = trim(given);
@@ -183,49 +243,15 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
   if (equals == std::string::npos) reject("there is no '=' between its name and its expression", p.text);
   p.name = trim(definition.substr(0, equals));
   p.expression = trim(definition.substr(equals + 1));
-  for (std::size_t i = 0; i < p.expression.size(); ++i) {
-    const auto is = [&](std::size_t k, const char* any) {
-      return k < p.expression.size() && std::string_view(any).find(p.expression[k]) != std::string_view::npos;
-    };
-    if (is(i, "=") && !is(i + 1, "=") && (i == 0 || !is(i - 1, "=<>!"))) {
-      reject("there is an assignment in its expression", p.text);
-    }
-  }
-  const auto name_char = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
-  if (p.name.empty() || !std::all_of(p.name.begin(), p.name.end(), name_char)) {
-    reject("its name must be letters, digits, '-' or '_'", p.text);
-  }
+  refuse_assignment(p.expression, p.text);
+  refuse_name(p.name, p.text);
   if (semicolon != std::string::npos) {
-    for (const std::string& part : split(std::string_view(p.text).substr(semicolon + 1), ',')) {
-      if (part.empty()) continue;
-      const auto assign = part.find('=');
-      const std::string key = trim(part.substr(0, assign));
-      if (assign == std::string::npos || key.empty()) reject("'" + part + "' is not 'parameter=start'", p.text);
-      for (const Variable& variable : kVariables) {
-        if (key == variable.name) reject("'" + key + "' is a variable and cannot be a parameter", p.text);
-      }
-      for (const Parameter& known : p.parameters) {
-        if (known.name == key) reject("the parameter '" + key + "' is given twice", p.text);
-      }
-      p.parameters.push_back(read_start(key, trim(part.substr(assign + 1)), p.text));
-    }
+    p.parameters = read_parameters(std::string_view(p.text).substr(semicolon + 1), p.text);
   }
   try {
     p.bind();
-    std::vector<std::string> known;
-    for (const Variable& variable : kVariables) known.emplace_back(variable.name);
-    for (const Parameter& parameter : p.parameters) known.push_back(parameter.name);
     const auto used = p.parser.GetUsedVar();
-    for (const auto& [name, unused] : used) {
-      if (std::find(known.begin(), known.end(), name) == known.end()) {
-        reject("'" + name + "' is neither a variable nor a parameter with a start (nearest: '" +
-                   nearest_name(name, known) + "')",
-               p.text);
-      }
-    }
-    for (const Parameter& parameter : p.parameters) {
-      if (!used.contains(parameter.name)) reject("the parameter '" + parameter.name + "' is not used", p.text);
-    }
+    check_names(used, p.parameters, p.text);
     p.needs = {.acceleration = used.contains("acceleration"),
                .angle = used.contains("angle"),
                .distance = used.contains("distance"),

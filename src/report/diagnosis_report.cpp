@@ -64,7 +64,7 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   });
   for (const EffectFinding* f : order) {
     std::string parameters;
-    if (f->status == EffectStatus::missing || f->status == EffectStatus::equivalent) {
+    if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {
         parameters += (parameters.empty() ? "" : "; ") + value_text(p, motion);
       }

@@ -228,7 +228,7 @@ std::vector<Rung> missing_effects(const Diagnosis& d) {
   };
   for (const EffectFinding& e : d.effects) {
     if (given(e.key)) continue;
-    if (e.status == EffectStatus::missing && !mentioned(e.key)) missing.push_back({e.key, e.held_out_rmse, 0, 0, {}});
+    if (e.status == EffectStatus::found && !mentioned(e.key)) missing.push_back({e.key, e.held_out_rmse, 0, 0, {}});
   }
   if (missing.size() == rungs) return missing;
   for (const EffectFinding& e : d.effects) {

@@ -20,11 +20,11 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
   lab.force_sensor.mass_below = {0.1, 0.005};
   lab.vibrometer.delay = {-1e-3, 2e-5};
   const auto left = [&](const char* key) {
-    const auto possible = allowed_beside_declared(lab, declared_by(key), FrictionKind::coefficient, {});
-    if (possible) {
-      EXPECT_EQ(possible->lower, -possible->upper) << key;
+    const auto allowed = allowed_beside_declared(lab, declared_by(key), FrictionKind::coefficient, {});
+    if (allowed) {
+      EXPECT_EQ(allowed->lower, -allowed->upper) << key;
     }
-    return possible ? possible->upper : -1;
+    return possible ? allowed->upper : -1;
   };
   EXPECT_DOUBLE_EQ(left("sensor-offset"), 0.003);
   EXPECT_DOUBLE_EQ(left("sensor-inertia"), 0.015);
@@ -48,11 +48,11 @@ TEST(Declared, AZeroInNewtonsIsTakenOverTheLoad) {
 TEST(Declared, AFilterIsNotSlowerThanDeclared) {
   Instruments lab;
   lab.force_sensor.bandwidth = {1000, 50};
-  const auto possible = allowed_beside_declared(lab, declared_by("force-bandwidth"), FrictionKind::coefficient, {});
-  ASSERT_TRUE(possible);
-  EXPECT_FALSE(possible->holds(300));
-  EXPECT_TRUE(possible->holds(850));
-  EXPECT_TRUE(possible->holds(2000));
+  const auto allowed = allowed_beside_declared(lab, declared_by("force-bandwidth"), FrictionKind::coefficient, {});
+  ASSERT_TRUE(allowed);
+  EXPECT_FALSE(allowed->holds(300));
+  EXPECT_TRUE(allowed->holds(850));
+  EXPECT_TRUE(allowed->holds(2000));
 }
 
 TEST(Declared, AKnownGainLeavesTheRadiusAndAKnownRadiusTheGain) {

@@ -137,10 +137,10 @@ std::vector<Probe> probes_of(const synthetic::Record& made) {
   const Record record = {&made.motion, &made.segmentation};
   const Observations fine = observe(made.motion, made.segmentation, channels(), 200);
   const Observations coarse = observe(made.motion, made.segmentation, channels(), 40);
-  const DiagnosisContext bench(std::span(&record, 1), fine, coarse, kNoise, 0.004);
+  const DiagnosisContext context(std::span(&record, 1), fine, coarse, kNoise, 0.004);
   const FrictionModel model(BaseLaw::exponential);
-  const Trial trial = try_base(bench, bench.fine, model);
-  return probe_all(bench, try_model(bench, bench.coarse, model, trial.p), trial, residual_of(bench, trial));
+  const Trial trial = try_base(context, context.fine, model);
+  return probe_all(context, try_model(context, context.coarse, model, trial.p), trial, residual_of(context, trial));
 }
 
 const Probe& largest(const std::vector<Probe>& probes) {

@@ -135,10 +135,10 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
   for (const double colour : {0.0, 0.9}) {
     const DiagnosedTraces result = diagnose_hidden("contact-spin", {0.5e-3}, colour);
     const EffectFinding spin = finding(result, "contact-spin");
-    ASSERT_EQ(spin.status, EffectStatus::missing) << colour;
+    ASSERT_EQ(spin.status, EffectStatus::found) << colour;
     EXPECT_NEAR(spin.parameters[0].value, 0.5e-3, 0.05e-3);
     EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::unsupported);
-    EXPECT_EQ(finding(result, "bristle").status == EffectStatus::missing, false);
+    EXPECT_EQ(finding(result, "bristle").status == EffectStatus::found, false);
     const auto& where = result.diagnosis.where;
     EXPECT_TRUE(std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == "stick"; }));
   }
@@ -146,7 +146,7 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
 
 TEST(StickEvidence, AWrongRadiusIsNoCreep) {
   const DiagnosedTraces result = diagnose_hidden("radius-offset", {0.97}, 0.9);
-  EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::missing);
+  EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::found);
   EXPECT_EQ(finding(result, "contact-spin").status, EffectStatus::unsupported);
   EXPECT_EQ(finding(result, "bristle").status, EffectStatus::unsupported);
 }
@@ -155,8 +155,8 @@ TEST(StickEvidence, RigidMemoriesAreNoBristle) {
   for (const auto& [key, p] : {std::pair<std::string, std::vector<double>>("rate-state", {50e-6, 0}),
                                std::pair<std::string, std::vector<double>>("frictional-lag", {1e-3})}) {
     const DiagnosedTraces result = diagnose_hidden(key, p, 0.9);
-    EXPECT_EQ(finding(result, key).status, EffectStatus::missing) << key;
-    EXPECT_NE(finding(result, "bristle").status, EffectStatus::missing) << key;
+    EXPECT_EQ(finding(result, key).status, EffectStatus::found) << key;
+    EXPECT_NE(finding(result, "bristle").status, EffectStatus::found) << key;
     EXPECT_NE(finding(result, "bristle").status, EffectStatus::equivalent) << key;
   }
 }

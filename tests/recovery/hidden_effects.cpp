@@ -45,7 +45,7 @@ std::vector<Name> names_of(const Diagnosis& diagnosis) {
   }
   for (const char* key : {"radius-offset", "velocity-gain", "velocity-highpass", "speed-ripple"}) {
     const EffectFinding* found = finding(diagnosis, key);
-    if (found == nullptr || found->status != EffectStatus::missing) continue;
+    if (found == nullptr || found->status != EffectStatus::found) continue;
     Name name{key, {}};
     for (const char* other : {"radius-offset", "velocity-gain"}) {
       const EffectFinding* twin = finding(diagnosis, other);
@@ -100,7 +100,7 @@ bool is_right(const Outcome& out) {
 void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
   for (const Ingredient& what : out.of.hidden) {
     const EffectFinding* found = finding(diagnosis, what.key);
-    if (found == nullptr || found->status != EffectStatus::missing) continue;
+    if (found == nullptr || found->status != EffectStatus::found) continue;
     for (const std::size_t k : what.main_parameters) {
       if (k >= found->parameters.size()) continue;
       const FitParameter& p = found->parameters[k];

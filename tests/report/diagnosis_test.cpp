@@ -97,7 +97,7 @@ DiagnosedTraces too_short() {
 DiagnosedTraces in_the_motion() {
   DiagnosedTraces result = sufficient();
   result.diagnosis.verdict = Verdict::effect_found;
-  result.diagnosis.effects.push_back({"radius-offset", EffectStatus::missing, 0.0032, 0, 1e-9, {}, "the plateau"});
+  result.diagnosis.effects.push_back({"radius-offset", EffectStatus::found, 0.0032, 0, 1e-9, {}, "the plateau"});
   result.diagnosis.effects.push_back({"velocity-gain", EffectStatus::equivalent, 0.0032, 0, 1e-9, {}, "the plateau"});
   result.diagnosis.next_experiment = "Tilt the laser by 10 degrees.";
   return result;

@@ -132,7 +132,7 @@ inline DiagnosedTraces made_up_diagnosis() {
   d.ladder = {{"", 0.0088, 0.0002, 0.0086, {}}, {"runout", 0.0032, 0.0001, 0.0031, {}}};
   d.floor_rmse = 0.0031;
   d.effects = {
-      {"runout", EffectStatus::missing, 0.0032, 0.99, 1e-6, {fit.parameters[3], fit.parameters[4]}, "it is periodic"},
+      {"runout", EffectStatus::found, 0.0032, 0.99, 1e-6, {fit.parameters[3], fit.parameters[4]}, "it is periodic"},
       {"drift", EffectStatus::unsupported, 0.0088, 0, 0.7, {}, "takes nothing away"},
       {"heating", EffectStatus::superseded, 0.008, 0.1, 0.01, {}, "helps alone only"},
       {"load-dependence", EffectStatus::untestable, unknown, unknown, unknown, {}, "there is no load channel"},

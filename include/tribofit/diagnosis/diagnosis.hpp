@@ -29,8 +29,8 @@ struct DiagnosisCancelled : std::exception {
 
 /// What the diagnosis says in one word.
 enum class Verdict {
-  sufficient,       ///< nothing is missing that these data could show
-  effect_found,     ///< effects were added and what remains is at the floor
+  sufficient,       ///< these data ask for no effect more
+  effect_found,     ///< effects were added and what remains is noise
   unexplained,      ///< structure remains that no effect explains
   not_enough_data,  ///< too few cycles to hold any out
 };
@@ -39,13 +39,13 @@ std::string_view to_string(Verdict verdict);
 
 /// What became of one effect of the catalogue.
 enum class EffectStatus {
-  missing,      ///< it was added
-  equivalent,   ///< it fits as well as one that was added; these data cannot tell them apart
+  found,        ///< it was added to the model
+  equivalent,   ///< it fits as well as one that was added; these data cannot distinguish them
   superseded,   ///< it would help alone, but not beside what was added
   unsupported,  ///< the data do not ask for it
   untestable,   ///< the data cannot show it; `reason` says why
 };
-/// "missing", "equivalent", "superseded", "unsupported", "untestable".
+/// The words of the JSON: "missing" (for found), "equivalent", "superseded", "unsupported", "untestable".
 std::string_view to_string(EffectStatus status);
 
 /// A share of the error above the floor that goes with one variable.
@@ -76,7 +76,7 @@ struct Rung {
   std::vector<std::string> equivalent;  ///< effects that fit as well, without `added`
 };
 
-/// A finding tried on a run that took no part, with every parameter frozen.
+/// A finding tried on a run that was not fitted, with every parameter frozen.
 struct Confirmation {
   std::string path;
   double base_rmse = 0;   ///< what the base law leaves there [1 or N]
@@ -84,15 +84,15 @@ struct Confirmation {
   double p_value = 1;     ///< that the last rung is no better
 };
 
-/// Where a law fails, which effect is missing, and whether it is enough.
+/// Where a law fails, which effects it needs, and whether it is then enough.
 ///
 /// Method: every effect of the catalogue that the data can excite is added to the model, fitted within its plausible
 /// bounds and judged by the squares it leaves on held-out contiguous blocks of cycles, with the scatter of break-away
 /// as a random effect (likelihood). It counts when the fall is not chance (F test whose noise is that between cycles,
 /// corrected for the number of candidates and of places looked at), is at least 2 % of what sensor noise leaves, and no
-/// telling parameter sits on a bound. The best one is added, with those that do as well as its group, until none is
+/// decisive parameter sits on a bound. The best one is added, with those that do as well as its group, until none is
 /// left; effects that became redundant are dropped; both base laws climb a ladder of their own and the better or
-/// shorter one is told. Free functions of each variable say where the error is, before and after.
+/// shorter one is reported. Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   BaseLaw law = BaseLaw::exponential;

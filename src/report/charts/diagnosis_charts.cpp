@@ -81,7 +81,7 @@ struct StatusStyle {
   Stroke stroke;
 };
 constexpr std::array<StatusStyle, 4> kStatuses = {
-    StatusStyle{EffectStatus::missing, dots(Colour::red, Symbol::circle, 10)},
+    StatusStyle{EffectStatus::found, dots(Colour::red, Symbol::circle, 10)},
     StatusStyle{EffectStatus::equivalent, dots(Colour::purple, Symbol::diamond, 10)},
     StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
     StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};

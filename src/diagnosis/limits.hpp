@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tribofit::diagnosis {
+
+/// What must be passed for a name.
+struct Limits {
+  double p_value = 0.01;      ///< goal: at most 1 % of false alarms, corrected for the number of candidates
+  double least_size = 0.02;   ///< of the squares that sensor noise leaves: less does not show on any plot
+  double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
+  double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is not made by chance
+};
+
+/// Every threshold of the diagnosis, each with its reason. A larger value finds less and errs less, unless it says
+/// otherwise. The benchmark of hidden effects (tests/recovery) measures what a change does.
+namespace limits {
+
+// Records.
+inline constexpr std::size_t kFewestCycles = 12;  ///< two blocks of five and some to spare: fewer leave nothing to test
+inline constexpr std::size_t kFineValues = 20000;  ///< in all slips: more do not move a verdict, and cost time
+inline constexpr std::size_t kFewestFine = 80,
+                             kMostFine = 400;       ///< a slip; a ring needs 80, the noise no more than 400
+inline constexpr std::size_t kCoarseValues = 5000;  ///< enough to see which candidate is hopeless
+inline constexpr std::size_t kFewestCoarse = 16, kMostCoarse = 40;  ///< a slip; 16 still show both of its branches
+
+// Blocks of cycles.
+inline constexpr std::size_t kCyclesOfBlock = 5;                   ///< neighbours share slow scatter over about as many
+inline constexpr std::size_t kFewestBlocks = 2, kMostBlocks = 10;  ///< ten: the usual compromise of cross-validation
+/// Of what all cycles know about a direction the kept ones must know this part: less, and the step there is a guess.
+inline constexpr double kLeastKnown = 0.1;
+
+// What excites an effect.
+inline constexpr double kLeastLoadSpread = 0.03;      ///< of the load: a load that was meant to be constant varies less
+inline constexpr double kLeastTemperatureSpread = 2;  ///< [K]: k_T within its bounds then moves mu by the noise
+inline constexpr double kLeastStickRatio = 2.5;  ///< of stick times: its logarithm then spans what scatter does not
+inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
+
+// Instruments and the plateau.
+inline constexpr double kDeclaredSigmas = 3;  ///< standard uncertainties that are still possible
+inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
+inline constexpr double kGapSigmas = 5;       ///< standard errors: plateaus of one record are not independent
+inline constexpr double kLargestGap = 0.15;   ///< beyond it something else is wrong than radius or gain
+
+// Whether a candidate is plausible.
+inline constexpr double kInside = 0.1;     ///< of its range a parameter is moved off its bound, to see what that costs
+inline constexpr double kDrawnSigmas = 3;  ///< the cost from which the data draw it beyond the bound
+inline constexpr double kAwayFromNone = 0.5;  ///< of its range the size of an effect is from nothing when it fills it
+
+// Whether a candidate passes.
+inline constexpr double kLeastSizeOfLevel =
+    0.15;  ///< a high break-away makes its own stick longer, and explains as much
+inline constexpr std::ptrdiff_t kBreakAwaysOfStickSlip =
+    30;                                     ///< fewer: steps of speed go with time, nothing is obvious
+inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles do not count as independent
+
+/// Two models are distinguishable when their squares differ by more than chance would make them: with the right one
+/// known the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond
+/// three standard deviations, with some room for the models themselves being approximations.
+inline constexpr double kDistinguishable = 40;
+inline constexpr double kDistinguishableSize = 0.003;  ///< and by this part of the squares of the noise
+inline constexpr double kSizeOfParameter = 0.02;       ///< a longer ladder must earn as much for each parameter more
+
+// What need not be fitted (a larger value saves time and may miss something).
+inline constexpr double kWorthFitting = 0.5;    ///< of the least size: a linear step promises that much too little
+inline constexpr double kWorthPart = 0.02;      ///< of what is wrong: small beside what is wrong for another reason
+inline constexpr double kPutOffLine = 0.3;      ///< of the best fall: a line is as clear once that is out of the way
+inline constexpr double kHopelessChance = 0.5;  ///< p-value at low resolution: full resolution does not mend it
+inline constexpr double kFarPart = 0.08;        ///< of the best fall behind the best: resolution changes less
+inline constexpr double kFarNoise = 0.05;       ///< and of the squares of the noise
+inline constexpr std::size_t kMostStarts = 2;   ///< the linear step ranks starts well, but not always the first two
+
+// The ladder.
+inline constexpr double kWithdrawnPart = 0.7;     ///< of what a free function explains: less, and the name is wrong
+inline constexpr double kWithdrawnLittle = 0.05;  ///< of it left in the end: others have explained it after all
+inline constexpr double kRivalPart = 0.5;         ///< of the fall of the one chosen: less does not catch up
+/// Two effects of the same variable may each explain half of what a free function finds there, but not much less.
+inline constexpr double kHopelessPart = 0.35;
+inline constexpr double kStraight = 0.5;  ///< of a rise still to come at the fastest slip: a straight line, not a law
+/// Of all that v_r shows in stick beyond its noise a law of creep must explain most.
+inline constexpr double kCreepPart = 0.5;
+
+// What remains.
+inline constexpr double kChance = 0.01;             ///< p-value below which structure is not chance
+inline constexpr double kChanceOfShare = 0.05;      ///< for a share that is only shown
+inline constexpr double kLeastStructure = 0.05;     ///< of the squares of the noise: smaller structure does not matter
+inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
+inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
+inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering
+
+}  // namespace limits
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,361 @@
+/// The steps of a ladder one by one, on made-up results and on small records, whose truth is known in both.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../fit/synthetic.hpp"
+#include "diagnosis/findings.hpp"
+#include "diagnosis/ladder_steps.hpp"
+
+namespace {
+
+using namespace tribofit;
+using namespace tribofit::diagnosis;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+constexpr double kNoise = 0.003;
+
+Candidate candidate(const std::string& name) {
+  const Effect effect = make_effect(name);
+  return {effect, describe(effect), {}, {}};
+}
+
+std::vector<Candidate> candidates_of(const std::vector<std::string>& names) {
+  std::vector<Candidate> out;
+  for (const std::string& name : names) out.push_back(candidate(name));
+  return out;
+}
+
+/// A record of known truth and what its diagnosis shares.
+struct Made {
+  synthetic::Record made;
+  Record record;
+  Observations fine, coarse;
+  DiagnosisContext context;
+
+  explicit Made(const std::vector<Effect>& truth = {}, const std::vector<double>& values = {})
+      : made(make(truth, values)),
+        record{&made.motion, &made.segmentation},
+        fine(observe(made.motion, made.segmentation, channels(), 100)),
+        coarse(observe(made.motion, made.segmentation, channels(), 40)),
+        context(std::span(&record, 1), fine, coarse, kNoise, 0.002) {}
+  Made(const Made&) = delete;
+  Made& operator=(const Made&) = delete;
+
+  static Channels channels() {
+    Channels needs;
+    needs.acceleration = needs.distance = needs.stick_time = needs.lead = true;
+    return needs;
+  }
+  static synthetic::Record make(const std::vector<Effect>& truth, const std::vector<double>& values) {
+    synthetic::Options options;
+    options.cycles = 30;
+    options.rate = 5e3;
+    options.noise = kNoise;
+    options.scatter = 0.002;
+    std::vector<double> p = synthetic::table4_15mm(BaseLaw::exponential);
+    p.insert(p.end(), values.begin(), values.end());
+    return synthetic::make(FrictionModel(BaseLaw::exponential, truth), p, options);
+  }
+
+  /// Squares that one row of noise leaves.
+  double unit() const { return kNoise * kNoise; }
+
+  LadderStep base() const {
+    LadderStep step;
+    step.trial = try_base(context, context.fine, FrictionModel(BaseLaw::exponential));
+    look_beside(context, step);
+    return step;
+  }
+  /// A step that adds `added` beside the last one, with `judged` as those that were tried there.
+  LadderStep step(const Ladder& ladder, const std::vector<Candidate>& all, std::size_t added,
+                  const std::vector<std::size_t>& judged) const {
+    LadderStep step;
+    step.added = added;
+    for (const std::size_t k : judged) {
+      const Trial& beside = ladder.top();
+      CandidateResult result =
+          compare(context, context.fine, beside, try_with(context, context.fine, beside, all[k]), all[k], 1, Limits());
+      result.candidate = k;
+      step.judged.push_back(std::move(result));
+      if (k == added) step.trial = step.judged.back().trial;
+    }
+    look_beside(context, step);
+    return step;
+  }
+};
+
+std::vector<std::string> keys_on(const Ladder& ladder, const std::vector<Candidate>& all) {
+  std::vector<std::string> keys;
+  for (const LadderStep& step : ladder.steps) {
+    if (step.added) keys.push_back(all[*step.added].info.key);
+  }
+  return keys;
+}
+
+// ---------------------------------------------------------------------------------------------------------- choose
+
+/// A candidate that passes and leaves so many units of noise.
+CandidateResult passing(const Made& made, std::size_t candidate, double units, std::size_t parameters) {
+  CandidateResult out;
+  out.candidate = candidate;
+  out.trial.p.assign(parameters, 0.0);
+  out.trial.usable = out.passes = true;
+  out.trial.squares = made.context.fine.values * made.unit();  // the noise of a row is one unit
+  out.trial.held_out_squares = units * made.unit();
+  return out;
+}
+
+/// What two trials must differ by to be distinguishable, in units of noise.
+double apart(const Made& made) {
+  return std::max(limits::kDistinguishable, limits::kDistinguishableSize * made.context.fine.samples);
+}
+
+TEST(Choose, TheSimplestOfThoseThatDoAsWellLeadsAndTheOthersAreItsGroup) {
+  const Made made;
+  const std::vector<Candidate> all = candidates_of({"ringing", "viscous", "drift", "heating"});
+  const double d = apart(made);
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 7), passing(made, 1, 9000 + 0.5 * d, 4),
+                                         passing(made, 2, 9000 + 1.5 * d, 4), passing(made, 3, 9000 - 3 * d, 5)};
+  judged[3].passes = false;
+  const Choice choice = choose(made.context, judged, all);
+  ASSERT_TRUE(choice.leader);
+  EXPECT_EQ(*choice.leader, 1u);
+  EXPECT_THAT(choice.group, ElementsAre(0u)) << "drift is worse, heating did not pass";
+}
+
+TEST(Choose, NothingLeadsWhereNothingPasses) {
+  const Made made;
+  const std::vector<Candidate> all = candidates_of({"viscous"});
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4)};
+  judged[0].passes = false;
+  EXPECT_FALSE(choose(made.context, judged, all).leader);
+}
+
+TEST(Choose, AFormOfAnEffectHasTheNameOnlyWhereTheDataDistinguishIt) {
+  const Made made;
+  const std::vector<Candidate> all = candidates_of({"rate-state:healing", "rate-state"});
+  for (const double lead : {0.5, 2.0}) {
+    std::vector<CandidateResult> judged = {passing(made, 0, 9000 - lead * apart(made), 5), passing(made, 1, 9000, 5)};
+    const Choice choice = choose(made.context, judged, all);
+    ASSERT_TRUE(choice.leader);
+    EXPECT_EQ(*choice.leader, lead < 1 ? 1u : 0u) << lead;
+    EXPECT_THAT(choice.group, IsEmpty()) << lead;
+  }
+}
+
+TEST(Choose, WhatADeclaredInstrumentLeavesRoomForNeedsNoOtherName) {
+  const Made made;
+  std::vector<Candidate> all = candidates_of({"frictional-lag", "channel-delay"});
+  all[1].allowed = AllowedRange{-1e-3, 1e-3};
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + 0.5 * apart(made), 4)};
+  Choice choice = choose(made.context, judged, all);
+  EXPECT_EQ(choice.leader, 1u);
+  EXPECT_THAT(choice.group, IsEmpty());
+  judged[1] = passing(made, 1, 9000 + 2 * apart(made), 4);
+  choice = choose(made.context, judged, all);
+  EXPECT_EQ(choice.leader, 0u) << "it does not explain as much";
+}
+
+// ------------------------------------------------------------------------------------------------- prune, reconsider
+
+TEST(Prune, DropsWhatIsRedundantAndKeepsWhatIsTrue) {
+  const std::vector<Candidate> all = candidates_of({"drift", "viscous"});
+  const double sigma = 0.3, drift = 0.004;  // s/m, 1/s
+  const Made only_viscous({Viscous()}, {sigma}), both({Viscous(), Drift()}, {sigma, drift});
+  for (const Made* made : {&only_viscous, &both}) {
+    Ladder ladder;
+    ladder.steps.push_back(made->base());
+    ladder.steps.push_back(made->step(ladder, all, 0, {0}));
+    ladder.steps.push_back(made->step(ladder, all, 1, {1}));
+    prune(made->context, ladder, all, Limits());
+    if (made == &only_viscous) {
+      EXPECT_THAT(keys_on(ladder, all), ElementsAre("viscous"));
+    } else {
+      EXPECT_THAT(keys_on(ladder, all), UnorderedElementsAre("viscous", "drift"));
+    }
+    const Trial& top = ladder.top();
+    EXPECT_NEAR(top.p[top.model.offset_of("viscous")], sigma, 0.05 * sigma);
+  }
+}
+
+TEST(Reconsider, ABetterAlternativeTakesThePlaceOfWhatWasChosenTooEarly) {
+  const std::vector<Candidate> all = candidates_of({"channel-delay", "frictional-lag", "drift"});
+  const double tau = 3e-3, drift = 0.004;
+  const Made made({FrictionalLag(), Drift()}, {tau, drift});
+  Ladder ladder;
+  ladder.steps.push_back(made.base());
+  ladder.steps.push_back(made.step(ladder, all, 0, {0, 1}));  // as if the delay had led
+  ladder.steps[1].equivalent = {1};
+  ladder.steps.push_back(made.step(ladder, all, 2, {2}));
+  EXPECT_TRUE(reconsider(made.context, ladder, all, Limits()));
+  EXPECT_THAT(keys_on(ladder, all), UnorderedElementsAre("frictional-lag", "drift"));
+  for (const LadderStep& step : ladder.steps) EXPECT_THAT(step.equivalent, IsEmpty()) << "the data distinguish them";
+  const Trial& top = ladder.top();
+  EXPECT_NEAR(top.p[top.model.offset_of("frictional-lag")], tau, 0.05 * tau);
+  EXPECT_FALSE(reconsider(made.context, ladder, all, Limits())) << "what is right stays";
+}
+
+// --------------------------------------------------------------------------------------------------------- withdraw
+
+Probe structure(double fall) {
+  Probe probe;
+  probe.variable = "velocity";
+  probe.fall = fall;
+  probe.size = 1;
+  probe.p_value = 1e-9;
+  return probe;
+}
+
+/// A base that leaves 10000 with structure of 4000 in it, and one effect that takes away `fall` and leaves `left`.
+Ladder with_one_effect(double fall, double left) {
+  Ladder ladder;
+  ladder.steps.resize(2);
+  ladder.steps[0].trial.held_out_squares = 10000;
+  ladder.steps[0].probes = {structure(4000)};
+  ladder.steps[1].added = 7;
+  ladder.steps[1].trial.held_out_squares = 10000 - fall;
+  ladder.steps[1].judged.resize(3);
+  if (left > 0) ladder.steps[1].probes = {structure(left)};
+  return ladder;
+}
+
+TEST(Withdraw, ANameForASmallPartOfWhatAFreeFunctionExplains) {
+  Ladder ladder = with_one_effect(1000, 3000);
+  withdraw(ladder);
+  EXPECT_EQ(ladder.steps.size(), 1u);
+  EXPECT_THAT(ladder.withdrawn, ElementsAre(7u));
+  EXPECT_EQ(ladder.last.size(), 3u) << "what was judged beside the base is judged last now";
+}
+
+TEST(Withdraw, NotWhereNearlyAllIsExplainedOrTheLevelsOfBreakAwayAreMeant) {
+  Ladder most = with_one_effect(3500, 500), all = with_one_effect(1000, 0), rest = with_one_effect(1000, 100),
+         by_level = with_one_effect(1000, 3000);
+  by_level.steps[1].by_level = true;
+  for (Ladder* ladder : {&most, &all, &rest, &by_level}) {
+    withdraw(*ladder);
+    EXPECT_EQ(ladder->steps.size(), 2u);
+    EXPECT_THAT(ladder->withdrawn, IsEmpty());
+  }
+}
+
+TEST(Withdraw, TakesWhatStandsOnItToo) {
+  Ladder ladder = with_one_effect(1000, 3000);
+  ladder.steps.push_back(ladder.steps[1]);
+  ladder.steps[2].added = 8;
+  withdraw(ladder);
+  EXPECT_EQ(ladder.steps.size(), 1u);
+  EXPECT_THAT(ladder.withdrawn, ElementsAre(7u, 8u));
+}
+
+// --------------------------------------------------------------------------------------------------------- findings
+
+/// A result of one effect alone beside the base, at the starts of its parameters.
+CandidateResult result(const std::vector<Candidate>& all, std::size_t k, double p_value, bool passes) {
+  CandidateResult out;
+  out.candidate = k;
+  out.trial.model = FrictionModel(BaseLaw::exponential, {all[k].effect});
+  for (const auto& slot : out.trial.model.parameters()) {
+    out.trial.p.push_back(slot.parameter.start * slot.parameter.si);
+    out.trial.at_bound.push_back(false);
+  }
+  out.trial.usable = true;
+  out.fall = 1;
+  out.size = 0.01;
+  out.p_value = p_value;
+  out.passes = passes;
+  return out;
+}
+
+Fit fit_with(const std::vector<Effect>& effects, double held_out) {
+  Fit fit;
+  fit.model = FrictionModel(BaseLaw::exponential, effects);
+  fit.error.held_out_rmse = held_out;
+  for (const auto& slot : fit.model.parameters()) {
+    FitParameter parameter;
+    parameter.parameter = slot.parameter;
+    parameter.effect = slot.effect;
+    parameter.value = 42;
+    fit.parameters.push_back(parameter);
+  }
+  return fit;
+}
+
+const EffectFinding& of(const std::vector<EffectFinding>& findings, const std::string& key) {
+  for (const EffectFinding& finding : findings) {
+    if (finding.key == key) return finding;
+  }
+  throw std::out_of_range(key);
+}
+
+TEST(Findings, SayWhatBecameOfEveryCandidate) {
+  const Made made;
+  std::vector<Candidate> all =
+      candidates_of({"frictional-lag", "channel-delay", "viscous", "drift", "runout", "run-in", "heating"});
+  all[4].untestable = "the disc angle is not known";
+  Ladder ladder;
+  ladder.steps.resize(2);
+  ladder.steps[1].added = 0;
+  ladder.steps[1].equivalent = {1};
+  ladder.steps[1].judged = {result(all, 0, 1e-9, true), result(all, 1, 1e-9, true), result(all, 2, 1e-9, false),
+                            result(all, 3, 0.3, false), result(all, 6, 1e-9, true)};
+  ladder.steps[1].judged[2].plausible = false;
+  ladder.last = {result(all, 2, 1e-9, false), result(all, 3, 0.4, false), result(all, 6, 0.8, false)};
+  ladder.last[0].plausible = false;
+  ladder.withdrawn = {5};
+  const std::vector<Fit> fits = {fit_with({}, 0.010), fit_with({all[0].effect}, 0.005)};
+  const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, fits, 0.003);
+  ASSERT_EQ(found.size(), all.size());
+
+  const EffectFinding& lag = of(found, "frictional-lag");
+  EXPECT_EQ(lag.status, EffectStatus::found);
+  EXPECT_DOUBLE_EQ(lag.held_out_rmse, 0.005);
+  EXPECT_NEAR(lag.error_reduction, (0.010 * 0.010 - 0.005 * 0.005) / (0.010 * 0.010 - 0.003 * 0.003), 1e-12);
+  ASSERT_EQ(lag.parameters.size(), 1u);
+  EXPECT_EQ(lag.parameters[0].value, 42) << "of the final fit, not of the trial";
+
+  EXPECT_EQ(of(found, "channel-delay").status, EffectStatus::equivalent);
+  EXPECT_THAT(of(found, "channel-delay").reason, HasSubstr("frictional-lag"));
+  EXPECT_EQ(of(found, "viscous").status, EffectStatus::unsupported);
+  EXPECT_THAT(of(found, "viscous").reason, HasSubstr("plausible"));
+  EXPECT_EQ(of(found, "drift").status, EffectStatus::unsupported);
+  EXPECT_THAT(of(found, "drift").reason, HasSubstr("0.4"));
+  EXPECT_EQ(of(found, "runout").status, EffectStatus::untestable);
+  EXPECT_EQ(of(found, "runout").reason, all[4].untestable);
+  EXPECT_EQ(of(found, "heating").status, EffectStatus::superseded) << "it passed beside the base law only";
+}
+
+TEST(Findings, AWithdrawnEffectIsNotFound) {
+  const Made made;
+  const std::vector<Candidate> all = candidates_of({"run-in", "drift"});
+  Ladder ladder;
+  ladder.steps.resize(1);
+  ladder.last = {result(all, 0, 1e-9, true), result(all, 1, 0.5, false)};
+  ladder.withdrawn = {0};
+  const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
+  EXPECT_EQ(of(found, "run-in").status, EffectStatus::unsupported);
+  EXPECT_THAT(of(found, "run-in").reason, HasSubstr("name would be wrong"));
+}
+
+TEST(Findings, TheFormOnTheLadderStandsForItsEffect) {
+  const Made made;
+  const std::vector<Candidate> all = candidates_of({"rate-state:healing", "rate-state"});
+  Ladder ladder;
+  ladder.steps.resize(2);
+  ladder.steps[1].added = 0;
+  ladder.steps[1].judged = {result(all, 0, 1e-9, true), result(all, 1, 1e-9, false)};
+  const std::vector<Fit> fits = {fit_with({}, 0.010), fit_with({all[0].effect}, 0.004)};
+  const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, fits, 0.003);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].key, "rate-state");
+  EXPECT_EQ(found[0].status, EffectStatus::found);
+}
+
+}  // namespace
