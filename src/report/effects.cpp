@@ -77,7 +77,11 @@ std::string what_it_is(const EffectInfo& effect, const Style& style) {
   for (const Parameter& p : effect.parameters) {
     table.add({p.name, p.unit, bound(p.lower), bound(p.upper), bound(p.start)});
   }
-  text += table.text(2, style.dim, style.off);
+  text += table.text(2, style.dim, style.off) + "\n";
+  for (const Parameter& p : effect.parameters) {
+    const bool own = p.scope == ParameterScope::record;
+    text += line(style, p.name, p.description + (own ? "; another value in each record" : ""));
+  }
   if (!effect.pairs.empty()) text += "\n  looks like\n";
   for (const LookAlike& pair : effect.pairs) {
     text +=

@@ -32,8 +32,8 @@ Json catalogue_json(const Motion& motion) {
   Json list = Json::array();
   for (const Effect& effect : effect_catalogue()) {
     // Undone wherever they are found, asked for or not; the other effects of the motion are switched.
-    if (std::holds_alternative<SpeedRipple>(effect) || std::holds_alternative<VelocityHighPass>(effect)) continue;
     const EffectInfo info = describe(effect);
+    if (info.kinematic_effect && info.plateau_correction == PlateauCorrection::none) continue;
     list.push_back(effect_json(info, info.key, motion));
     for (const EffectForm& form : info.forms) {
       const std::string name = info.key + ":" + form.name;

@@ -24,7 +24,7 @@ TEST(Declared, LeavesThreeOfItsUncertainties) {
     if (allowed) {
       EXPECT_EQ(allowed->lower, -allowed->upper) << key;
     }
-    return possible ? allowed->upper : -1;
+    return allowed ? allowed->upper : -1;
   };
   EXPECT_DOUBLE_EQ(left("sensor-offset"), 0.003);
   EXPECT_DOUBLE_EQ(left("sensor-inertia"), 0.015);

@@ -70,6 +70,37 @@ TEST_P(EveryEffect, DescribesItself) {
     const auto unit = find_unit(p.unit);
     ASSERT_TRUE(unit) << p.name << " [" << p.unit << "]";
     EXPECT_DOUBLE_EQ(unit->factor, p.si) << p.name << " [" << p.unit << "]";
+    EXPECT_GT(p.description.size(), 10u) << p.name;
+    EXPECT_LT(p.description.size(), 90u) << p.name << ": one line";
+    EXPECT_NE(p.description.back(), '.') << p.name;
+    EXPECT_EQ(p.periodic, p.unit == "rad") << p.name;
+  }
+}
+
+TEST_P(EveryEffect, SaysHowItIsDrawnAndSearched) {
+  const EffectInfo info = describe(model_.effects()[0]);
+  ASSERT_EQ(info.sketch.values.size(), info.parameters.size());
+  for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+    const Parameter& p = info.parameters[k];
+    EXPECT_GE(info.sketch.values[k], p.lower) << p.name;
+    EXPECT_LE(info.sketch.values[k], p.upper) << p.name;
+    // A search for a time of change looks at the size before it; a line shows at full resolution only.
+    if (p.search == ParameterSearch::moment_of_change) {
+      EXPECT_GT(k, 0u) << p.name;
+    }
+    const bool line = p.search == ParameterSearch::steady_line || p.search == ParameterSearch::ringing_line;
+    if (line) {
+      EXPECT_TRUE(info.needs_full_resolution) << p.name;
+    }
+    // Where the clock or the disc stood when a record began is another value in the next record.
+    const bool of_record = p.periodic && (info.needs.angle || p.search == ParameterSearch::steady_line);
+    if (of_record) {
+      EXPECT_EQ(p.scope, ParameterScope::record) << p.name;
+    }
+  }
+  // What is seen over the angle of the disc must come back.
+  if (info.needs.angle) {
+    EXPECT_GE(info.excitation.revolutions, 2);
   }
 }
 
