@@ -32,7 +32,7 @@ bool is_of_plateau(const std::string& key) {
   return !key.empty() && (key == key_of(PlateauCorrection::radius) || key == key_of(PlateauCorrection::gain));
 }
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotFitted = std::numeric_limits<double>::quiet_NaN();
 
 FoundBeforeFit found_before_fit(const Effect& effect, const Motion& motion, const FoundValue& load_coupling) {
   return std::visit(
@@ -49,7 +49,7 @@ EffectFinding finding_of(const EffectInfo& info, const FoundBeforeFit& found) {
   EffectFinding finding;
   finding.key = info.key;
   finding.status = EffectStatus::found;
-  finding.held_out_rmse = finding.error_reduction = kNaN;
+  finding.held_out_rmse = finding.error_reduction = kNotFitted;
   finding.p_value = 0;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     FitParameter parameter;
@@ -59,7 +59,7 @@ EffectFinding finding_of(const EffectInfo& info, const FoundBeforeFit& found) {
     parameter.std_error = found.values[k].std_error;
     parameter.lower95 = parameter.value - 1.96 * parameter.std_error;
     parameter.upper95 = parameter.value + 1.96 * parameter.std_error;
-    parameter.profile_lower95 = parameter.profile_upper95 = kNaN;
+    parameter.profile_lower95 = parameter.profile_upper95 = kNotFitted;
     finding.parameters.push_back(parameter);
   }
   finding.reason = found.reason;
@@ -118,7 +118,7 @@ std::string obstacle(const EffectInfo& info, std::span<const Record> records) {
 EffectFinding not_found(const EffectInfo& info, std::span<const Record> records) {
   EffectFinding finding;
   finding.key = info.key;
-  finding.held_out_rmse = finding.error_reduction = finding.p_value = kNaN;
+  finding.held_out_rmse = finding.error_reduction = finding.p_value = kNotFitted;
   finding.status = EffectStatus::unsupported;
   finding.reason = "the plateau of stick does not show it";
   if (const std::string why = obstacle(info, records); !why.empty()) {
