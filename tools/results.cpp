@@ -90,7 +90,7 @@ void refuse_overwriting(const Settings& s, const std::vector<std::string>& input
     if (!s.json.empty() && same_file(s.json, input)) throw UsageError("--json would overwrite " + input);
     if (s.csv.empty()) continue;
     const std::filesystem::path own_folder = std::filesystem::path(s.csv) / std::filesystem::path(input).stem();
-    for (const OwnFile& file : output_tables) {
+    for (const OutputTable& file : output_tables) {
       if (same_file((s.csv / std::filesystem::path(file.name)).string(), input) ||
           same_file((own_folder / file.name).string(), input)) {
         throw UsageError("--csv would overwrite " + input + " with its own " + std::string(file.name));

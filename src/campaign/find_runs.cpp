@@ -175,7 +175,7 @@ FolderTraces traces_in(const std::string& folder) {
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string path = it->path().string();
     if (!is_trace_name(it->path()) || it->is_directory(error)) continue;
-    if (!is_own_file(path)) {
+    if (!is_output_table(path)) {
       found.paths.push_back(path);
     } else {
       found.left_out += (found.left_out.empty() ? "" : ", ") + it->path().filename().string();

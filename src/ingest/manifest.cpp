@@ -56,7 +56,7 @@ std::vector<std::string> files_of(const fs::path& folder) {
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (name.front() == '.' || name == manifest_name || it->is_directory(error)) continue;
-    if (!is_own_file(it->path().string())) names.push_back(name);
+    if (!is_output_table(it->path().string())) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -6,10 +6,10 @@
 
 namespace tribofit {
 
-bool is_own_file(const std::string& path) {
+bool is_output_table(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
-  const auto known =
-      std::find_if(output_tables.begin(), output_tables.end(), [&](const OwnFile& file) { return file.name == name; });
+  const auto known = std::find_if(output_tables.begin(), output_tables.end(),
+                                  [&](const OutputTable& file) { return file.name == name; });
   if (known == output_tables.end()) return false;
   std::ifstream in(path, std::ios::binary);
   std::string header(known->header.size(), '\0');

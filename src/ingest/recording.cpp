@@ -96,8 +96,9 @@ void refuse_unusable(const RawTable& table, const Column& column, std::size_t ro
 }
 
 void to_si(const Column& column, std::vector<double>& values) {
-  if (column.factor == 1 && column.offset == 0) return;
-  for (double& value : values) value = column.factor * value + column.offset;
+  const double factor = column.factor, offset = column.offset;  // which the values cannot alias
+  if (factor == 1 && offset == 0) return;
+  for (double& value : values) value = factor * value + offset;
 }
 
 /// The channels of one set of rows, in SI, on a clock that starts at 0.

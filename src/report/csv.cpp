@@ -11,9 +11,9 @@
 
 #include "measures.hpp"
 #include "numbers.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "whole_folder.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 /// How the header of one of the tables begins.
 std::string_view header_of(std::string_view name) {
-  return std::find_if(output_tables.begin(), output_tables.end(), [&](const OwnFile& f) { return f.name == name; })
+  return std::find_if(output_tables.begin(), output_tables.end(), [&](const OutputTable& f) { return f.name == name; })
       ->header;
 }
 

@@ -1,13 +1,10 @@
 #include "tribofit/ingest/manifest.hpp"
 
-#include <numbers>
-
 #include "temp_files.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
-
-constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 class ManifestTest : public TempFiles {
  protected:

@@ -7,10 +7,10 @@
 namespace tribofit {
 
 /// A table that `--csv FOLDER` writes: its name, and how its header begins.
-struct OwnFile {
+struct OutputTable {
   std::string_view name, header;
 };
-inline constexpr std::array<OwnFile, 4> output_tables = {
+inline constexpr std::array<OutputTable, 4> output_tables = {
     {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold"},
      {"cycles.csv", "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,"},
      {"curves.csv", "law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data"},
@@ -18,6 +18,6 @@ inline constexpr std::array<OwnFile, 4> output_tables = {
 
 /// Whether the file is one of those tables, by its name and its header: a result, not a run. A file that cannot be read
 /// is not.
-bool is_own_file(const std::string& path);
+bool is_output_table(const std::string& path);
 
 }  // namespace tribofit
