@@ -192,4 +192,16 @@ Trends find_trends(std::span<const RunResult> runs) {
   return out;
 }
 
+std::vector<Trend> significant_trends(const Trends& trends) {
+  constexpr double kSignificant = 0.05, kExactly = 0.999;
+  std::vector<Trend> out;
+  for (const Trend& t : trends.trends) {
+    const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
+      return pair.b == t.condition && std::abs(pair.correlation) > kExactly;
+    });
+    if (t.p_corrected <= kSignificant && !said) out.push_back(t);
+  }
+  return out;
+}
+
 }  // namespace tribofit

@@ -1,11 +1,16 @@
 #include "tribofit/report/campaign.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "campaign/figures_json.hpp"
-#include "json_parts.hpp"
-#include "summary_tables.hpp"
+#include "campaign_tables.hpp"
+#include "condition_cells.hpp"
+#include "terminal_text.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 
@@ -13,13 +18,7 @@ namespace tribofit {
 namespace {
 
 Json tool_only() {
-  return {{"name", "tribofit"}, {"version", version}};
-}
-
-Json others_json(const std::vector<OtherCondition>& others) {
-  Json list = Json::array();
-  for (const OtherCondition& other : others) list.push_back({{"name", other.name}, {"value", other.value}});
-  return list;
+  return object("name", "tribofit", "version", version);
 }
 
 Json repeat_json(const RunRecord& run) {
@@ -27,77 +26,153 @@ Json repeat_json(const RunRecord& run) {
 }
 
 Json record_json(const RunRecord& run) {
-  return {{"name", run.name},
-          {"file", run.file},
-          {"key", run.key},
-          {"settings", run.settings},
-          {"status", to_string(run.status)},
-          {"message", text_or_null(run.message)},
-          {"stated", conditions_json(run.conditions)},
-          {"repeat", repeat_json(run)},
-          {"others", others_json(run.others)}};
-}
-
-Json parameters_json(const ResultFit& fit) {
-  Json list = Json::array();
-  for (const ResultParameter& p : fit.parameters) {
-    list.push_back({{"name", p.name},
-                    {"value", number(p.value)},
-                    {"std_error", number(p.std_error)},
-                    {"unit", p.unit},
-                    {"effect", text_or_null(p.effect)},
-                    {"systematic_error", p.systematic > 0 ? number(p.systematic) : Json(nullptr)},
-                    {"at_bound", p.at_bound}});
-  }
-  return list;
+  return object("name", run.name, "file", run.file, "key", run.key, "settings", run.settings, "status",
+                to_string(run.status), "message", text_or_null(run.message), "stated", conditions_json(run.conditions),
+                "repeat", repeat_json(run), "others", others_json(run.others));
 }
 
 Json fit_json(const ResultFit& fit) {
-  return {{"law", fit.law},
-          {"protocol", fit.protocol},
-          {"effects", fit.effects},
-          {"parameters", parameters_json(fit)},
-          {"error",
-           {{"rmse", number(fit.rmse)},
-            {"mean_relative", number(fit.mean_relative)},
-            {"max_relative", number(fit.max_relative)},
-            {"held_out_rmse", number(fit.held_out_rmse)}}},
-          {"floor_rmse", number(fit.floor_rmse)},
-          {"converged", fit.converged}};
+  const auto parameter = [](const ResultParameter& p) {
+    return object("name", p.name, "value", p.value, "std_error", p.std_error, "unit", p.unit, "effect",
+                  text_or_null(p.effect), "systematic_error", positive_or_null(p.systematic), "at_bound", p.at_bound);
+  };
+  return object("law", fit.law, "protocol", fit.protocol, "effects", fit.effects, "parameters",
+                list_of(fit.parameters, parameter), "error",
+                object("rmse", fit.rmse, "mean_relative", fit.mean_relative, "max_relative", fit.max_relative,
+                       "held_out_rmse", fit.held_out_rmse),
+                "floor_rmse", fit.floor_rmse, "converged", fit.converged);
 }
 
-Json measures_json(const RunResult& result) {
-  return {{"cycles", result.cycles},
-          {"frequency_hz", number(result.frequency.value)},
-          {"frequency_std_error_hz", number(result.frequency.std_error)},
-          {"amplitude_mm_s", number(result.amplitude.value)},
-          {"amplitude_std_error_mm_s", number(result.amplitude.std_error)},
-          {"stick_time_s", number(result.stick_time.value)},
-          {"stick_time_std_error_s", number(result.stick_time.std_error)},
-          {"slip_time_s", number(result.slip_time.value)},
-          {"slip_time_std_error_s", number(result.slip_time.std_error)},
-          {"rms_velocity_mm_s", number(result.rms_velocity)}};
+/// The measures of stick-slip; summary.csv has columns of the same names.
+Json measures_json(const RunResult& r) {
+  return object("cycles", r.cycles, "frequency_hz", r.frequency.value, "frequency_std_error_hz", r.frequency.std_error,
+                "amplitude_mm_s", r.amplitude.value, "amplitude_std_error_mm_s", r.amplitude.std_error, "stick_time_s",
+                r.stick_time.value, "stick_time_std_error_s", r.stick_time.std_error, "slip_time_s", r.slip_time.value,
+                "slip_time_std_error_s", r.slip_time.std_error, "rms_velocity_mm_s", r.rms_velocity);
+}
+
+bool was_read(const RunResult& result) {
+  return result.run.status != RunStatus::unreadable;
+}
+
+const Conditions& known_conditions(const RunResult& result) {
+  return was_read(result) ? result.conditions : result.run.conditions;
 }
 
 Json result_json(const RunResult& result) {
-  Json fits = Json::array();
-  for (const ResultFit& fit : result.fits) fits.push_back(fit_json(fit));
-  const bool read = result.run.status != RunStatus::unreadable;
-  return {{"name", result.run.name},
-          {"file", result.run.file},
-          {"status", to_string(result.run.status)},
-          {"message", text_or_null(result.run.message)},
-          {"conditions", conditions_json(read ? result.conditions : result.run.conditions)},
-          {"repeat", repeat_json(result.run)},
-          {"others", others_json(result.run.others)},
-          {"friction_unit", result.friction_unit},
-          {"stick_slip", read ? measures_json(result) : Json(nullptr)},
-          {"fits", std::move(fits)},
-          {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)}};
+  const RunRecord& run = result.run;
+  return object("name", run.name, "file", run.file, "status", to_string(run.status), "message",
+                text_or_null(run.message), "conditions", conditions_json(known_conditions(result)), "repeat",
+                repeat_json(run), "others", others_json(run.others), "friction_unit", result.friction_unit,
+                "stick_slip", was_read(result) ? measures_json(result) : Json(nullptr), "fits",
+                list_of(result.fits, fit_json), "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
+}
+
+/// A row of summary.csv: values under the names of their columns.
+struct SummaryRow {
+  Json fixed, conditions = Json::object(), analysis = Json::object();
+};
+
+/// A column of a further condition; one that is called like a column of ours has a longer name.
+std::string column_of(const OtherCondition& other, const Json& fixed) {
+  return fixed.contains(other.name) ? "condition " + other.name : other.name;
+}
+
+void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) {
+  const std::string of_fit = fit.law + "_" + fit.protocol + "_";
+  const auto add = [&](const std::string& name, const std::string& unit, double value) {
+    row[with_unit(of_fit + name, unit)] = number(value);
+  };
+  for (const ResultParameter& p : fit.parameters) {
+    add(p.name, p.unit, p.value);
+    add(p.name + "_std_error", p.unit, p.std_error);
+    if (p.systematic > 0) add(p.name + "_systematic_error", p.unit, p.systematic);
+  }
+  add("rmse", friction_unit, fit.rmse);
+  add("held_out_rmse", friction_unit, fit.held_out_rmse);
+  add("floor_rmse", friction_unit, fit.floor_rmse);
+  add("mean_relative", "1", fit.mean_relative);
+  add("max_relative", "1", fit.max_relative);
+}
+
+SummaryRow summary_row(const std::string& name, const std::string& file, std::string_view status) {
+  return {.fixed = object("run", name, "file", file, "status", status, "message", nullptr, "radius_mm", nullptr,
+                          "speed_rpm", nullptr, "load_N", nullptr, "repeat", nullptr)};
+}
+
+SummaryRow summary_row(const RunResult& result) {
+  const RunRecord& run = result.run;
+  const Conditions& c = known_conditions(result);
+  SummaryRow row = summary_row(run.name, run.file, to_string(run.status));
+  add_members(row.fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
+              c.speed.value / kRpm, "load_N", c.load.value, "repeat", repeat_json(run));
+  for (const OtherCondition& other : run.others) row.conditions[column_of(other, row.fixed)] = other.value;
+  if (!was_read(result)) return row;
+  row.analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
+  row.analysis.update(measures_json(result));
+  row.analysis["best_law"] = result.fits.empty() ? "" : result.fits[result.best].law;
+  for (const ResultFit& fit : result.fits) add_fit(fit, result.friction_unit, row.analysis);
+  return row;
+}
+
+/// The columns of summary.csv: those that any run has, in the order in which they are met.
+class SummaryColumns {
+ public:
+  void declare(const SummaryRow& row) {
+    if (fixed_.empty()) fixed_ = keys(row.fixed);
+    for (const std::string& key : keys(row.conditions)) add(key, conditions_);
+    for (const std::string& key : keys(row.analysis)) add(key, analysis_);
+  }
+  std::string header() const {
+    std::vector<std::string> names;
+    for (const auto* columns : {&fixed_, &conditions_, &analysis_}) {
+      for (const std::string& column : *columns) names.push_back(cell(column));
+    }
+    return csv_line(names);
+  }
+  std::string line(const SummaryRow& row) const {
+    std::vector<std::string> values = {cells(row.fixed)};
+    for (const std::string& column : conditions_) values.push_back(cells(row.conditions.value(column, Json())));
+    for (const std::string& column : analysis_) values.push_back(cells(row.analysis.value(column, Json())));
+    return csv_line(values);
+  }
+
+ private:
+  static std::vector<std::string> keys(const Json& object) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : object.items()) names.push_back(key);
+    return names;
+  }
+  void add(const std::string& name, std::vector<std::string>& columns) {
+    if (known_.insert(name).second) columns.push_back(name);
+  }
+
+  std::vector<std::string> fixed_, conditions_, analysis_;
+  std::set<std::string> known_;
+};
+
+/// Every run of a campaign in its order, with a result or without.
+template <class WithResult, class Missing>
+void for_each_run(const ResultReader& results, WithResult&& with_result, Missing&& missing) {
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    if (const auto result = results.read(k)) {
+      with_result(*result);
+    } else {
+      missing(results.missing(k));
+    }
+  }
 }
 
 std::string complaint(const RunRecord& run) {
   return run.status == RunStatus::failed ? run.file + ": the analysis could not be done: " + run.message : run.message;
+}
+
+std::string table_text(ReportTable table, std::size_t runs, const TerminalOptions& options) {
+  TerminalText text(options);
+  text.table(table);
+  if (runs > table.rows.size()) text.line(fmt::format("... and {} more in summary.csv", runs - table.rows.size()));
+  text.line(runs_note());
+  return text.take();
 }
 
 }  // namespace
@@ -107,13 +182,9 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
   if (result != nullptr) {
     json = identification_json(*result, options);
   } else {
-    json = {{"tool", tool_json(options)},
-            {"trace", {{"path", run.file}}},
-            {"conditions", conditions_json(run.conditions)},
-            {"fits", Json::array()},
-            {"best", nullptr},
-            {"analysed", false},
-            {"warnings", {run.message}}};
+    json = object("tool", tool_json(options), "trace", object("path", run.file), "conditions",
+                  conditions_json(run.conditions), "fits", Json::array(), "best", nullptr, "analysed", false,
+                  "warnings", Json::array({run.message}));
   }
   json["run"] = record_json(run);
   std::string text = text_of(json);
@@ -125,61 +196,62 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
 
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
   const std::string hash = options_hash(options);
-  Json runs = Json::array();
-  for (const Run& run : campaign.runs) {
-    runs.push_back({{"name", run.name}, {"file", run.file}, {"settings", settings_hash(run, hash)}});
-  }
+  const auto listed = [&](const Run& run) {
+    return object("name", run.name, "file", run.file, "settings", settings_hash(run, hash));
+  };
   std::error_code ignored;
   const std::string folder =
       campaign.folder.empty() ? "" : std::filesystem::weakly_canonical(campaign.folder, ignored).string();
-  return sealed(text_of({{"tool", tool_only()},
-                         {"folder", text_or_null(folder)},
-                         {"runs", std::move(runs)},
-                         {"problems", campaign.problems}}));
+  return sealed(text_of(object("tool", tool_only(), "folder", text_or_null(folder), "runs",
+                               list_of(campaign.runs, listed), "problems", campaign.problems)));
 }
 
 CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options,
                               const std::string& comparison) {
+  constexpr std::size_t kMostRows = 40;
   const std::filesystem::path folder(results.folder());
   WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
-  const auto line = [](const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); };
-  json.write("{\"tool\": " + line(tool_only()) + ",\n\"runs\": [");
-  std::string separator = "\n";
-  const auto add = [&](const Json& run) {
-    json.write(separator + line(run));
-    separator = ",\n";
-  };
-
-  CampaignSummary summary;
-  SummarySheet sheet;
-  for_each_run(
-      results, [&](const RunResult& result) { sheet.declare(result); }, [](const MissingRun&) {});
-  csv.write(sheet.header());
-  ResultTable table(options);
+  json.write("{\"tool\": " + line_of(tool_only()) + ",\n\"runs\": [");
+  SummaryColumns columns;
+  std::string friction_unit = "1";
+  columns.declare(summary_row("", "", ""));
   for_each_run(
       results,
       [&](const RunResult& result) {
-        csv.write(sheet.row(result));
-        add(result_json(result));
-        table.add(result);
+        columns.declare(summary_row(result));
+        if (was_read(result)) friction_unit = result.friction_unit;
+      },
+      [](const MissingRun&) {});
+  csv.write(columns.header());
+  CampaignSummary summary;
+  ReportTable table = runs_table(friction_unit);
+  std::size_t count = 0;
+  const auto add = [&](const SummaryRow& row, const Json& run, std::vector<std::string> cells) {
+    csv.write(columns.line(row));
+    json.write((count++ == 0 ? "\n" : ",\n") + line_of(run));
+    if (table.rows.size() < kMostRows) table.rows.push_back(std::move(cells));
+  };
+  for_each_run(
+      results,
+      [&](const RunResult& result) {
+        add(summary_row(result), result_json(result), run_row(result));
         const bool ok = result.run.status == RunStatus::ok;
         ++(ok ? summary.fitted : summary.failed);
         if (!ok) summary.complaints.push_back(complaint(result.run));
       },
       [&](const MissingRun& run) {
-        csv.write(sheet.row(run));
-        add({{"name", run.name}, {"file", run.file}, {"status", "missing"}, {"message", nullptr}});
-        table.add(run);
+        add(summary_row(run.name, run.file, "missing"),
+            object("name", run.name, "file", run.file, "status", "missing", "message", nullptr), run_row(run));
         ++summary.missing;
         summary.complaints.push_back(run.file + ": there is no result of it yet");
       });
-  json.write("\n],\n\"problems\": " + line(results.problems()));
+  json.write("\n],\n\"problems\": " + line_of(results.problems()));
   if (!comparison.empty()) json.write(",\n\"comparison\": " + comparison);
   json.write("}\n");
   json.finish();
   csv.commit();
   json.commit();
-  summary.table = table.text();
+  summary.table = table_text(std::move(table), count, options);
   return summary;
 }
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "measures.hpp"
+#include "fit/assessment.hpp"
 #include "numbers.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -141,7 +141,7 @@ void write_errors(WholeFile& file, const Identification& result, const std::vect
 /// one.
 void add_files(WholeFolder& files, const Identification& trace, std::span<const Fit> fits, const Fit* best,
                std::size_t before) {
-  const Membership member = membership(trace, best, before);
+  const Membership member = membership(trace.motion, trace.segmentation, best, before);
   std::vector<double> model;
   if (best != nullptr) model = predict(*best, trace.motion, trace.segmentation);
   write_samples(files.add("samples.csv"), trace, model, member);
@@ -190,7 +190,7 @@ void write_csv_folder(const std::string& folder, const DiagnosedTraces& result) 
     folders.push_back(std::make_unique<WholeFolder>(folder + "/" + names[k]));
     add_files(*folders.back(), result.traces[k], result.fits, best, before);
     folders.back()->finish();  // closes its files
-    before += evidence_of(result.traces[k]);
+    before += evidence_of(result.traces[k].motion, result.traces[k].segmentation);
   }
   for (const auto& one : folders) one->commit();
 }

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "diagnosis_sentences.hpp"
 #include "numbers.hpp"
 #include "report/charts/diagnosis_charts.hpp"
 #include "report_parts.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 namespace {
@@ -44,18 +43,22 @@ std::vector<DrawnModel> curves_of(const DiagnosedTraces& result, const std::vect
   return curves;
 }
 
-std::string value_text(const FitParameter& p, const Motion& motion) {
-  const std::string unit = shown_unit(p, motion);
-  return fmt::format("{} = {}{}", p.parameter.name, with_error(shown(p, p.value), shown(p, p.std_error)),
-                     unit == "1" ? "" : " " + unit);
+/// Each status as people read it; JSON has its own words.
+std::string_view status_text(EffectStatus status) {
+  switch (status) {
+    case EffectStatus::found:
+      return "found";
+    case EffectStatus::unsupported:
+      return "not supported by the data";
+    default:
+      return to_string(status);
+  }
 }
 
 ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
-  ReportTable table{"What became of each effect",
-                    {"effect", "status", "held-out RMSE", "error taken away", "p", "parameters", "why"},
-                    {},
-                    {2, 3, 4},
-                    true};
+  ReportTable table("What became of each effect");
+  table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
+  table.folded = true;
   std::vector<const EffectFinding*> order;
   for (const EffectFinding& finding : d.effects) order.push_back(&finding);
   const auto error = [](const EffectFinding* f) { return std::isfinite(f->held_out_rmse) ? f->held_out_rmse : 1e300; };
@@ -66,19 +69,19 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
     std::string parameters;
     if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {
-        parameters += (parameters.empty() ? "" : "; ") + value_text(p, motion);
+        parameters += (parameters.empty() ? "" : "; ") + p.parameter.name + " = " + value_text(p, motion);
       }
     }
-    table.rows.push_back({f->key, std::string(to_string(f->status)), significant(f->held_out_rmse, 3),
-                          std::isfinite(f->error_reduction) ? percent(f->error_reduction) : "-",
-                          f->p_value < 1e-4 ? "< 0.0001" : significant(f->p_value, 2), parameters, f->reason});
+    table.rows.push_back({f->key, std::string(status_text(f->status)), significant(f->held_out_rmse, 3),
+                          percent(f->error_reduction), f->p_value < 1e-4 ? "< 0.0001" : significant(f->p_value, 2),
+                          parameters, f->reason});
   }
   return table;
 }
 
 ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& motion) {
   const Diagnosis& d = result.diagnosis;
-  ReportSection section{"diagnosis", "What is missing", {}};
+  ReportSection section{"diagnosis", "Effects found", {}};
   std::vector<Chart> charts = diagnosis_charts(result);
   const auto wide = std::stable_partition(charts.begin(), charts.end(), [](const Chart& chart) { return chart.half; });
   add({std::make_move_iterator(charts.begin()), std::make_move_iterator(wide)}, section);
@@ -86,20 +89,12 @@ ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& mot
   section.items.emplace_back(plain_text(d.next_experiment.empty() ? "None is needed." : d.next_experiment));
   if (!d.formula.empty()) {
     section.items.emplace_back(heading_text("A closed form of what remains, for --formula"));
-    section.items.emplace_back(ReportText{d.formula, ReportText::Kind::command});
+    section.items.emplace_back(command_text(d.formula));
   }
   for (const std::string& message : d.messages) section.items.emplace_back(plain_text(message));
-  if (!d.confirmations.empty()) {
-    ReportTable table{"Tried on runs that took no part, parameters frozen",
-                      {"run", "RMSE of the bare law", "RMSE of the final model", "p"},
-                      {},
-                      {1, 2, 3},
-                      false};
-    for (const Confirmation& c : d.confirmations) {
-      table.rows.push_back(
-          {c.path, significant(c.base_rmse, 3), significant(c.final_rmse, 3), significant(c.p_value, 2)});
-    }
-    section.items.emplace_back(std::move(table));
+  if (!d.confirmations.empty()) section.items.emplace_back(heading_text("On runs that took no part"));
+  for (const Confirmation& c : d.confirmations) {
+    section.items.emplace_back(item_text(confirmation_sentence(c, result)));
   }
   add({std::make_move_iterator(wide), std::make_move_iterator(charts.end())}, section);
   section.items.emplace_back(effects_table(d, motion));
@@ -113,11 +108,9 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
-  Report report;
-  report.kind = "diagnosis";
-  report.title = count == 1 ? file_name(result.traces.front().path) : fmt::format("{} traces together", count);
-  report.subtitle = made_by("Diagnosis") + "; ± is one standard error, everywhere in this report.";
-  report.lead = diagnosis_verdict(result);
+  const std::string title =
+      count == 1 ? file_name(result.traces.front().path) : fmt::format("{} traces together", count);
+  Report report = titled_report("diagnosis", title, "Diagnosis", diagnosis_verdict(result));
   for (const Identification& trace : result.traces) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
@@ -139,12 +132,10 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   }
   if (count > 0) sections.trace.items.emplace_back(health_table(result.traces));
   if (!result.fits.empty()) {
-    add_parameters(result.fits, result.best, motion, options, sections.law);
+    add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
     add(profile_charts(result.fits[result.best], motion, "best"), sections.law);
   }
-  append_filled(
-      {std::move(sections.trace), std::move(sections.law), std::move(sections.errors), std::move(sections.cycles)},
-      report);
+  sections.move_into(report);
   report.sections.push_back(
       run_section(diagnose_command(result, terminal), result.traces, next_after_diagnosis(result, terminal)));
   return report;

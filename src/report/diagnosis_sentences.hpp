@@ -4,49 +4,41 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/report/terminal.hpp"
-#include "verdict.hpp"
+#include "commands.hpp"
+#include "tribofit/pipeline.hpp"
 
 namespace tribofit {
 
-/// Held-out error over the floor up to which what remains is called noise.
-inline constexpr double kNoise = 1.15;
-/// Share of the error above the floor from which a variable is worth naming, and its p value up to which it is.
-inline constexpr double kWorthNaming = 0.05, kSignificant = 0.05;
+/// What is said of a diagnosis, on a terminal and on a page alike.
 
-/// What is missing: the rungs above the base law, then what shows in the motion and is no rung. Effects that fit as
-/// well as one of the latter stand with the last of them.
-std::vector<Rung> missing_effects(const Diagnosis& diagnosis);
-
-/// Shares worth naming, in their order.
-std::vector<Share> worth_naming(const std::vector<Share>& shares);
-
-/// "Most of the error above the floor goes with the disc angle."
+/// "Most of the error above the noise floor goes with the disc angle."
 std::string where_sentence(const std::vector<Share>& shares);
 
 /// What the diagnosis comes to, as an engineer would say it.
 std::string diagnosis_verdict(const DiagnosedTraces& result);
 
-/// The effect that a finding or a rung is about; nullptr where none of that key is known here.
-const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key);
+/// "exponential law", or "exponential law with viscous" where the model has had effects from the start.
+std::string law_text(const Diagnosis& diagnosis);
 
 /// What an effect of that key says about itself, in the form that a model of the result has; empty where it is unknown.
 EffectInfo info_of(const DiagnosedTraces& result, std::string_view key);
 
-/// "exponential law", or "exponential law with viscous" where the model has had effects from the start.
-std::string law_text(const Diagnosis& diagnosis);
+/// An effect as the command line takes it.
+std::string spelled(const DiagnosedTraces& result, const std::string& key);
 
-/// "a", "a and b", "a, b and c".
-std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
+/// Which effects fit equally well; empty where each stands alone.
+std::string equivalence_sentence(const Diagnosis& diagnosis);
+
+/// How the finding did on a run that took no part.
+std::string confirmation_sentence(const Confirmation& confirmation, const DiagnosedTraces& result);
+
+/// " N" where friction is a force.
+std::string level_unit(const DiagnosedTraces& result);
 
 /// The command to type next, with the user's own options.
 Suggestion next_after_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options);
 
 /// The diagnosis itself as a command, with the user's own options.
 std::string diagnose_command(const DiagnosedTraces& result, const TerminalOptions& options);
-
-/// The command that adds the formula of what remains; empty where there is none.
-std::string formula_command(const DiagnosedTraces& result, const TerminalOptions& options);
 
 }  // namespace tribofit

@@ -9,9 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "campaign_cells.hpp"
-#include "conditions_cells.hpp"
-#include "csv_cells.hpp"
+#include "condition_cells.hpp"
+#include "tribofit/campaign/group_values.hpp"
 #include "whole_folder.hpp"
 
 namespace tribofit {

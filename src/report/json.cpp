@@ -2,21 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
+#include "fit/assessment.hpp"
 #include "json_parts.hpp"
-#include "measures.hpp"
 #include "numbers.hpp"
-#include "tribofit/fit/identification.hpp"
+#include "segmentation/counts.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
 namespace {
-
-Json interval(double lower, double upper) {
-  return Json::array({number(lower), number(upper)});
-}
 
 std::string_view name_of(HealthItem::Status status) {
   switch (status) {
@@ -30,13 +25,6 @@ std::string_view name_of(HealthItem::Status status) {
   return "problem";
 }
 
-Json measure_json(const Estimate& measure, double unit) {
-  const Interval ci = interval_of(measure);
-  return {{"value", number(measure.value / unit)},
-          {"std_error", number(measure.std_error / unit)},
-          {"ci95", interval(ci.lower / unit, ci.upper / unit)}};
-}
-
 std::string_view name_of(MotionKind kind) {
   switch (kind) {
     case MotionKind::stick_slip:
@@ -48,105 +36,6 @@ std::string_view name_of(MotionKind kind) {
   }
   return "always-sticking";
 }
-
-}  // namespace
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
-
-Json tool_json(const JsonOptions& options) {
-  return {{"name", "tribofit"}, {"version", version}, {"arguments", options.arguments}};
-}
-
-Json conditions_json(const Conditions& conditions) {
-  return {{"radius_mm", number(conditions.radius.value / kMillimetre)},
-          {"speed_rpm", number(conditions.speed.value / kRpm)},
-          {"speed_source", text_or_null(conditions.speed.source)},
-          {"load_N", number(conditions.load.value)},
-          {"radius_source", text_or_null(conditions.radius.source)},
-          {"load_source", text_or_null(conditions.load.source)}};
-}
-
-Json trace_json(const Identification& result) {
-  return {{"path", result.path},
-          {"samples", result.samples},
-          {"duration_s", number(result.duration)},
-          {"rate_hz", number(result.rate)},
-          {"checksum", fmt::format("{:016x}", result.checksum)},
-          {"friction_unit", friction_unit(result.motion)},
-          {"trimmed_s", number(static_cast<double>(result.motion.trimmed) * result.motion.step)},
-          {"notes", result.notes}};
-}
-
-Json conditions_of(const Motion& motion) {
-  Json json = conditions_json(motion.conditions);
-  if (motion.steps.size() < 2) return json;
-  Json steps = Json::array();
-  for (const Step& step : motion.steps) {
-    Json item = {{"label", step.label}, {"begin", step.begin}, {"end", step.end}};
-    item.update(conditions_json(step.conditions));
-    steps.push_back(std::move(item));
-  }
-  json["steps"] = std::move(steps);
-  return json;
-}
-
-Json health_json(const Motion& motion) {
-  Json items = Json::array();
-  for (const HealthItem& item : motion.health) {
-    items.push_back({{"check", item.check}, {"status", name_of(item.status)}, {"message", item.message}});
-  }
-  return items;
-}
-
-Json stick_slip_json(const Identification& result) {
-  const Segmentation& s = result.segmentation;
-  Json json = {{"cycles", count_of_cycles(s)},
-               {"frequency_hz", measure_json(s.frequency, 1)},
-               {"amplitude_mm_s", number(s.amplitude.value / kMillimetre)},
-               {"rms_velocity_mm_s", number(s.rms_velocity / kMillimetre)},
-               {"stick_time_s", number(s.stick_time.value)},
-               {"amplitude_std_error_mm_s", number(s.amplitude.std_error / kMillimetre)},
-               {"stick_time_std_error_s", number(s.stick_time.std_error)},
-               {"slip_time_s", number(s.slip_time.value)},
-               {"slip_time_std_error_s", number(s.slip_time.std_error)},
-               {"slips", s.cycles.size()},
-               {"sticks_over_1_s", long_sticks(s).count},
-               {"longest_stick_s", number(long_sticks(s).longest)},
-               {"branch_difference", number(s.branch_difference.value)},
-               {"branch_difference_std_error", number(s.branch_difference.std_error)},
-               {"motion", name_of(s.kind)},
-               {"notes", s.notes}};
-  const SpectralPeak& peak = result.spectral_peak;
-  json["spectrum"] = {{"peak_hz", number(peak.frequency)},
-                      {"amplitude_mm_s", number(peak.amplitude / kMillimetre)},
-                      {"plain_fft_bin_hz", number(peak.bin_frequency)},
-                      {"plain_fft_bin_width_hz", number(peak.bin_width)}};
-  return json;
-}
-
-Json parameter_json(const FitParameter& p, const Motion& motion) {
-  const auto in_unit = [&](double si) { return number(shown(p, si)); };
-  return {{"name", p.parameter.name},
-          {"value", in_unit(p.value)},
-          {"std_error", in_unit(p.std_error)},
-          {"ci95", Json::array({in_unit(p.lower95), in_unit(p.upper95)})},
-          {"unit", shown_unit(p, motion)},
-          {"effect", text_or_null(p.effect)},
-          {"systematic_error", p.systematic > 0 ? in_unit(p.systematic) : Json(nullptr)},  // none: not declared
-          {"profile_ci95", Json::array({in_unit(p.profile_lower95), in_unit(p.profile_upper95)})},
-          {"start", in_unit(p.start)},
-          {"bounds", Json::array({number(p.parameter.lower), number(p.parameter.upper)})},
-          {"at_bound", p.at_bound},
-          {"determined", p.determined}};
-}
-
-namespace {
 
 /// In the units in which the parameters are shown; empty where it is not known.
 Json covariance_json(const Fit& fit) {
@@ -164,82 +53,194 @@ Json covariance_json(const Fit& fit) {
 }
 
 Json fit_json(const Fit& fit, const Motion& motion) {
-  Json parameters = Json::array();
-  for (const FitParameter& p : fit.parameters) parameters.push_back(parameter_json(p, motion));
-  Json correlations = Json::array();
-  for (const Correlation& c : fit.correlations) {
-    correlations.push_back(
-        {{"parameters", {fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name}},
-         {"value", number(c.value)}});
-  }
-  return {{"law", to_string(fit.model.law())},
-          {"protocol", to_string(fit.protocol)},
-          {"effects", fit.model.effect_keys()},
-          {"effect_names", fit.model.effect_names()},
-          {"parameters", std::move(parameters)},
-          {"error",
-           {{"rmse", number(fit.error.rmse)},
-            {"mean_relative", number(fit.error.mean_relative)},
-            {"max_relative", number(fit.error.max_relative)},
-            {"held_out_rmse", number(fit.error.held_out_rmse)}}},
-          {"floor_rmse", number(fit.floor.rmse)},
-          {"converged", fit.converged},
-          {"messages", fit.messages},
-          {"floor",
-           {{"noise", number(fit.floor.noise)}, {"scatter", number(fit.floor.scatter)}, {"source", fit.floor.source}}},
-          {"explained", number(fit.explained)},
-          {"stick_creep_rmse_mm_s", number(fit.stick_rmse / kMillimetre)},
-          {"fastest_mm_s", number(fit.fastest / kMillimetre)},
-          {"samples", fit.observations},
-          {"cycles", fit.cycles},
-          {"correlations", std::move(correlations)},
-          {"covariance", covariance_json(fit)},
-          {"degrees_of_freedom", number(fit.degrees_of_freedom)}};
+  const auto parameter = [&](const FitParameter& p) { return parameter_json(p, motion); };
+  const auto correlation = [&](const Correlation& c) {
+    return object("parameters", Json{fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name},
+                  "value", c.value);
+  };
+  const Json error = object("rmse", fit.error.rmse, "mean_relative", fit.error.mean_relative, "max_relative",
+                            fit.error.max_relative, "held_out_rmse", fit.error.held_out_rmse);
+  const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "source", fit.floor.source);
+  return object(
+      "law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects", fit.model.effect_keys(),
+      "effect_names", fit.model.effect_names(), "parameters", list_of(fit.parameters, parameter), "error", error,
+      "floor_rmse", fit.floor.rmse, "converged", fit.converged, "messages", fit.messages, "floor", floor, "explained",
+      fit.explained, "stick_creep_rmse_mm_s", fit.stick_rmse / kMillimetre, "fastest_mm_s", fit.fastest / kMillimetre,
+      "samples", fit.observations, "cycles", fit.cycles, "correlations", list_of(fit.correlations, correlation),
+      "covariance", covariance_json(fit), "degrees_of_freedom", fit.degrees_of_freedom);
 }
 
-Json comparison_json(const LawComparison& c) {
-  return {{"first", c.first},
-          {"second", c.second},
-          {"difference", number(c.comparison.difference)},
-          {"std_error", number(c.comparison.std_error)},
-          {"p_value", number(c.comparison.p_value)},
-          {"first_better", c.comparison.first_better}};
+Json shares_json(const std::vector<Share>& shares) {
+  return list_of(shares,
+                 [](const Share& s) { return object("variable", s.variable, "share", s.share, "p_value", s.p_value); });
+}
+
+Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
+  const auto finding = [&](const EffectFinding& f) {
+    return object("key", f.key, "status", to_string(f.status), "held_out_rmse", f.held_out_rmse, "error_reduction",
+                  f.error_reduction, "p_value", f.p_value, "parameters",
+                  list_of(f.parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }), "reason",
+                  f.reason, "held_out_std_error", f.held_out_std_error);
+  };
+  const auto rung = [](const Rung& r) {
+    return object("added", text_or_null(r.added), "held_out_rmse", r.held_out_rmse, "rmse", r.rmse, "equivalent",
+                  r.equivalent, "held_out_std_error", r.held_out_std_error);
+  };
+  const auto confirmation = [](const Confirmation& c) {
+    return object("path", c.path, "base_rmse", c.base_rmse, "final_rmse", c.final_rmse, "p_value", c.p_value);
+  };
+  return object("verdict", to_string(d.verdict), "law", to_string(d.law), "from_the_start", d.from_the_start, "where",
+                shares_json(d.where), "effects", list_of(d.effects, finding), "ladder", list_of(d.ladder, rung),
+                "floor_rmse", d.floor_rmse, "remaining", shares_json(d.remaining), "next_experiment", d.next_experiment,
+                "formula", text_or_null(d.formula), "confirmations", list_of(d.confirmations, confirmation), "messages",
+                d.messages);
+}
+
+/// What several traces are: lists of what each is.
+void add_traces(const std::vector<Identification>& traces, Json& json) {
+  const auto of_motion = [](Json make(const Motion&)) {
+    return [make](const Identification& trace) { return make(trace.motion); };
+  };
+  json["traces"] = list_of(traces, trace_json);
+  json["conditions"] = list_of(traces, of_motion(conditions_of));
+  json["health"] = Json::array();
+  for (std::size_t k = 0; k < traces.size(); ++k) {
+    for (Json item : health_json(traces[k].motion)) {
+      item["trace"] = k;
+      json["health"].push_back(std::move(item));
+    }
+  }
+  json["stick_slip"] = list_of(traces, stick_slip_json);
+}
+
+/// All parameters of traces diagnosed together are shared.
+void mark_as_shared(Json& holders) {
+  for (Json& holder : holders) {
+    for (Json& parameter : holder["parameters"]) parameter["trace"] = nullptr;
+  }
 }
 
 }  // namespace
 
+Json tool_json(const JsonOptions& options) {
+  return object("name", "tribofit", "version", version, "arguments", options.arguments);
+}
+
+Json conditions_json(const Conditions& c) {
+  return object("radius_mm", c.radius.value / kMillimetre, "speed_rpm", c.speed.value / kRpm, "speed_source",
+                text_or_null(c.speed.source), "load_N", c.load.value, "radius_source", text_or_null(c.radius.source),
+                "load_source", text_or_null(c.load.source));
+}
+
+Json trace_json(const Identification& r) {
+  return object("path", r.path, "samples", r.samples, "duration_s", r.duration, "rate_hz", r.rate, "checksum",
+                fmt::format("{:016x}", r.checksum), "friction_unit", friction_unit(r.motion), "trimmed_s",
+                static_cast<double>(r.motion.trimmed) * r.motion.step, "notes", r.notes);
+}
+
+Json conditions_of(const Motion& motion) {
+  Json json = conditions_json(motion.conditions);
+  if (motion.steps.size() < 2) return json;
+  json["steps"] = list_of(motion.steps, [](const Step& step) {
+    Json item = object("label", step.label, "begin", step.begin, "end", step.end);
+    item.update(conditions_json(step.conditions));
+    return item;
+  });
+  return json;
+}
+
+Json health_json(const Motion& motion) {
+  return list_of(motion.health, [](const HealthItem& item) {
+    return object("check", item.check, "status", name_of(item.status), "message", item.message);
+  });
+}
+
+Json stick_slip_json(const Identification& result) {
+  const Segmentation& s = result.segmentation;
+  const Interval ci = interval_of(s.frequency);
+  const SpectralPeak& peak = result.spectral_peak;
+  return object(
+      "cycles", count_of_cycles(s), "frequency_hz",
+      object("value", s.frequency.value, "std_error", s.frequency.std_error, "ci95", interval_json(ci.lower, ci.upper)),
+      "amplitude_mm_s", s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre,
+      "stick_time_s", s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
+      "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
+      s.slip_time.std_error, "slips", s.cycles.size(), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s",
+      long_sticks(s).longest, "branch_difference", s.branch_difference.value, "branch_difference_std_error",
+      s.branch_difference.std_error, "motion", name_of(s.kind), "notes", s.notes, "spectrum",
+      object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
+             peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
+}
+
+Json parameter_json(const FitParameter& p, const Motion& motion) {
+  const auto in_unit = [&](double si) { return shown(p, si); };
+  return object("name", p.parameter.name, "value", in_unit(p.value), "std_error", in_unit(p.std_error), "ci95",
+                interval_json(in_unit(p.lower95), in_unit(p.upper95)), "unit", shown_unit(p, motion), "effect",
+                text_or_null(p.effect), "systematic_error", positive_or_null(in_unit(p.systematic)), "profile_ci95",
+                interval_json(in_unit(p.profile_lower95), in_unit(p.profile_upper95)), "start", in_unit(p.start),
+                "bounds", interval_json(p.parameter.lower, p.parameter.upper), "at_bound", p.at_bound, "determined",
+                p.determined);
+}
+
 Json fits_json(std::span<const Fit> fits, const Motion& motion) {
-  Json list = Json::array();
-  for (const Fit& fit : fits) list.push_back(fit_json(fit, motion));
-  return list;
+  return list_of(fits, [&](const Fit& fit) { return fit_json(fit, motion); });
 }
 
 Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
-  Json list = Json::array();
-  for (const LawComparison& c : compare_laws(fits, best)) list.push_back(comparison_json(c));
-  return list;
+  return list_of(compare_laws(fits, best), [](const LawComparison& c) {
+    return object("first", c.first, "second", c.second, "difference", c.comparison.difference, "std_error",
+                  c.comparison.std_error, "p_value", c.comparison.p_value, "first_better", c.comparison.first_better);
+  });
+}
+
+std::string line_of(const Json& json) {
+  // File names and headers need not be valid UTF-8.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string text_of(const Json& json) {
-  // File names and headers need not be valid UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json identification_json(const Identification& result, const JsonOptions& options) {
-  return {{"tool", tool_json(options)},
-          {"trace", trace_json(result)},
-          {"conditions", conditions_of(result.motion)},
-          {"health", health_json(result.motion)},
-          {"stick_slip", stick_slip_json(result)},
-          {"fits", fits_json(result.fits, result.motion)},
-          {"best", result.fits.empty() ? Json(nullptr) : Json(result.best)},
-          {"law_comparison", comparisons_json(result.fits, result.best)},
-          {"analysed", result.analysed},
-          {"warnings", result.warnings}};
+Json record_json(const Identification& trace, const JsonOptions& options) {
+  return object("tool", tool_json(options), "trace", trace_json(trace), "conditions", conditions_of(trace.motion),
+                "health", health_json(trace.motion), "stick_slip", stick_slip_json(trace));
+}
+
+Json identification_json(const Identification& r, const JsonOptions& options) {
+  Json json = record_json(r, options);
+  add_members(json, "fits", fits_json(r.fits, r.motion), "best", r.fits.empty() ? Json(nullptr) : Json(r.best),
+              "law_comparison", comparisons_json(r.fits, r.best), "analysed", r.analysed, "warnings", r.warnings);
+  return json;
+}
+
+Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options) {
+  const Motion none;
+  const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
+  const bool one = result.traces.size() == 1;
+  Json json = one ? record_json(result.traces.front(), options) : object("tool", tool_json(options));
+  if (!one) add_traces(result.traces, json);
+  Json warnings = Json::array();
+  for (const Identification& trace : result.traces) {
+    for (const std::string& warning : trace.warnings) warnings.push_back(one ? warning : trace.path + ": " + warning);
+  }
+  add_members(json, "fits", fits_json(result.fits, motion), "best",
+              result.fits.empty() ? Json(nullptr) : Json(result.best), "law_comparison",
+              comparisons_json(result.fits, result.best), "analysed", result.analysed, "warnings", std::move(warnings),
+              "diagnosis", diagnosis_json(result.diagnosis, motion));
+  if (result.traces.size() > 1) {
+    mark_as_shared(json["fits"]);
+    mark_as_shared(json["diagnosis"]["effects"]);
+  }
+  return json;
 }
 
 std::string to_json(const Identification& result, const JsonOptions& options) {
   return text_of(identification_json(result, options));
+}
+
+std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
+  return text_of(diagnosed_json(result, options));
 }
 
 }  // namespace tribofit

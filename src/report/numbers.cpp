@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace tribofit {
 namespace {
@@ -99,106 +98,49 @@ double shown(const FitParameter& parameter, double value_in_si) {
   return value_in_si / parameter.parameter.si;
 }
 
-Table::Table(std::vector<std::string> header, std::vector<bool> left) : left_(std::move(left)) {
-  left_.resize(header.size(), false);
-  left_.front() = true;
-  rows_.push_back(std::move(header));
+std::string full_name(const FitParameter& p) {
+  return p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
 }
 
-void Table::add(std::vector<std::string> row) {
-  row.resize(rows_.front().size());
-  rows_.push_back(std::move(row));
+std::string value_text(const FitParameter& p, const Motion& motion) {
+  return with_error(shown(p, p.value), shown(p, p.std_error)) + unit_behind(shown_unit(p, motion));
 }
 
-std::vector<std::size_t> Table::widths() const {
-  std::vector<std::size_t> width(rows_.front().size(), 0);
-  for (const auto& row : rows_) {
-    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], displayed(row[k]));
+int places_of(const FitParameter& p) {
+  const double error = shown(p, p.std_error);
+  if (std::isfinite(error) && error > 0) return places_for(error);
+  const double value = std::abs(shown(p, p.value));
+  return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
+}
+
+std::string interval_text(double lower, double upper, int places) {
+  if (!std::isfinite(lower) && !std::isfinite(upper)) return "-";
+  return "[" + fixed(lower, places) + ", " + fixed(upper, places) + "]";
+}
+
+std::string p_value_text(double p_value) {
+  return p_value < 1e-4 ? "p < 0.0001" : "p = " + significant(p_value, 2);
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+}
+
+std::string unit_behind(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : " " + unit;
+}
+
+std::string enumerated(const std::vector<std::string>& names, std::string_view last) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) text += k + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
+    text += names[k];
   }
-  return width;
+  return text;
 }
 
-std::size_t Table::width() const {
-  std::size_t sum = 0;
-  for (const std::size_t column : widths()) sum += column + 2;
-  return sum - 2;
-}
-
-std::string Table::text(std::size_t indent, std::string_view header_on, std::string_view header_off) const {
-  const std::vector<std::size_t> width = widths();
-  std::string result;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    std::string line(indent, ' ');
-    for (std::size_t k = 0; k < rows_[i].size(); ++k) {
-      const std::string gap(width[k] - displayed(rows_[i][k]), ' ');
-      if (k > 0) line += "  ";
-      line += left_[k] ? rows_[i][k] + gap : gap + rows_[i][k];
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    result += i == 0 ? std::string(header_on) + line + std::string(header_off) : line;
-    result += '\n';
-  }
-  return result;
-}
-
-std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent) {
-  std::string result;
-  std::size_t column = indent;
-  while (!sentence.empty()) {
-    const std::size_t blank = sentence.find(' ');
-    const std::string_view word = sentence.substr(0, blank);
-    const std::size_t length = displayed(word);
-    if (column > indent) {
-      const bool fits = column + 1 + length <= width;
-      result += fits ? std::string(" ") : "\n" + std::string(indent, ' ');
-      column = fits ? column + 1 : indent;
-    }
-    result += word;
-    column += length;
-    sentence.remove_prefix(blank == std::string_view::npos ? sentence.size() : blank + 1);
-  }
-  return result;
-}
-
-namespace {
-
-/// The words of a command; a quoted one stays whole.
-std::vector<std::string> words_of(const std::string& command) {
-  std::vector<std::string> words(1);
-  bool quoted = false;
-  for (const char c : command) {
-    if (c == '\'') quoted = !quoted;
-    if (c == ' ' && !quoted) {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
-}
-
-}  // namespace
-
-std::size_t displayed(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-std::string folded_command(const std::string& command, std::size_t width) {
-  constexpr std::size_t kIndent = 2, kContinued = 6;
-  std::string text(kIndent, ' ');
-  std::size_t column = kIndent;
-  for (const std::string& word : words_of(command)) {
-    const bool first = column == kIndent;
-    const std::size_t length = displayed(word);
-    if (!first && column + 1 + length + 2 > width) {
-      text += " \\\n" + std::string(kContinued, ' ') + word;
-      column = kContinued + length;
-      continue;
-    }
-    text += (first ? "" : " ") + word;
-    column += length + (first ? 0 : 1);
-  }
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
   return text;
 }
 

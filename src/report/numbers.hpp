@@ -51,32 +51,31 @@ std::string shown_unit(const FitParameter& parameter, const Motion& motion);
 /// A SI quantity of this parameter in the unit people read.
 double shown(const FitParameter& parameter, double value_in_si);
 
-/// A table whose columns line up; the first is left-aligned, numbers to the right.
-class Table {
- public:
-  explicit Table(std::vector<std::string> header, std::vector<bool> left = {});
-  void add(std::vector<std::string> row);
-  bool empty() const { return rows_.size() < 2; }
-  /// Columns of a terminal that its lines take, without indentation.
-  std::size_t width() const;
-  /// Lines with `indent` blanks before each; the header line is passed through `emphasise` codes when given.
-  std::string text(std::size_t indent, std::string_view header_on = "", std::string_view header_off = "") const;
+/// "mu_s", "frictional-lag.tau".
+std::string full_name(const FitParameter& parameter);
 
- private:
-  std::vector<std::size_t> widths() const;
+/// "0.048 +/- 0.001 mm"; a number without unit has none behind it.
+std::string value_text(const FitParameter& parameter, const Motion& motion);
 
-  std::vector<std::vector<std::string>> rows_;
-  std::vector<bool> left_;
-};
+/// Decimal places of a parameter's value: those its standard error allows, else five significant digits.
+int places_of(const FitParameter& parameter);
 
-/// Columns a text takes: bytes that continue a UTF-8 character take none.
-std::size_t displayed(std::string_view text);
+/// "[0.507, 0.511]"; "-" where neither end is known.
+std::string interval_text(double lower, double upper, int places);
 
-/// A command on lines no longer than `width`, as a shell reads them: indented, and broken between words with a
-/// backslash.
-std::string folded_command(const std::string& command, std::size_t width);
+/// "p < 0.0001" or "p = 0.03".
+std::string p_value_text(double p_value);
 
-/// `sentence` broken at blanks to `width` columns, continuation lines indented by `indent`.
-std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent);
+/// "slope [mm/s]", or the name alone where the unit is "1" or empty.
+std::string with_unit(const std::string& name, const std::string& unit);
+
+/// " mm/s" behind a number; nothing where the unit is "1".
+std::string unit_behind(const std::string& unit);
+
+/// "a", "a and b", "a, b and c".
+std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
+
+/// "Most"; the rest of the text as it is.
+std::string capitalised(std::string text);
 
 }  // namespace tribofit

@@ -1,36 +1,43 @@
 #include "tribofit/report/pooled.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <system_error>
 
-#include "campaign_cells.hpp"
-#include "conditions_cells.hpp"
-#include "csv_cells.hpp"
-#include "json_parts.hpp"
+#include "condition_cells.hpp"
+#include "csv_text.hpp"
 #include "numbers.hpp"
-#include "style.hpp"
 #include "tribofit/campaign/earlier.hpp"
+#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr double kChance = 0.05;  ///< corrected p-value above which a trend is not spoken of
-
 constexpr const char* kValueColumns =
     "unit,runs,mean,mean_std_error,value,std_error,ci95_lower,ci95_upper,statistical,between_runs,systematic";
 
-std::string cells(const PooledValue& value) {
-  std::string text = cell(value.unit) + "," + std::to_string(value.runs);
-  for (const double x : {value.mean, value.standard_error_of_mean, value.value, value.std_error, value.lower95,
-                         value.upper95, value.statistical, value.between, value.systematic}) {
-    text += "," + cell(x);
-  }
-  return text;
+/// The members that kValueColumns names.
+Json numbers_json(const PooledValue& v) {
+  return object("unit", v.unit, "runs", v.runs, "mean", v.mean, "mean_std_error", v.standard_error_of_mean, "value",
+                v.value, "std_error", v.std_error, "ci95", interval_json(v.lower95, v.upper95), "statistical",
+                v.statistical, "between_runs", v.between, "systematic", v.systematic);
+}
+
+Json value_json(const PooledValue& v) {
+  Json json = object("name", v.name, "effect", text_or_null(v.effect));
+  json.update(numbers_json(v));
+  return json;
+}
+
+Json values_json(const std::vector<PooledValue>& values) {
+  return list_of(values, value_json);
+}
+
+Json trend_json(const Trend& t) {
+  return object("law", t.law, "name", t.parameter, "unit", t.unit, "condition", t.condition, "condition_unit",
+                t.condition_unit, "runs", t.runs, "slope", t.slope, "std_error", t.std_error, "ci95",
+                interval_json(t.lower95, t.upper95), "p_value", t.p_value, "p_corrected", t.p_corrected);
 }
 
 std::string pooled_csv(const Pooled& pooled) {
@@ -38,15 +45,13 @@ std::string pooled_csv(const Pooled& pooled) {
   std::string text = columns.header() + ",law,protocol,name," + kValueColumns + "\n";
   for (const PooledGroup& group : pooled.groups) {
     const std::string conditions = columns.of(group.conditions, group.others);
+    const auto add = [&](const PooledValue& value, const std::string& law, const std::string& protocol) {
+      text += csv_line({conditions, law, protocol, cell(full_name(value)), cells(numbers_json(value))});
+    };
     for (const PooledGroup::OfFit& fit : group.fits) {
-      for (const PooledValue& value : fit.parameters) {
-        text +=
-            fmt::format("{},{},{},{},{}\n", conditions, fit.law, fit.protocol, cell(full_name(value)), cells(value));
-      }
+      for (const PooledValue& value : fit.parameters) add(value, fit.law, fit.protocol);
     }
-    for (const PooledValue& value : group.measures) {
-      text += fmt::format("{},,,{},{}\n", conditions, value.name, cells(value));
-    }
+    for (const PooledValue& value : group.measures) add(value, "", "");
   }
   return text;
 }
@@ -56,14 +61,14 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
   for (const SharedFit& fit : pooled.shared) {
     for (const SharedFit::Parameter& common : fit.common) {
       for (std::size_t l = 0; l < common.values.size(); ++l) {
-        text += fmt::format("{},{},{},{},,{}\n", fit.law, cell(common.name), cell(common.condition),
-                            cell(common.levels[l]), cells(common.values[l]));
+        text += csv_line({fit.law, cell(common.name), cell(common.condition), cell(common.levels[l]), "",
+                          cells(numbers_json(common.values[l]))});
       }
     }
     for (const SharedFit::OfRun& run : fit.runs) {
       for (std::size_t k = 0; k < fit.names.size(); ++k) {
-        text += fmt::format("{},{},,,{},{},1,,,{},{},,,,,\n", fit.law, cell(fit.names[k]), cell(runs[run.run].run.name),
-                            cell(fit.units[k]), cell(run.value[k]), cell(run.std_error[k]));
+        text += csv_line({fit.law, cell(fit.names[k]), "", "", cell(runs[run.run].run.name), cell(fit.units[k]), "1",
+                          "", "", cell(run.value[k]), cell(run.std_error[k]), "", "", "", "", ""});
       }
     }
   }
@@ -73,193 +78,74 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
 std::string trends_csv(const Trends& trends) {
   std::string text =
       "law,name,unit,condition,condition_unit,runs,slope,std_error,ci95_lower,ci95_upper,p_value,p_corrected\n";
-  for (const Trend& t : trends.trends) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", t.law, cell(t.parameter), cell(t.unit),
-                        cell(t.condition), cell(t.condition_unit), t.runs, cell(t.slope), cell(t.std_error),
-                        cell(t.lower95), cell(t.upper95), cell(t.p_value), cell(t.p_corrected));
-  }
+  for (const Trend& trend : trends.trends) text += cells(trend_json(trend)) + "\n";
   return text;
 }
 
-Json json_of(const PooledValue& value) {
-  return {{"name", value.name},
-          {"effect", text_or_null(value.effect)},
-          {"unit", value.unit},
-          {"runs", value.runs},
-          {"mean", number(value.mean)},
-          {"mean_std_error", number(value.standard_error_of_mean)},
-          {"value", number(value.value)},
-          {"std_error", number(value.std_error)},
-          {"ci95", {number(value.lower95), number(value.upper95)}},
-          {"statistical", number(value.statistical)},
-          {"between_runs", number(value.between)},
-          {"systematic", number(value.systematic)}};
-}
-
-Json list_of(const std::vector<PooledValue>& values) {
-  Json list = Json::array();
-  for (const PooledValue& value : values) list.push_back(json_of(value));
-  return list;
-}
-
-Json json_of(const PooledGroup& group, std::span<const RunResult> runs) {
-  Json names = Json::array(), fits = Json::array(), others = Json::array();
-  for (const std::size_t r : group.runs) names.push_back(runs[r].run.name);
-  for (const OtherCondition& other : group.others) others.push_back({{"name", other.name}, {"value", other.value}});
-  for (const PooledGroup::OfFit& fit : group.fits) {
-    fits.push_back({{"law", fit.law},
-                    {"protocol", fit.protocol},
-                    {"parameters", list_of(fit.parameters)},
-                    {"best_in", fit.best_in}});
-  }
-  return {{"conditions", conditions_json(group.conditions)},
-          {"others", std::move(others)},
-          {"runs", std::move(names)},
-          {"fits", std::move(fits)},
-          {"measures", list_of(group.measures)}};
-}
-
-Json json_of(const SharedFit& fit, std::span<const RunResult> runs) {
-  Json common = Json::array(), each = Json::array();
-  for (const SharedFit::Parameter& parameter : fit.common) {
-    common.push_back({{"name", parameter.name},
-                      {"condition", text_or_null(parameter.condition)},
-                      {"levels", parameter.levels},
-                      {"values", list_of(parameter.values)}});
-  }
-  for (const SharedFit::OfRun& run : fit.runs) {
+Json shared_json(const SharedFit& fit, std::span<const RunResult> runs) {
+  const auto common = [](const SharedFit::Parameter& p) {
+    return object("name", p.name, "condition", text_or_null(p.condition), "levels", p.levels, "values",
+                  values_json(p.values));
+  };
+  const auto each = [&](const SharedFit::OfRun& run) {
     Json parameters = Json::array();
     for (std::size_t k = 0; k < fit.names.size(); ++k) {
-      parameters.push_back({{"name", fit.names[k]},
-                            {"unit", fit.units[k]},
-                            {"value", number(run.value[k])},
-                            {"std_error", number(run.std_error[k])}});
+      parameters.push_back(
+          object("name", fit.names[k], "unit", fit.units[k], "value", run.value[k], "std_error", run.std_error[k]));
     }
-    each.push_back({{"name", runs[run.run].run.name}, {"parameters", std::move(parameters)}});
-  }
-  return {{"law", fit.law}, {"common", std::move(common)}, {"runs", std::move(each)}, {"notes", fit.notes}};
-}
-
-Json json_of(const Trend& t) {
-  return {{"law", t.law},
-          {"name", t.parameter},
-          {"unit", t.unit},
-          {"condition", t.condition},
-          {"condition_unit", t.condition_unit},
-          {"runs", t.runs},
-          {"slope", number(t.slope)},
-          {"std_error", number(t.std_error)},
-          {"ci95", {number(t.lower95), number(t.upper95)}},
-          {"p_value", number(t.p_value)},
-          {"p_corrected", number(t.p_corrected)}};
+    return object("name", runs[run.run].run.name, "parameters", std::move(parameters));
+  };
+  return object("law", fit.law, "common", list_of(fit.common, common), "runs", list_of(fit.runs, each), "notes",
+                fit.notes);
 }
 
 std::string pooled_json(const Pooled& pooled, std::span<const RunResult> runs) {
-  Json groups = Json::array(), shared = Json::array(), trends = Json::array(), confounded = Json::array();
-  for (const PooledGroup& group : pooled.groups) groups.push_back(json_of(group, runs));
-  for (const SharedFit& fit : pooled.shared) shared.push_back(json_of(fit, runs));
-  for (const Trend& trend : pooled.trends.trends) trends.push_back(json_of(trend));
-  for (const Confounded& pair : pooled.trends.confounded) {
-    confounded.push_back({{"a", pair.a}, {"b", pair.b}, {"correlation", number(pair.correlation)}});
-  }
-  return text_of({{"tool", {{"name", "tribofit"}, {"version", version}}},
-                  {"groups", std::move(groups)},
-                  {"shared", std::move(shared)},
-                  {"trends", std::move(trends)},
-                  {"confounded", std::move(confounded)},
-                  {"warnings", pooled.trends.warnings}});
+  const auto fit = [](const PooledGroup::OfFit& f) {
+    return object("law", f.law, "protocol", f.protocol, "parameters", values_json(f.parameters), "best_in", f.best_in);
+  };
+  const auto group = [&](const PooledGroup& g) {
+    return object("conditions", conditions_json(g.conditions), "others", others_json(g.others), "runs",
+                  list_of(g.runs, [&](std::size_t r) { return Json(runs[r].run.name); }), "fits", list_of(g.fits, fit),
+                  "measures", values_json(g.measures));
+  };
+  const auto confounded = [](const Confounded& c) { return object("a", c.a, "b", c.b, "correlation", c.correlation); };
+  return text_of(object("tool", object("name", "tribofit", "version", version), "groups", list_of(pooled.groups, group),
+                        "shared", list_of(pooled.shared, [&](const SharedFit& s) { return shared_json(s, runs); }),
+                        "trends", list_of(pooled.trends.trends, trend_json), "confounded",
+                        list_of(pooled.trends.confounded, confounded), "warnings", pooled.trends.warnings));
 }
 
-std::string shown(double value, double unit) {
-  return std::isfinite(value) ? brief(value / unit) : "-";
+Json group_json(const PooledGroup& group) {
+  Json others = Json::object();
+  for (const OtherCondition& other : group.others) others[other.name] = other.value;
+  return object("radius_mm", group.conditions.radius.value / kMillimetre, "speed_rpm",
+                group.conditions.speed.value / kRpm, "load_N", group.conditions.load.value, "others",
+                std::move(others));
 }
 
-std::string conditions_text(const PooledGroup& group) {
-  std::string text;
-  for (const OtherCondition& other : group.others) text += (text.empty() ? "" : ", ") + other.name + " " + other.value;
-  return text;
+/// A compared value in the order of comparison.csv, without its conditions.
+Json compared_json(const ComparedValue& v) {
+  return object("name", v.earlier.name, "law", text_or_null(v.law), "protocol", text_or_null(v.protocol), "unit",
+                v.ours.unit, "earlier", v.earlier.value, "earlier_std_error", v.earlier.std_error, "value",
+                v.ours.value, "std_error", v.ours.std_error, "systematic_error", positive_or_null(v.ours.systematic),
+                "ci95", interval_json(v.ours.lower95, v.ours.upper95), "runs", v.ours.runs, "difference_percent",
+                v.percent, "difference_in_std_errors", v.in_std_errors, "earlier_inside_ci95", v.inside95, "line",
+                v.earlier.line, "column", v.earlier.column);
 }
 
-std::string interval(const PooledValue& value) {
-  if (value.runs == 0) return "-";
-  return value.runs == 1 ? with_error(value.value, value.std_error) + " *" : with_error(value.value, value.std_error);
+Json preference_json(const LawPreference& p) {
+  if (p.runs == 0) return nullptr;
+  return object("better", p.better, "other", p.other, "runs", p.runs, "better_in", p.better_in, "ratio", p.ratio,
+                "p_value", p.p_value);
 }
 
-std::string repeats_table(const Pooled& pooled, const Style& style, const char* protocol) {
-  constexpr std::size_t kMostRows = 40;
-  Table table({"mm", "rpm", "N", "other", "runs", "law", "mu_s", "mu_k", "alpha, beta [s/mm]", "best in"},
-              {false, false, false, true, false, true});
-  std::size_t rows = 0;
-  for (const PooledGroup& group : pooled.groups) {
-    for (const PooledGroup::OfFit& fit : group.fits) {
-      if (fit.protocol != protocol || rows++ >= kMostRows) continue;
-      std::vector<std::string> row = {shown(group.conditions.radius.value, kMillimetre),
-                                      shown(group.conditions.speed.value, kRpm),
-                                      shown(group.conditions.load.value, 1),
-                                      conditions_text(group),
-                                      std::to_string(group.runs.size()),
-                                      fit.law};
-      for (std::size_t k = 0; k < 3; ++k) row.push_back(k < fit.parameters.size() ? interval(fit.parameters[k]) : "");
-      row.push_back(std::to_string(fit.best_in));
-      table.add(std::move(row));
-    }
-  }
-  std::string text = table.text(2, style.bold, style.off);
-  if (rows > kMostRows) text += fmt::format("  ... and {} rows more: see pooled.csv\n", rows - kMostRows);
-  return text;
-}
-
-std::string shared_table(const Pooled& pooled, const Style& style) {
-  std::string text;
-  for (const SharedFit& fit : pooled.shared) {
-    text += style.heading(fmt::format("{} law, parameters that runs have in common", fit.law));
-    Table table({"parameter", "over", "runs", "value", "95 % interval", "unit", "between runs"}, {true, true});
-    for (const SharedFit::Parameter& common : fit.common) {
-      for (std::size_t l = 0; l < common.values.size(); ++l) {
-        const PooledValue& v = common.values[l];
-        const int places = places_for(v.std_error);
-        table.add({common.name, common.condition.empty() ? "all runs" : common.levels[l], std::to_string(v.runs),
-                   with_error(v.value, v.std_error),
-                   fmt::format("[{}, {}]", fixed(v.lower95, places), fixed(v.upper95, places)), v.unit,
-                   std::isfinite(v.between) ? significant(v.between, 2) : "-"});
-      }
-    }
-    text += table.text(2, style.bold, style.off);
-    for (const std::string& note : fit.notes) text += "  " + wrapped(note, style.width, 2) + "\n";
-  }
-  return text;
-}
-
-std::string trends_text(const Trends& trends, const Style& style) {
-  std::string text;
-  for (const std::string& sentence : trend_sentences(trends)) text += "  " + wrapped(sentence, style.width, 4) + "\n";
-  if (!text.empty()) text = style.heading("Trends") + text;
-  for (const std::string& warning : trends.warnings) {
-    text += "  " + std::string(style.yellow) + "warning" + std::string(style.off) + "  " +
-            wrapped(warning, style.width, 11) + "\n";
-  }
-  return text;
+Json error_json(const ErrorStatement& e, const PooledGroup& group) {
+  return object("conditions", group_json(group), "law", e.law, "protocol", e.protocol, "runs", e.runs,
+                "share_below_0.08", e.below_limit, "share_of_bins_below_0.08", e.bins_below_limit, "largest_of_bins",
+                e.largest_of_bins, "mean", e.mean_relative, "largest", e.max_relative);
 }
 
 }  // namespace
-
-std::vector<std::string> trend_sentences(const Trends& trends) {
-  std::vector<std::string> out;
-  for (const Trend& t : trends.trends) {
-    // What goes exactly with a condition before it is named in the warnings.
-    const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
-      return pair.b == t.condition && std::abs(pair.correlation) > 0.999;
-    });
-    if (t.p_corrected > kChance || said) continue;
-    const std::string per = t.condition == "order" ? "run" : t.condition_unit;
-    const std::string unit = (t.unit == "1" ? "" : " " + t.unit) + (per.empty() ? "" : " per " + per);
-    out.push_back(fmt::format("{} ({} law) {} with {}: {}{} (p = {:.2g}, corrected for {} trends)", t.parameter, t.law,
-                              t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error), unit,
-                              t.p_corrected, trends.trends.size()));
-  }
-  if (out.empty() && !trends.trends.empty()) out.push_back("none that is no chance");
-  return out;
-}
 
 Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing) {
   Pooled out;
@@ -283,15 +169,36 @@ void write_pooled(const std::string& folder, std::span<const RunResult> runs, co
   write("pooled.json", pooled_json(pooled, runs));
 }
 
-std::string pooled_table(const Pooled& pooled, const TerminalOptions& options) {
-  const Style style(options.colour, options.width);
-  if (pooled.groups.empty()) return "";
-  std::string text = style.heading("Repeats together (joint protocol; +/- is one standard error, from run to run)");
-  text += repeats_table(pooled, style, "joint");
-  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
-                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
-  if (single) text += "  * one run: what differs from run to run is not in its error\n";
-  return text + shared_table(pooled, style) + trends_text(pooled.trends, style);
+std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups) {
+  std::string text =
+      "radius_mm,speed_rpm,load_N,others,name,law,protocol,unit,earlier,earlier_std_error,value,std_error,"
+      "systematic_error,lower95,upper95,runs,difference_percent,difference_in_std_errors,earlier_inside_95,line,"
+      "column\n";
+  for (const ComparedValue& v : report.values.values) {
+    const PooledGroup& group = groups[v.group];
+    Json conditions = group_json(group);
+    conditions["others"] = group.others.empty() ? "" : conditions_text({}, group.others);
+    text += csv_line({cells(conditions), cells(compared_json(v))});
+  }
+  return text;
+}
+
+std::string comparison_json(const ComparisonReport& report, std::span<const PooledGroup> groups) {
+  const auto value = [&](const ComparedValue& v) {
+    Json json = object("conditions", group_json(groups[v.group]));
+    json.update(compared_json(v));
+    return json;
+  };
+  const Statements& s = report.statements;
+  Json preference = Json::array();
+  for (std::size_t g = 0; g < s.preference.size(); ++g) {
+    if (s.preference[g].runs == 0) continue;
+    preference.push_back(object("conditions", group_json(groups[g]), "laws", preference_json(s.preference[g])));
+  }
+  const auto error = [&](const ErrorStatement& e) { return error_json(e, groups[e.group]); };
+  return line_of(object("path", report.values.path, "values", list_of(report.values.values, value), "unmatched",
+                        report.values.unmatched, "relative_error", list_of(s.errors, error), "law_preference",
+                        object("overall", preference_json(s.overall), "by_conditions", std::move(preference))));
 }
 
 }  // namespace tribofit

@@ -2,14 +2,11 @@
 
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "fit_parts.hpp"
+#include "record_parts.hpp"
 #include "report/charts/trace_charts.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/report.hpp"
-#include "tribofit/report/terminal.hpp"
-#include "verdict.hpp"
 
 namespace tribofit {
 
@@ -18,38 +15,34 @@ namespace tribofit {
 TerminalOptions terminal_like(const ReportOptions& options);
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
-std::string curve_name(const Fit& fit);
-bool has_parameters(const Fit& fit);
 
 ReportText plain_text(std::string text);
 ReportText soft_text(std::string text);
 ReportText heading_text(std::string text);
+ReportText item_text(std::string text);
+ReportText command_text(std::string text);
 
 /// Adds charts to a section.
 void add(std::vector<Chart> charts, ReportSection& section);
 
+/// A report that says what it is; kind: "diagnosis", made: "Diagnosis".
+Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead);
+
 /// Length, conditions and stick-slip of one trace.
-std::vector<std::pair<std::string, std::string>> facts_of(const Identification& trace);
-/// Checks, the worst first; with the trace each belongs to where there are several.
-ReportTable health_table(std::span<const Identification> traces);
-/// Every fit with its parameters, errors, correlations and notes.
-void add_parameters(std::span<const Fit> fits, std::size_t best, const Motion& motion, const ReportOptions& options,
-                    ReportSection& section);
+Facts facts_of(const Identification& trace);
 
 /// Charts of one trace in the sections that a report has once.
 struct TraceSections {
   ReportSection trace{"trace", "Model and measurement", {}}, law{"law", "Friction law", {}},
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
   void add_trace(const DrawnTrace& drawn);
+  /// Adds those that hold anything.
+  void move_into(Report& report);
 };
 
-/// What was run: the command, the inputs with their checksums, how they were read, what to do next.
+/// What was run: the command and what made the report; `more` is said beside it.
+ReportSection run_section(const std::string& command, const std::string& more = "");
+/// The same with the inputs and their checksums, how they were read, what to do next.
 ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next);
-
-/// Those of the sections that hold anything.
-void append_filled(std::vector<ReportSection> sections, Report& report);
-
-/// "Friction law by tribofit 0.1.0".
-std::string made_by(const std::string& what);
 
 }  // namespace tribofit

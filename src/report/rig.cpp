@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "style.hpp"
-#include "terminal_parts.hpp"
-#include "tribofit/fit/identification.hpp"
-#include "verdict.hpp"
+#include "record_parts.hpp"
 
 namespace tribofit {
 namespace {
@@ -36,88 +32,81 @@ std::array<Shown, 6> shown_values(const RigFit& rig) {
             per ? "stick_slope_stiffness_per_mm" : "stick_slope_stiffness_N_per_mm"}}};
 }
 
-std::string table_of(const RigFit& rig, const Style& style) {
-  Table table({"quantity", "value", "std error", "", "95 % interval", "unit", ""},
-              {true, false, false, false, false, true, true});
+ReportTable rig_table(const RigFit& rig) {
+  ReportTable table;
+  table.text({"quantity"}).numbers({"value", "std error"}).numbers({"relative"}, 1).numbers({"95 % interval"});
+  table.text({"unit", ""});
   for (const Shown& q : shown_values(rig)) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
     const int places = places_for(v.std_error / q.si);
-    const std::string remark =
-        v.systematic > 0 ? fmt::format("+/- {} systematic", significant(v.systematic / q.si, 2)) : "";
-    table.add({q.name, fixed(v.value / q.si, places), fixed(v.std_error / q.si, places),
-               v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "",
-               fmt::format("[{}, {}]", fixed(v.lower95 / q.si, places), fixed(v.upper95 / q.si, places)), q.unit,
-               remark});
+    table.rows.push_back(
+        {q.name, fixed(v.value / q.si, places), fixed(v.std_error / q.si, places),
+         v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "",
+         interval_text(v.lower95 / q.si, v.upper95 / q.si, places), q.unit,
+         v.systematic > 0 ? fmt::format("+/- {} systematic", significant(v.systematic / q.si, 2)) : ""});
   }
-  return table.empty() ? "" : table.text(2, style.dim, style.off);
+  return table;
 }
 
-std::string rig_lines(const RigFit& rig, const Style& style) {
-  const std::string table = table_of(rig, style);
-  if (table.empty() && rig.messages.empty()) return "";
-  std::string text = style.heading("Rig") + table;
+void add_rig(const RigFit& rig, TerminalText& text) {
+  const ReportTable table = rig_table(rig);
+  if (table.rows.empty() && rig.messages.empty()) return;
+  text.heading("Rig");
+  if (!table.rows.empty()) text.table(table);
   if (rig.stiffness.determined && rig.mass.determined) {
-    std::string from = fmt::format("force balance over {} cycles, leaves {} {} in {} ms means", rig.cycles,
-                                   significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
-                                   significant(rig.smoothing / kMillisecond, 2));
-    text += item(style, "from", from);
+    text.item("from", fmt::format("force balance over {} cycles; it leaves {} {} in means over {} ms", rig.cycles,
+                                  significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
+                                  significant(rig.smoothing / kMillisecond, 2)));
     if (rig.stick_slope_stiffness.determined) {
-      text += item(style, "check",
-                   fmt::format("the balance's stiffness is {:+.1f} standard errors from that by the slope of stick, "
-                               "N (dmu/dt)/(omega r)",
-                               rig.stick_slope_difference));
+      text.item("check", fmt::format("the stiffness from the force balance is {:+.1f} standard errors from that by the "
+                                     "slope of stick, N (dmu/dt)/(omega r)",
+                                     rig.stick_slope_difference));
     }
   }
-  for (const std::string& message : rig.messages) text += item(style, "note", message);
-  return text;
+  for (const std::string& message : rig.messages) text.item("note", message);
 }
 
 Suggestion next_of(const RigIdentification& result, const TerminalOptions& options) {
   const Identification& trace = result.trace;
-  const auto of_verb = [&](const std::string& verb, const std::string& more) {
-    TerminalOptions known = options;
-    std::erase(known.arguments, "--keep-high-pass");
-    if (!verb.empty()) known.arguments.insert(known.arguments.begin(), verb);
-    return command_line(known, more, trace.path);
+  const auto of_verb = [&](std::vector<std::string> verb, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = words_of(std::move(verb), options.arguments, {"--keep-high-pass"});
+    words.insert(words.end(), more.begin(), more.end());
+    return command_line(words, {trace.path});
   };
-  if (trace.segmentation.kind == MotionKind::stick_slip && trace.motion.high_pass == 0 && trace.motion.size() > 0 &&
-      std::find(options.arguments.begin(), options.arguments.end(), "--keep-high-pass") != options.arguments.end()) {
-    return {"to undo the high-pass", of_verb("rig", "")};
+  const bool sticks = trace.segmentation.kind == MotionKind::stick_slip;
+  if (sticks && trace.motion.high_pass == 0 && trace.motion.size() > 0 &&
+      has_option(options.arguments, "--keep-high-pass")) {
+    return {"to undo the high-pass", of_verb({"rig"})};
   }
-  if (!result.rig.determined) return {"to see the trace, its health and its law", of_verb("", "")};
-  if (trace.segmentation.kind != MotionKind::stick_slip) {
-    return {"to see where its law fails and which effect is missing", of_verb("diagnose", "")};
-  }
-  const bool placed = trace.motion.conditions.radius.known();
-  return {"to lay the motion that law and rig predict beside the measured one",
-          of_verb("twin", placed ? "" : "--radius 15mm")};
+  if (!result.rig.determined) return {"to see the trace, its health and its law", of_verb({})};
+  if (!sticks) return {"to see where its law fails and which effect is missing", of_verb({"diagnose"})};
+  std::vector<std::string> radius;
+  if (!trace.motion.conditions.radius.known()) radius = {"--radius", "15mm"};
+  return {"to put the motion that law and rig predict beside the measured one", of_verb({"twin"}, radius)};
 }
 
 std::string verdict_on(const RigFit& rig) {
-  std::string text = fmt::format("The block is {} {} on {} {}; it swings at {} Hz and loses by a damping ratio of {}.",
+  if (!rig.determined) return "The rig could not be identified: " + rig.reason + ".";
+  std::string text = fmt::format("The block is {} {} on {} {}; its natural frequency is {} Hz, its damping ratio {}.",
                                  significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
                                  significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
                                  significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2));
-  if (rig.damping_doubtful) text += " Do not rely on the damping: a note says what is in its way.";
+  if (rig.damping_doubtful) text += " Do not rely on the damping: a note says why.";
   return text;
 }
 
 Json value_json(const RigValue& v, double si) {
   if (!v.determined) return nullptr;
-  return {{"value", number(v.value / si)},
-          {"std_error", number(v.std_error / si)},
-          {"ci95", Json::array({number(v.lower95 / si), number(v.upper95 / si)})},
-          {"systematic_error", v.systematic > 0 ? number(v.systematic / si) : Json(nullptr)}};
+  return object("value", v.value / si, "std_error", v.std_error / si, "ci95",
+                interval_json(v.lower95 / si, v.upper95 / si), "systematic_error", positive_or_null(v.systematic / si));
 }
 
 }  // namespace
 
 Json rig_json(const RigFit& rig) {
-  Json json = {{"determined", rig.determined},
-               {"reason", text_or_null(rig.reason)},
-               {"per_unit_load", rig.per_unit_load},
-               {"cycles", rig.cycles}};
+  Json json = object("determined", rig.determined, "reason", text_or_null(rig.reason), "per_unit_load",
+                     rig.per_unit_load, "cycles", rig.cycles);
   const auto values = shown_values(rig);
   for (const Shown& q : values) json[q.key] = value_json(q.value, q.si);
   Json rows = Json::array();
@@ -126,48 +115,29 @@ Json rig_json(const RigFit& rig) {
     for (std::size_t j = 0; j < 3; ++j) row.push_back(number(rig.covariance[3 * i + j] / values[i].si / values[j].si));
     rows.push_back(std::move(row));
   }
-  json["covariance"] = std::move(rows);
-  json["stick_slope_difference_in_std_errors"] =
-      rig.stick_slope_stiffness.determined && rig.mass.determined ? number(rig.stick_slope_difference) : Json(nullptr);
-  json["mass_below_declared"] = rig.mass_below_declared;
-  json["mass_below_kg"] = value_json(rig.mass_below, 1);
-  json["damping_doubtful"] = rig.damping_doubtful;
-  json["delay_ms"] = value_json(rig.delay, kMillisecond);
-  json["high_pass_hz"] = value_json(rig.high_pass, 1);
-  json[rig.per_unit_load ? "residual_rmse" : "residual_rmse_N"] = number(rig.residual_rmse);
-  json["smoothing_ms"] = number(rig.smoothing / kMillisecond);
-  json["degrees_of_freedom"] = number(rig.degrees_of_freedom);
-  json["messages"] = rig.messages;
+  const bool checked = rig.stick_slope_stiffness.determined && rig.mass.determined;
+  add_members(json, "covariance", std::move(rows), "stick_slope_difference_in_std_errors",
+              checked ? number(rig.stick_slope_difference) : Json(nullptr), "mass_below_declared",
+              rig.mass_below_declared, "mass_below_kg", value_json(rig.mass_below, 1), "damping_doubtful",
+              rig.damping_doubtful, "delay_ms", value_json(rig.delay, kMillisecond), "high_pass_hz",
+              value_json(rig.high_pass, 1), rig.per_unit_load ? "residual_rmse" : "residual_rmse_N", rig.residual_rmse,
+              "smoothing_ms", rig.smoothing / kMillisecond, "degrees_of_freedom", rig.degrees_of_freedom, "messages",
+              rig.messages);
   return json;
 }
 
 std::string render_rig(const RigIdentification& result, const TerminalOptions& options) {
-  const Style style(options.colour, options.width);
-  const Identification& trace = result.trace;
-  std::string text = trace_lines(trace, style) + condition_lines(trace, style) + health_lines(trace, style);
-  text += rig_lines(result.rig, style);
-  text += style.heading("Result");
-  for (const std::string& warning : trace.warnings) {
-    text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
-  }
-  const RigFit& rig = result.rig;
-  const std::string verdict = rig.determined ? verdict_on(rig) : "The rig could not be identified: " + rig.reason + ".";
-  text += "  " + wrapped(verdict, style.width, 2) + "\n";
-  const Suggestion next = next_of(result, options);
-  text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n  " + next.command + "\n";
-  return text;
+  TerminalText text(options);
+  add_record(result.trace, text);
+  add_rig(result.rig, text);
+  text.result(result.trace.warnings, verdict_on(result.rig), next_of(result, options));
+  return text.take();
 }
 
 std::string to_json(const RigIdentification& result, const JsonOptions& options) {
-  const Identification& trace = result.trace;
-  return text_of({{"tool", tool_json(options)},
-                  {"trace", trace_json(trace)},
-                  {"conditions", conditions_of(trace.motion)},
-                  {"health", health_json(trace.motion)},
-                  {"stick_slip", stick_slip_json(trace)},
-                  {"rig", rig_json(result.rig)},
-                  {"analysed", trace.analysed},
-                  {"warnings", trace.warnings}});
+  Json json = record_json(result.trace, options);
+  add_members(json, "rig", rig_json(result.rig), "analysed", result.trace.analysed, "warnings", result.trace.warnings);
+  return text_of(json);
 }
 
 }  // namespace tribofit

@@ -28,6 +28,10 @@ std::string elasticity_text(double elasticity) {
   return std::isnan(elasticity) ? std::string("-") : fmt::format("{:+.3f}", elasticity);
 }
 
+std::string sharpness_text(const StudiedMachine& of) {
+  return fmt::format("smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
+}
+
 std::vector<std::string> machine_sentences(const StudiedMachine& of) {
   const Machine& m = of.machine;
   std::string rig = fmt::format("m = {} kg, k = {} N/mm, c = {} N s/mm (damping ratio {}), natural frequency {} Hz; ",
@@ -41,7 +45,7 @@ std::vector<std::string> machine_sentences(const StudiedMachine& of) {
     const FrictionModel::Slot& slot = m.model.parameters()[k];
     const Parameter& q = slot.parameter;
     friction += fmt::format("{}{}{} = {}{}", friction.empty() ? "" : ", ", slot.effect.empty() ? "" : slot.effect + ".",
-                            q.name, significant(m.parameters[k] / q.si, 4), q.unit == "1" ? "" : " " + q.unit);
+                            q.name, significant(m.parameters[k] / q.si, 4), unit_behind(q.unit));
   }
   return {std::move(rig), std::move(friction)};
 }
@@ -111,14 +115,6 @@ std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t 
     list += (list.empty() ? "" : ", ") + fmt::format("{} ({})", study[i].variable.name, elasticity_text(e));
   }
   return list.empty() ? "nothing can be said here" : list;
-}
-
-std::string study_command(const std::string& kind, const std::vector<std::string>& arguments,
-                          const std::vector<std::string>& inputs) {
-  std::string command = "identify study " + kind;
-  for (const std::string& argument : arguments) command += " " + shell_quoted(argument);
-  for (const std::string& input : inputs) command += " " + shell_quoted(input);
-  return command;
 }
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {

@@ -22,6 +22,9 @@ std::string range_text(const Range& range, double unit);
 /// "+0.512", "-" where there is none.
 std::string elasticity_text(double elasticity);
 
+/// "smoothed by an arctangent of sharpness 10 s/mm".
+std::string sharpness_text(const StudiedMachine& of);
+
 /// The numbers of rig and drive, then those of friction, a sentence each.
 std::vector<std::string> machine_sentences(const StudiedMachine& of);
 
@@ -39,10 +42,6 @@ std::string seen_sentence(const Settled& settled);
 
 /// What matters most for one measure (an index in measures()): "stiffness (-0.512), mass (+0.5)".
 std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t measure);
-
-/// `identify study KIND` with the options and inputs given.
-std::string study_command(const std::string& kind, const std::vector<std::string>& arguments,
-                          const std::vector<std::string>& inputs);
 
 /// At most `most` of `count` rows, evenly, the ends among them.
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most);

@@ -4,19 +4,18 @@
 
 #include <cmath>
 
+#include "fit/assessment.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "style.hpp"
-#include "terminal_parts.hpp"
-#include "tribofit/study/twin.hpp"
-#include "twin_sentences.hpp"
-#include "verdict.hpp"
+#include "record_parts.hpp"
+#include "report_parts.hpp"
+#include "twin_parts.hpp"
 
 namespace tribofit {
 namespace {
 
-std::string difference(double d) {
-  return std::isfinite(d) ? fmt::format("{:+.1f}", d) : "-";
+std::string decimal(double value, const char* format = "{:+.1f}") {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
 /// The last column is what the user believes in.
@@ -25,90 +24,78 @@ bool agrees(const Twin& twin) {
          twin.failures(twin.columns.size() - 1).empty();
 }
 
-/// Means over cycles may agree while the law misses what goes up and down between them: its error is well above the
-/// floor.
+/// Means over cycles may agree while the law misses what goes up and down between them.
 bool law_falls_short(const TwinIdentification& result) {
-  constexpr double kWell = 1.25;
-  if (result.trace.fits.empty()) return false;
-  const Fit& fit = result.trace.fits.back();
-  return fit.error.held_out_rmse > kWell * fit.floor.rmse;
+  return !result.trace.fits.empty() && well_above_floor(result.trace.fits.back());
 }
 
-std::string table_of(const Twin& twin, const Style& style) {
-  const std::vector<std::vector<std::string>> cells = twin_cells(twin);
-  std::vector<bool> left(cells.front().size(), false);
-  left.front() = left.back() = true;
-  Table table(cells.front(), left);
-  for (std::size_t k = 1; k < cells.size(); ++k) table.add(cells[k]);
-  return table.text(2, style.dim, style.off);
+/// "0.84990 +/- 0.00022 kg, 16.1970 +/- 0.0021 N/mm, damping ratio ..., 21.9712 +/- 0.0025 Hz".
+std::string rig_text(const RigFit& rig) {
+  const std::string per = rig.per_unit_load ? "/N" : "";
+  return fmt::format("{} kg{}, {} N/mm{}, damping ratio {}, {} Hz", with_error(rig.mass.value, rig.mass.std_error), per,
+                     with_error(1e-3 * rig.stiffness.value, 1e-3 * rig.stiffness.std_error), per,
+                     with_error(rig.damping_ratio.value, rig.damping_ratio.std_error),
+                     with_error(rig.natural_frequency.value, rig.natural_frequency.std_error));
+}
+
+/// "exponential: mu_s 0.5090 +/- 0.0012, ...".
+std::string law_text(const Fit& fit, const Motion& motion) {
+  std::string text;
+  for (const FitParameter& p : fit.parameters) {
+    text += (text.empty() ? "" : ", ") + full_name(p) + " " + value_text(p, motion);
+  }
+  return fit.model.name() + ": " + text;
 }
 
 Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
   const Twin& twin = result.twin;
-  Json measures = Json::array(), rms = Json::array(), failures = Json::array();
-  for (const TwinMeasure& m : twin.measures) {
-    Json simulated = Json::array();
-    for (const TwinMeasure::Simulated& s : m.simulated) {
-      simulated.push_back({{"value", number(s.value / m.si)},
-                           {"std_error", number(s.std_error / m.si)},
-                           {"difference_in_std_errors", number(s.difference)}});
-    }
-    measures.push_back(
-        {{"name", m.name},
-         {"unit", m.unit},
-         {"measured", {{"value", number(m.measured / m.si)}, {"std_error", number(m.measured_std_error / m.si)}}},
-         {"simulated", std::move(simulated)}});
-  }
-  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    rms.push_back(number(twin.rms_difference[c]));
-    failures.push_back(twin.failures(c));
-  }
+  const auto measure = [](const TwinMeasure& m) {
+    const auto simulated = [&](const TwinMeasure::Simulated& s) {
+      return object("value", s.value / m.si, "std_error", s.std_error / m.si, "difference_in_std_errors", s.difference);
+    };
+    return object("name", m.name, "unit", m.unit, "measured",
+                  object("value", m.measured / m.si, "std_error", m.measured_std_error / m.si), "simulated",
+                  list_of(m.simulated, simulated));
+  };
+  Json failures = Json::array();
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) failures.push_back(twin.failures(c));
   TerminalOptions known;
   known.arguments = options.arguments;
-  return {{"columns", twin.columns},
-          {"measures", std::move(measures)},
-          {"rms_difference", std::move(rms)},
-          {"failures", std::move(failures)},
-          {"simulations", twin.simulations},
-          {"messages", twin.messages},
-          {"reason", text_or_null(twin.reason)},
-          {"next", next_after_twin(result, known).command}};
+  return object("columns", twin.columns, "measures", list_of(twin.measures, measure), "rms_difference",
+                list_of(twin.rms_difference, number), "failures", std::move(failures), "simulations", twin.simulations,
+                "messages", twin.messages, "reason", text_or_null(twin.reason), "next",
+                next_after_twin(result, known).command);
 }
 
 }  // namespace
 
-/// The bare law by its name, the one with effects by what is added.
 std::string column_name(const Twin& twin, std::size_t c) {
   const std::string& name = twin.columns[c];
   const std::size_t plus = name.find(" + ");
   return c == 0 || plus == std::string::npos ? name : name.substr(plus + 1);
 }
 
-std::vector<std::vector<std::string>> twin_cells(const Twin& twin) {
-  std::vector<std::vector<std::string>> rows(1, {"", "measured"});
+ReportTable twin_table(const Twin& twin) {
+  ReportTable table("Measured motion and its twin");
+  table.text({""}).numbers({"measured"});
   std::vector<std::string> total = {"root mean square", ""};
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    rows[0].insert(rows[0].end(), {column_name(twin, c), "off by"});
-    total.insert(total.end(),
-                 {"", std::isfinite(twin.rms_difference[c]) ? fmt::format("{:.1f}", twin.rms_difference[c]) : "-"});
+    table.numbers({column_name(twin, c), "off by"});
+    total.insert(total.end(), {"", decimal(twin.rms_difference[c], "{:.1f}")});
   }
-  rows[0].push_back("unit");
-  for (std::size_t k = 0; k < twin.measures.size(); ++k) {
-    const TwinMeasure& m = twin.measures[k];
-    const bool portrait = k + 1 == twin.measures.size();
+  table.text({"unit"});
+  for (const TwinMeasure& m : twin.measures) {
+    const bool portrait = &m == &twin.measures.back();  // a distance: nothing is measured
     std::vector<std::string> row = {m.name, portrait ? "" : with_error(m.measured / m.si, m.measured_std_error / m.si)};
     for (const TwinMeasure::Simulated& s : m.simulated) {
-      const bool known = std::isfinite(s.value) && !portrait;
-      row.push_back(known ? fixed(s.value / m.si, places_for(s.std_error / m.si)) : portrait ? "" : "-");
-      row.push_back(portrait && std::isfinite(s.difference) ? fmt::format("{:.1f}", s.difference)
-                                                            : difference(s.difference));
+      row.push_back(portrait ? "" : fixed(s.value / m.si, places_for(s.std_error / m.si)));
+      row.push_back(decimal(s.difference, portrait ? "{:.1f}" : "{:+.1f}"));
     }
     row.push_back(portrait ? "" : m.unit);
-    rows.push_back(std::move(row));
+    table.rows.push_back(std::move(row));
   }
-  total.push_back("");
-  rows.push_back(std::move(total));
-  return rows;
+  table.rows.push_back(std::move(total));
+  return table;
 }
 
 std::string twin_note(const Twin& twin) {
@@ -118,34 +105,25 @@ std::string twin_note(const Twin& twin) {
       twin.simulations);
 }
 
-std::string rig_sentence(const RigFit& rig) {
-  const std::string per = rig.per_unit_load ? "/N" : "";
-  return fmt::format("{} kg{}, {} N/mm{}, damping ratio {}, {} Hz", with_error(rig.mass.value, rig.mass.std_error), per,
-                     with_error(1e-3 * rig.stiffness.value, 1e-3 * rig.stiffness.std_error), per,
-                     with_error(rig.damping_ratio.value, rig.damping_ratio.std_error),
-                     with_error(rig.natural_frequency.value, rig.natural_frequency.std_error));
-}
-
-std::string law_sentence(const Fit& fit, const Motion& motion) {
-  std::string text = fit.model.name() + ":";
-  for (const FitParameter& p : fit.parameters) {
-    const std::string unit = shown_unit(p, motion);
-    text += fmt::format("{} {}{} {}{}", &p == &fit.parameters.front() ? "" : ",",
-                        p.effect.empty() ? "" : p.effect + ".", p.parameter.name,
-                        with_error(shown(p, p.value), shown(p, p.std_error)), unit == "1" ? "" : " " + unit);
+ReportSection twin_model(const TwinIdentification& result) {
+  ReportSection section{"model", "Law and rig", {}};
+  const std::size_t count = std::min(result.trace.fits.size(), result.rigs.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    section.items.emplace_back(
+        item_text((c == 0 ? "Law: " : "With effects: ") + law_text(result.trace.fits[c], result.trace.motion)));
+    section.items.emplace_back(item_text("Rig beside it: " + rig_text(result.rigs[c])));
   }
-  return text;
+  return section;
 }
 
 Suggestion next_after_twin(const TwinIdentification& result, const TerminalOptions& options) {
-  const auto of_verb = [&](std::vector<std::string> words) {
-    TerminalOptions known = options;
-    known.arguments.insert(known.arguments.begin(), words.begin(), words.end());
-    return command_line(known, "", result.trace.path);
+  const auto of_verb = [&](std::vector<std::string> verb) {
+    return command_line(words_of(std::move(verb), options.arguments), {result.trace.path});
   };
   if (!result.twin.reason.empty()) return {"to see the trace, its health and its law", of_verb({})};
-  if (agrees(result.twin) && !law_falls_short(result))
+  if (agrees(result.twin) && !law_falls_short(result)) {
     return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
+  }
   return {"to see where the law fails and which effect is missing", of_verb({"diagnose"})};
 }
 
@@ -153,73 +131,54 @@ std::string twin_verdict(const TwinIdentification& result) {
   const Twin& twin = result.twin;
   if (!twin.reason.empty()) return "There is no twin: " + twin.reason + ".";
   const std::size_t last = twin.columns.size() - 1;
+  const std::string& law = twin.columns[last];
   std::string text;
   if (last > 0 && std::isfinite(twin.rms_difference[0]) && std::isfinite(twin.rms_difference[last])) {
     text = fmt::format("With {} the disagreement goes from {:.1f} to {:.1f} standard errors. ",
-                       twin.columns[last].substr(std::min(twin.columns[last].size(), twin.columns[last].find('+') + 2)),
-                       twin.rms_difference[0], twin.rms_difference[last]);
+                       law.substr(std::min(law.size(), law.find('+') + 2)), twin.rms_difference[0],
+                       twin.rms_difference[last]);
   }
   if (agrees(twin)) {
     text += fmt::format(
-        "The twin of the {} law moves as the record does: nothing is off by more than three standard errors.",
-        twin.columns[last]);
+        "The twin of the {} law moves as the record does: nothing is off by more than three standard errors.", law);
     if (!law_falls_short(result)) return text;
     const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
-                      " But these are means over cycles: on data it has not seen the law leaves {:.1f} times the error "
-                      "of the floor, so that something is missing that comes and goes between them.",
+                      " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
+                      "floor, so something is missing that comes and goes between them.",
                       fit.error.held_out_rmse / fit.floor.rmse);
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
-  std::string names;
-  for (const std::string& name : twin.failures(last)) names += (names.empty() ? "" : ", ") + name;
   return text + fmt::format(
-                    "The twin of the {} law fails over {} (the worst first): the law, the rig or the record holds "
-                    "something else.",
-                    twin.columns[last], names);
+                    "The twin of the {} law fails over {} (the worst first): the law, the rig or the record "
+                    "holds something else.",
+                    law, fmt::join(twin.failures(last), ", "));
 }
 
 std::string render_twin(const TwinIdentification& result, const TerminalOptions& options) {
-  const Style style(options.colour, options.width);
-  const Identification& trace = result.trace;
-  std::string text = trace_lines(trace, style) + condition_lines(trace, style) + health_lines(trace, style);
-  const Twin& twin = result.twin;
-  if (twin.reason.empty()) {
-    text += style.heading("Law and rig");
-    for (std::size_t c = 0; c < trace.fits.size(); ++c) {
-      text += item(style, c == 0 ? "law" : "with effects", law_sentence(trace.fits[c], trace.motion));
-      text += item(style, "rig", rig_sentence(result.rigs[c]));
-    }
-    text += style.heading("Measured motion and its twin");
-    text += table_of(twin, style);
-    text += "  " + wrapped(twin_note(twin), style.width, 2) + "\n";
+  TerminalText text(options);
+  add_record(result.trace, text);
+  if (result.twin.reason.empty()) {
+    const ReportSection model = twin_model(result);
+    text.heading(model.title);
+    text.items(model.items);
+    const ReportTable table = twin_table(result.twin);
+    text.heading(table.caption);
+    text.table(table);
+    text.line(twin_note(result.twin));
   }
-  text += style.heading("Result");
-  for (const std::string& warning : trace.warnings) {
-    text += fmt::format("  {}warning{} ", style.yellow, style.off) + wrapped(warning, style.width, 10) + "\n";
-  }
-  text += "  " + wrapped(twin_verdict(result), style.width, 2) + "\n";
-  const Suggestion next = next_after_twin(result, options);
-  text += "\n" + wrapped("Next, " + next.reason + ":", style.width, 0) + "\n" +
-          folded_command(next.command, style.width) + "\n";
-  return text;
+  text.result(result.trace.warnings, twin_verdict(result), next_after_twin(result, options));
+  return text.take();
 }
 
 std::string to_json(const TwinIdentification& result, const JsonOptions& options) {
   const Identification& trace = result.trace;
-  Json rigs = Json::array();
-  for (const RigFit& rig : result.rigs) rigs.push_back(rig_json(rig));
-  return text_of({{"tool", tool_json(options)},
-                  {"trace", trace_json(trace)},
-                  {"conditions", conditions_of(trace.motion)},
-                  {"health", health_json(trace.motion)},
-                  {"stick_slip", stick_slip_json(trace)},
-                  {"fits", fits_json(trace.fits, trace.motion)},
-                  {"rig", result.rigs.empty() ? Json(nullptr) : rig_json(result.rigs.front())},
-                  {"rigs", std::move(rigs)},
-                  {"twin", twin_json(result, options)},
-                  {"analysed", trace.analysed},
-                  {"warnings", trace.warnings}});
+  Json json = record_json(trace, options);
+  add_members(json, "fits", fits_json(trace.fits, trace.motion), "rig",
+              result.rigs.empty() ? Json(nullptr) : rig_json(result.rigs.front()), "rigs",
+              list_of(result.rigs, rig_json), "twin", twin_json(result, options), "analysed", trace.analysed,
+              "warnings", trace.warnings);
+  return text_of(json);
 }
 
 }  // namespace tribofit

@@ -8,7 +8,7 @@
 
 #include "folder.hpp"
 #include "made_up.hpp"
-#include "report/bars.hpp"
+#include "report/terminal_text.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
 

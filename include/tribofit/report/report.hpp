@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,12 +23,31 @@ struct ReportText {
   Kind kind = Kind::plain;
 };
 
+/// A column of a table: what stands above it and how it is set.
+struct ReportColumn {
+  std::string name = {};   ///< with its unit: "slope [mm/s]"
+  bool number = false;     ///< set to the right
+  int detail = 0;          ///< where room is short, columns of the highest detail go first; those of 0 stay
+  std::string brief = {};  ///< the name where there is little room; empty: the same
+};
+
+/// A table, described once for the terminal and the page. Columns are named from left to right:
+/// ReportTable("Cells").text({"regime"}).numbers({"cells"}).
 struct ReportTable {
-  std::string caption = {};
-  std::vector<std::string> header = {};
+  explicit ReportTable(std::string title = {}) : caption(std::move(title)) {}
+  ReportTable& text(std::initializer_list<std::string> names, int detail = 0) { return add(names, false, detail); }
+  ReportTable& numbers(std::initializer_list<std::string> names, int detail = 0) { return add(names, true, detail); }
+
+  std::string caption;
+  std::vector<ReportColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
-  std::vector<std::size_t> numeric = {};  ///< columns set to the right
-  bool folded = false;                    ///< opened by a click
+  bool folded = false;  ///< opened by a click; a terminal leaves it out
+
+ private:
+  ReportTable& add(std::initializer_list<std::string> names, bool number, int detail) {
+    for (const std::string& name : names) columns.push_back({name, number, detail, {}});
+    return *this;
+  }
 };
 
 /// A block on its disc in motion, each as long as one turn of its loop.

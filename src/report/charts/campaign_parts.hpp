@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "report/campaign_cells.hpp"
 #include "styles.hpp"
+#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/report/campaign.hpp"
 
 namespace tribofit {
@@ -64,5 +64,8 @@ void add_earlier(const DrawnCampaign& of, const OverConditions& over, const std:
 ReportSection motion_figures(const DrawnCampaign& of);
 /// Fig 10 to 12 of [D].
 ReportSection law_figures(const DrawnCampaign& of);
+
+/// A parameter of every run, beside the mean of its group: what repeats scatter by.
+Chart scatter_chart(const DrawnCampaign& of, const std::string& law);
 
 }  // namespace tribofit

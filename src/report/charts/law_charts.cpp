@@ -5,10 +5,10 @@
 #include <string_view>
 #include <utility>
 
+#include "fit/assessment.hpp"
 #include "report/charts/styles.hpp"
 #include "report/charts/trace_charts.hpp"
 #include "report/drawing.hpp"
-#include "report/measures.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"

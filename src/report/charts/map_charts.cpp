@@ -88,7 +88,8 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const Rows&
 }
 
 ReportTable regimes_table(const Rows& rows) {
-  ReportTable table{"Cells", {"regime", "cells"}, {}, {1}};
+  ReportTable table("Cells");
+  table.text({"regime"}).numbers({"cells"});
   for (const Regime regime : {Regime::stick_slip, Regime::vibration, Regime::sliding, Regime::not_settled}) {
     std::size_t count = 0;
     for (const auto& row : rows) {
@@ -101,11 +102,10 @@ ReportTable regimes_table(const Rows& rows) {
 }
 
 ReportTable extremes_table(const MapRequest& request, const Rows& rows) {
-  const auto heading = [](const Variable& v) { return v.name + (v.unit == "1" ? "" : " [" + v.unit + "]"); };
-  ReportTable table{"Least and largest of each measure",
-                    {"measure", "", "value", "unit", heading(request.x.variable), heading(request.y.variable)},
-                    {},
-                    {2, 4, 5}};
+  const auto heading = [](const Variable& v) { return with_unit(v.name, v.unit); };
+  ReportTable table("Least and largest of each measure");
+  table.text({"measure", ""}).numbers({"value"}).text({"unit"});
+  table.numbers({heading(request.x.variable), heading(request.y.variable)});
   for (std::size_t k = 0; k < measures().size(); ++k) {
     for (const bool most : {false, true}) {
       double best = std::nan("");

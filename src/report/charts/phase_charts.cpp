@@ -6,6 +6,7 @@
 #include "motion_charts.hpp"
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
+#include "report/study_tables.hpp"
 #include "study_parts.hpp"
 #include "tribofit/fit/identification.hpp"
 
@@ -88,18 +89,6 @@ Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::
   }
   out.blocks.push_back(animated({"simulated", portrait.cycle}));
   return out;
-}
-
-ReportTable portraits_table(const std::vector<Portrait>& study) {
-  std::vector<std::vector<std::string>> first;
-  std::vector<const Settled*> settled;
-  for (const Portrait& portrait : study) {
-    first.push_back({significant(portrait.velocity / kMillimetre, 4), std::string(to_string(portrait.settled.regime))});
-    settled.push_back(&portrait.settled);
-  }
-  ReportTable table = measures_table("Measures of the settled motions", {"speed [mm/s]", "regime"}, first, settled);
-  table.numeric.insert(table.numeric.begin(), 0);
-  return table;
 }
 
 std::string regimes_sentence(const std::vector<Portrait>& study) {

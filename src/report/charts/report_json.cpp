@@ -123,8 +123,13 @@ Json text_json(const ReportText& text) {
 }
 
 Json table_json(const ReportTable& table) {
-  Json json = {{"type", "table"}, {"caption", table.caption}, {"header", table.header}, {"rows", table.rows}};
-  if (!table.numeric.empty()) json["numeric"] = table.numeric;
+  Json header = Json::array(), numeric = Json::array();
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    header.push_back(table.columns[k].name);
+    if (table.columns[k].number) numeric.push_back(k);
+  }
+  Json json = {{"type", "table"}, {"caption", table.caption}, {"header", header}, {"rows", table.rows}};
+  if (!numeric.empty()) json["numeric"] = numeric;
   if (table.folded) json["folded"] = true;
   return json;
 }

@@ -6,6 +6,7 @@
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
+#include "report/study_tables.hpp"
 #include "study_parts.hpp"
 #include "styles.hpp"
 
@@ -63,20 +64,6 @@ Chart spectrum_chart(const Response& study, const char* id, const char* title, C
   chart.lines = {std::move(stems), std::move(ends)};
   mark_natural(study, chart);
   return chart;
-}
-
-ReportTable harmonics_table(const Response& study) {
-  ReportTable table{"Spectra of settled motion",
-                    {"harmonic", "frequency [Hz]", "friction [N]", "displacement [mm]", "velocity [mm/s]"},
-                    {},
-                    {0, 1, 2, 3, 4}};
-  for (std::size_t n = 0; n < study.harmonics.size(); ++n) {
-    const ResponseLine& h = study.harmonics[n];
-    table.rows.push_back({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),
-                          significant(h.displacement / kMillimetre, 4), significant(h.velocity / kMillimetre, 4)});
-  }
-  table.folded = table.rows.size() > 30;
-  return table;
 }
 
 }  // namespace

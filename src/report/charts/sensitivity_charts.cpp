@@ -5,6 +5,7 @@
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
+#include "report/study_tables.hpp"
 #include "study_parts.hpp"
 #include "styles.hpp"
 
@@ -53,21 +54,6 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   chart.bars.push_back(std::move(bars));
   chart.height = 110 + 26 * static_cast<int>(names.names.size());
   return chart;
-}
-
-ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
-  ReportTable table{"Per cent of a measure for one per cent of a number", {"number", "value", "unit"}, {}, {1}};
-  for (const MeasureInfo& measure : measures()) {
-    table.numeric.push_back(table.header.size());
-    table.header.push_back(measure.name);
-  }
-  for (const Sensitivity& one : study) {
-    std::vector<std::string> row = {one.variable.name, significant(one.base / one.variable.si, 4),
-                                    one.variable.unit == "1" ? "" : one.variable.unit};
-    for (const double e : one.elasticities) row.push_back(elasticity_text(e));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
+#include "report/study_tables.hpp"
 #include "study_parts.hpp"
 #include "styles.hpp"
 #include "tribofit/fit/identification.hpp"
@@ -118,54 +119,12 @@ Chart growth_chart(const SpeedStudy& study) {
   return chart;
 }
 
-ReportTable own_table(const StudiedMachine& of, const SpeedStudy& study) {
-  ReportTable table{
-      "At " + velocity_text(of.machine.disc_velocity(), of.machine) + ": " + std::string(to_string(study.own.regime)),
-      {"measure", "value", "95 % interval", "unit", "meaning"},
-      {},
-      {1, 2}};
-  for (std::size_t k = 0; k < measures().size(); ++k) {
-    const MeasureInfo& measure = measures()[k];
-    const std::string range = range_text(study.own_ranges[k], measure.si);
-    table.rows.push_back(
-        {measure.name, measure_text(study.own, measure), range.empty() ? "-" : range, measure.unit, measure.meaning});
-  }
-  return table;
-}
-
-ReportTable speed_table(const SpeedStudy& study) {
-  constexpr std::size_t kMostRows = 200;
-  std::vector<std::vector<std::string>> first;
-  std::vector<const Settled*> settled;
-  const std::vector<std::size_t> rows = thinned(study.velocity.size(), kMostRows);
-  for (const std::size_t i : rows) {
-    for (const bool up : {true, false}) {
-      const Settled& s = up ? study.up[i] : study.down[i];
-      first.push_back({significant(study.velocity[i] / kMillimetre, 4), up ? "stick" : "sliding",
-                       std::string(to_string(s.regime))});
-      settled.push_back(&s);
-    }
-  }
-  ReportTable table = measures_table("Over speed", {"speed [mm/s]", "begun in", "regime"}, first, settled);
-  if (rows.size() < study.velocity.size()) {
-    table.caption += fmt::format(" ({} of {} speeds; --csv writes all)", rows.size(), study.velocity.size());
-  }
-  table.numeric.insert(table.numeric.begin(), 0);
-  table.folded = true;
-  return table;
-}
-
-std::string capitalised(std::string sentence) {
-  if (!sentence.empty() && sentence[0] >= 'a' && sentence[0] <= 'z') sentence[0] = static_cast<char>(sentence[0] - 32);
-  return sentence + ".";
-}
-
 }  // namespace
 
 Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options) {
   std::string lead;
   for (const std::string& sentence : critical_sentences(of, study)) {
-    lead += (lead.empty() ? "" : " ") + capitalised(sentence);
+    lead += (lead.empty() ? "" : " ") + capitalised(sentence) + ".";
   }
   const std::string between = bistable_sentence(study.critical);
   if (!between.empty()) lead += " " + between;
@@ -181,7 +140,10 @@ Report report_of(const StudiedMachine& of, const SpeedStudy& study, const Report
       of, study, "speed-energy", "Energy before break-away and fastest slip over speed", {"energy", "peak-speed"}));
   section.items.emplace_back(growth_chart(study));
   section.items.emplace_back(own_table(of, study));
-  section.items.emplace_back(speed_table(study));
+  constexpr std::size_t kMostRows = 200;
+  ReportTable table = speed_table(study, kMostRows);
+  table.folded = true;
+  section.items.emplace_back(std::move(table));
   add_machine_sections(of, "speed", options, report);
   return report;
 }

@@ -35,7 +35,8 @@ double std_error_of(const StudiedMachine& of, const std::string& variable) {
 }
 
 ReportTable machine_table(const StudiedMachine& of) {
-  ReportTable table{"Numbers of the machine", {"number", "value", "std error", "unit", "meaning"}, {}, {1, 2}};
+  ReportTable table("Numbers of the machine");
+  table.text({"number"}).numbers({"value", "std error"}).text({"unit", "meaning"});
   for (const Variable& v : variables_of(of.machine)) {
     const double value = value_of(of.machine, v.name) / v.si, error = std_error_of(of, v.name) / v.si;
     const bool known = std::isfinite(error);
@@ -56,9 +57,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const StudiedMachine& 
   const double natural = of.machine.rig.natural_frequency() / (2 * std::numbers::pi);
   facts.emplace_back("natural frequency", significant(natural, 4) + " Hz");
   std::string law = of.machine.model.name();
-  if (of.sharpness > 0) {
-    law += fmt::format(", smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
-  }
+  if (of.sharpness > 0) law += ", " + sharpness_text(of);
   facts.emplace_back("law", std::move(law));
   facts.emplace_back("friction", machine_sentences(of)[1]);
   return facts;
@@ -68,12 +67,9 @@ std::vector<std::pair<std::string, std::string>> facts_of(const StudiedMachine& 
 
 Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
                     const ReportOptions& options) {
-  Report report;
-  report.kind = "study";
-  report.title = title;
-  report.subtitle = made_by("Study") + "; the machine: " + of.source + ".";
-  report.lead = std::move(lead);
-  report.facts = facts_of(of);
+  Report report = titled_report("study", title, "Study", std::move(lead));
+  report.facts.emplace_back("machine", of.source);
+  for (auto& fact : facts_of(of)) report.facts.push_back(std::move(fact));
   report.facts.emplace_back("study", kind);
   if (!options.inputs.empty() || of.record) {
     report.facts.emplace_back("record", of.record ? of.record->path : options.inputs.front());
@@ -86,30 +82,11 @@ void add_machine_sections(const StudiedMachine& of, const std::string& kind, con
   ReportSection& machine = report.sections.emplace_back(ReportSection{"machine", "The machine", {}});
   machine.items.emplace_back(machine_table(of));
   for (const std::string& note : of.notes) machine.items.emplace_back(soft_text("Note: " + note));
-  ReportSection& run = report.sections.emplace_back(ReportSection{"run", "What was run", {}});
   std::vector<std::string> inputs = options.inputs;
   if (inputs.empty() && of.record) inputs = {of.record->path};
-  run.items.emplace_back(plain_text("This report is made by"));
-  run.items.emplace_back(ReportText{study_command(kind, options.arguments, inputs), ReportText::Kind::command});
-  std::string made = made_by("Made") + ". Charts by plotly.js (MIT licence).";
-  if (of.record) made += fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", of.record->checksum);
-  run.items.emplace_back(soft_text(std::move(made)));
-}
-
-ReportTable measures_table(std::string caption, std::vector<std::string> header,
-                           const std::vector<std::vector<std::string>>& first,
-                           const std::vector<const Settled*>& settled) {
-  ReportTable table{std::move(caption), std::move(header), {}, {}};
-  for (const MeasureInfo& measure : measures()) {
-    table.numeric.push_back(table.header.size());
-    table.header.push_back(measure.name + " [" + measure.unit + "]");
-  }
-  for (std::size_t i = 0; i < settled.size(); ++i) {
-    std::vector<std::string> row = first[i];
-    for (const MeasureInfo& measure : measures()) row.push_back(measure_text(*settled[i], measure));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  report.sections.push_back(run_section(
+      command_line(words_of({"study", kind}, options.arguments), inputs),
+      of.record ? fmt::format("Checksum of the rows of the record (XXH64): {:016x}.", of.record->checksum) : ""));
 }
 
 ChartAxis axis_of(const MeasureInfo& measure) {

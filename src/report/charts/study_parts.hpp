@@ -20,11 +20,6 @@ Report study_report(const StudiedMachine& of, const std::string& kind, const std
 void add_machine_sections(const StudiedMachine& of, const std::string& kind, const ReportOptions& options,
                           Report& report);
 
-/// Table of the measures of motions, a row each; first: what stands before.
-ReportTable measures_table(std::string caption, std::vector<std::string> header,
-                           const std::vector<std::vector<std::string>>& first,
-                           const std::vector<const Settled*>& settled);
-
 /// "frequency [Hz]" as an axis.
 ChartAxis axis_of(const MeasureInfo& measure);
 

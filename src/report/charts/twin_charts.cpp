@@ -6,7 +6,7 @@
 #include "motion_charts.hpp"
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
-#include "report/twin_sentences.hpp"
+#include "report/twin_parts.hpp"
 #include "tribofit/report/twin.hpp"
 
 namespace tribofit {
@@ -101,30 +101,10 @@ Animation animation_of(const Twin& twin) {
   return out;
 }
 
-ReportTable measures_of(const Twin& twin) {
-  std::vector<std::vector<std::string>> cells = twin_cells(twin);
-  ReportTable table{"Measured motion and its twin", cells.front(), {cells.begin() + 1, cells.end()}, {}};
-  for (std::size_t k = 1; k + 1 < table.header.size(); ++k) table.numeric.push_back(k);
-  return table;
-}
-
-ReportSection model_section(const TwinIdentification& result) {
-  ReportSection section{"model", "Law and rig", {}};
-  const std::size_t count = std::min(result.trace.fits.size(), result.rigs.size());
-  for (std::size_t c = 0; c < count; ++c) {
-    section.items.emplace_back(
-        ReportText{"Law: " + law_sentence(result.trace.fits[c], result.trace.motion), ReportText::Kind::item});
-    section.items.emplace_back(ReportText{"Rig beside it: " + rig_sentence(result.rigs[c]), ReportText::Kind::item});
-  }
-  return section;
-}
-
 ReportSection how_it_was_run(const TwinIdentification& result, const ReportOptions& options) {
-  TerminalOptions terminal = terminal_like(options);
-  const Suggestion next = next_after_twin(result, terminal);
-  terminal.arguments.insert(terminal.arguments.begin(), "twin");
   const std::string path = options.inputs.empty() ? result.trace.path : options.inputs.front();
-  return run_section(command_line(terminal, "", path), {&result.trace, 1}, next);
+  return run_section(command_line(words_of({"twin"}, options.arguments), {path}), {&result.trace, 1},
+                     next_after_twin(result, terminal_like(options)));
 }
 
 }  // namespace
@@ -132,12 +112,8 @@ ReportSection how_it_was_run(const TwinIdentification& result, const ReportOptio
 Report report_of(const TwinIdentification& result, const ReportOptions& options) {
   const Identification& trace = result.trace;
   const Twin& twin = result.twin;
-  Report report;
-  report.kind = "twin";
-  report.title = file_name(trace.path);
-  report.subtitle = made_by("The measured motion beside those that law and rig predict,") +
-                    "; ± is one standard error, everywhere in this report.";
-  report.lead = twin_verdict(result);
+  Report report = titled_report("twin", file_name(trace.path),
+                                "The measured motion beside those that law and rig predict,", twin_verdict(result));
   report.warnings = trace.warnings;
   report.facts = facts_of(trace);
   report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
@@ -156,9 +132,9 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
     ReportSection& measures =
         report.sections.emplace_back(ReportSection{"measures", "Measures in standard errors", {}});
     measures.items.emplace_back(differences_chart(twin));
-    measures.items.emplace_back(measures_of(twin));
+    measures.items.emplace_back(twin_table(twin));
     measures.items.emplace_back(ReportText{twin_note(twin) + ".", ReportText::Kind::soft});
-    report.sections.push_back(model_section(result));
+    report.sections.push_back(twin_model(result));
   }
   ReportSection& health = report.sections.emplace_back(ReportSection{"health", "Health of the data", {}});
   health.items.emplace_back(health_table({&trace, 1}));

@@ -1,26 +1,23 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "tribofit/study/twin.hpp"
-#include "tribofit/report/terminal.hpp"
-#include "verdict.hpp"
+#include "commands.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 
 /// What is said of a twin on a terminal and on a page alike.
 
-/// The numbers of a law with their errors: "exponential: mu_s 0.5090 +/- 0.0012, ...".
-std::string law_sentence(const Fit& fit, const Motion& motion);
-std::string rig_sentence(const RigFit& rig);
+/// The numbers of each law and of the rig beside it.
+ReportSection twin_model(const TwinIdentification& result);
 
 /// The bare law by its name, the one with effects by what is added.
 std::string column_name(const Twin& twin, std::size_t column);
 
-/// Measured and simulated measures, their differences in standard errors, and the root mean square of these: a header,
-/// then the rows.
-std::vector<std::vector<std::string>> twin_cells(const Twin& twin);
+/// Measured and simulated measures, their differences in standard errors, and the root mean square of these.
+ReportTable twin_table(const Twin& twin);
 
 /// How the differences are made.
 std::string twin_note(const Twin& twin);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "csv_cells.hpp"
+#include "csv_text.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/run_result.hpp"
@@ -28,9 +28,8 @@ class ConditionCells {
     return text;
   }
 
-  std::string of(const Conditions& conditions, const std::vector<OtherCondition>& others) const {
-    std::string text = cell(conditions.radius.value / kMillimetre) + "," + cell(conditions.speed.value / kRpm) + "," +
-                       cell(conditions.load.value);
+  std::string of(const Conditions& c, const std::vector<OtherCondition>& others) const {
+    std::string text = cell(c.radius.value / kMillimetre) + "," + cell(c.speed.value / kRpm) + "," + cell(c.load.value);
     for (const std::string& name : names_) {
       const auto found =
           std::find_if(others.begin(), others.end(), [&](const OtherCondition& other) { return other.name == name; });
@@ -48,5 +47,10 @@ class ConditionCells {
 
   std::vector<std::string> names_;
 };
+
+/// A list of names and values.
+inline Json others_json(const std::vector<OtherCondition>& others) {
+  return list_of(others, [](const OtherCondition& o) { return object("name", o.name, "value", o.value); });
+}
 
 }  // namespace tribofit

@@ -1,0 +1,101 @@
+#include "assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribofit/fit/observations.hpp"
+
+namespace tribofit {
+namespace {
+
+/// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
+constexpr double kLearntByHeart = 1.5;
+/// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
+constexpr double kClose = 0.02, kOutline = 0.08;
+/// Held-out error over the floor from which a fit is well above it.
+constexpr double kWellAbove = 1.25;
+/// p value from which one law is clearly better than another.
+constexpr double kSignificant = 0.05;
+
+}  // namespace
+
+double over_floor(const Fit& fit) {
+  constexpr double kRounding = 1e-9;
+  if (fit.error.held_out_rmse < kRounding) return 1;  // simulated without noise
+  return fit.floor.rmse > 0 ? fit.error.held_out_rmse / fit.floor.rmse : std::nan("");
+}
+
+FitQuality quality_of(const Fit& fit) {
+  if (!fit.converged || fit.parameters.empty()) return FitQuality::unusable;
+  const double ratio = over_floor(fit);
+  if (ratio < 1 / kAtFloor) return FitQuality::floor_too_high;
+  if (fit.error.held_out_rmse > kLearntByHeart * fit.error.rmse) return FitQuality::not_transferable;
+  if (ratio <= kAtFloor) return FitQuality::at_floor;
+  if (fit.error.mean_relative <= kClose) return FitQuality::close;
+  return fit.error.mean_relative <= kOutline ? FitQuality::outline : FitQuality::poor;
+}
+
+bool well_above_floor(const Fit& fit) {
+  return fit.error.held_out_rmse > kWellAbove * fit.floor.rmse;
+}
+
+bool is_fixed(const FitParameter& p) {
+  return !p.at_bound && p.upper95 - p.lower95 < std::abs(p.value);
+}
+
+std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t chosen) {
+  std::vector<LawComparison> comparisons;
+  if (fits.empty()) return comparisons;
+  const Fit& best = fits[chosen];
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const Fit& other = fits[k];
+    const bool comparable = k != chosen && other.protocol == best.protocol && other.converged &&
+                            other.cycle_squares.size() == best.cycle_squares.size() && !best.cycle_squares.empty();
+    if (!comparable) continue;
+    const Comparison comparison = compare_held_out(best, other);
+    comparisons.push_back({chosen, k, comparison, comparison.p_value < kSignificant});
+  }
+  return comparisons;
+}
+
+std::size_t evidence_of(const Motion& motion, const Segmentation& segmentation) {
+  return observe(motion, segmentation, {}, 1).cycles;
+}
+
+Curve curve_of(const Fit& fit, std::size_t points) {
+  constexpr double kReach = 1.25;
+  std::vector<double> velocity(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(points - 1);
+  }
+  return law_curve(fit, velocity);
+}
+
+Membership membership(const Motion& motion, const Segmentation& segmentation, const Fit* fit, std::size_t before) {
+  const std::vector<Cycle>& cycles = segmentation.cycles;
+  Membership out;
+  out.cycle.assign(motion.size(), Membership::none);
+  out.fold.assign(motion.size(), Membership::none);
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    for (const SampleRange& span : {cycles[c].stick, cycles[c].slip}) {
+      const std::size_t end = std::min(span.end, out.cycle.size());
+      for (std::size_t i = span.begin; i < end; ++i) out.cycle[i] = c;
+    }
+  }
+  if (fit == nullptr || fit->cycles == 0) return out;
+  // The unit of evidence is a slip, or a piece of one where nothing sticks; stick goes with the slip after it.
+  for (const Observations::SlipObservation& range : observe(motion, segmentation, {}, 1).slips) {
+    const std::size_t fold = fit->fold_of(before + range.cycle);
+    std::size_t begin = range.samples.begin;
+    const std::size_t c = out.cycle[begin];
+    if (c != Membership::none && cycles[c].slip.begin == begin && cycles[c].stick.size() > 0) {
+      begin = cycles[c].stick.begin;
+    }
+    for (std::size_t i = begin; i < range.samples.end; ++i) {
+      if (out.cycle[i] == c) out.fold[i] = fold;
+    }
+  }
+  return out;
+}
+
+}  // namespace tribofit

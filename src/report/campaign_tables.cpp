@@ -1,0 +1,307 @@
+#include "campaign_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "numbers.hpp"
+#include "terminal_text.hpp"
+#include "tribofit/campaign/earlier.hpp"
+
+namespace tribofit {
+namespace {
+
+std::string name_of(const PooledGroup& group) {
+  return conditions_text(group.conditions, group.others);
+}
+
+/// The protocol as people call it; JSON and CSV have its own name.
+std::string protocol_text(const std::string& protocol) {
+  return protocol == "published" ? "extremes" : protocol;
+}
+
+/// Values of one earlier value and law: joint fit and per-cycle extremes side by side; one of them may be missing.
+struct Pair {
+  const ComparedValue *joint = nullptr, *extremes = nullptr;
+};
+
+bool same_value(const ComparedValue& a, const ComparedValue& b) {
+  return a.group == b.group && a.law == b.law && a.earlier.line == b.earlier.line &&
+         a.earlier.column == b.earlier.column && a.earlier.name == b.earlier.name;
+}
+
+std::vector<Pair> pairs_of(const std::vector<ComparedValue>& values) {
+  std::vector<Pair> pairs;
+  for (const ComparedValue& v : values) {
+    const bool extremes = v.protocol == "published";
+    if (extremes && !pairs.empty() && pairs.back().joint != nullptr && same_value(v, *pairs.back().joint)) {
+      pairs.back().extremes = &v;
+    } else {
+      pairs.push_back(extremes ? Pair{nullptr, &v} : Pair{&v, nullptr});
+    }
+  }
+  return pairs;
+}
+
+std::string percent_text(double percent) {
+  return std::isfinite(percent) ? fmt::format("{:+.2f} %", percent) : "-";
+}
+
+std::string signed_text(double value) {
+  if (!std::isfinite(value)) return "-";
+  return std::abs(value) < 100 ? fmt::format("{:+.1f}", value) : fmt::format("{:+.0f}", value);
+}
+
+std::string preference_text(const LawPreference& p) {
+  const std::string chance = std::isfinite(p.p_value) ? ", " + p_value_text(p.p_value) : "";
+  return fmt::format("{} in {} of {} run{}; the held-out error of {} is {} times as large{}", p.better, p.better_in,
+                     p.runs, p.runs == 1 ? "" : "s", p.other, significant(p.ratio, 4), chance);
+}
+
+ReportTable values_table(std::string caption) {
+  ReportTable table(std::move(caption));
+  table.text({"conditions", "value"}).text({"law", "protocol"}, 1).numbers({"mean", "95 % interval"});
+  table.numbers({"statistical"}, 2).numbers({"between runs"}).numbers({"systematic"}, 2).numbers({"runs"});
+  table.text({"unit"});
+  return table;
+}
+
+std::vector<std::string> row_of(const PooledValue& v, const std::string& name, const std::string& law,
+                                const std::string& protocol, const std::string& conditions) {
+  const auto part = [&](double value) { return std::isfinite(value) && value != 0 ? significant(value, 2) : "-"; };
+  const bool known = std::isfinite(v.std_error) && v.std_error > 0;
+  return {conditions,
+          name,
+          law,
+          protocol_text(protocol),
+          with_error(v.value, v.std_error),
+          known ? interval_text(v.lower95, v.upper95, places_for(v.std_error)) : "-",
+          part(v.statistical),
+          part(v.between),
+          part(v.systematic),
+          std::to_string(v.runs),
+          v.unit == "1" ? "" : v.unit};
+}
+
+/// "1.2 +/- 0.3"; a star where it is that of a single run.
+std::string pooled_text(const PooledValue& value) {
+  if (value.runs == 0) return "-";
+  return with_error(value.value, value.std_error) + (value.runs == 1 ? " *" : "");
+}
+
+/// "s/mm per rpm".
+std::string slope_unit(const Trend& t) {
+  const std::string per = t.condition == "order" ? "run" : t.condition_unit;
+  const std::string unit = t.unit == "1" ? "" : t.unit;
+  return unit + (per.empty() ? "" : (unit.empty() ? "per " : " per ") + per);
+}
+
+}  // namespace
+
+ReportTable comparison_table(const ComparisonReport& report, std::span<const PooledGroup> groups) {
+  ReportTable table("This campaign beside " + report.values.path);
+  table.text({"conditions", "value", "law"}).numbers({"earlier", "joint fit", "difference", "std errors"});
+  table.numbers({"extremes", "difference"}, 1);
+  std::string before;
+  for (const Pair& pair : pairs_of(report.values.values)) {
+    const ComparedValue& v = *(pair.joint != nullptr ? pair.joint : pair.extremes);
+    const std::string conditions = name_of(groups[v.group]);
+    std::vector<std::string> row = {conditions == before ? "" : conditions,
+                                    with_unit(v.earlier.name, v.ours.unit),
+                                    v.law,
+                                    with_error(v.earlier.value, v.earlier.std_error),
+                                    "",
+                                    "",
+                                    "",
+                                    "",
+                                    ""};
+    before = conditions;
+    if (pair.joint != nullptr) {
+      row[4] = with_error(v.ours.value, v.ours.std_error);
+      row[5] = percent_text(v.percent);
+      row[6] = signed_text(v.in_std_errors);
+    }
+    if (pair.extremes != nullptr) {
+      row[7] = significant(pair.extremes->ours.value, 4);
+      row[8] = percent_text(pair.extremes->percent);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
+  ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r");
+  table.text({"conditions", "law", "protocol"}).numbers({"samples below 0.08", "mean", "largest"});
+  table.numbers({"bins below 0.08", "largest of bins"}, 1);
+  std::string before;
+  for (const ErrorStatement& e : statements.errors) {
+    const std::string conditions = name_of(groups[e.group]);
+    table.rows.push_back({conditions == before ? "" : conditions, e.law, protocol_text(e.protocol),
+                          share_text(e.below_limit), significant(e.mean_relative, 2), significant(e.max_relative, 2),
+                          share_text(e.bins_below_limit), significant(e.largest_of_bins, 2)});
+    before = conditions;
+  }
+  return table;
+}
+
+ReportTable repeats_table(std::span<const PooledGroup> groups) {
+  ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)");
+  table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k", "alpha, beta [s/mm]"});
+  table.numbers({"best in"}, 1);
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      if (fit.protocol != "joint") continue;
+      std::vector<std::string> row = {name_of(group), std::to_string(group.runs.size()), fit.law};
+      for (std::size_t k = 0; k < 3; ++k) {
+        row.push_back(k < fit.parameters.size() ? pooled_text(fit.parameters[k]) : "");
+      }
+      row.push_back(std::to_string(fit.best_in));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+ReportTable groups_table(std::span<const PooledGroup> groups) {
+  ReportTable table = values_table("Repeats together (the mean with one standard error, from run to run)");
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      for (const PooledValue& v : fit.parameters) {
+        table.rows.push_back(row_of(v, full_name(v), fit.law, fit.protocol, name_of(group)));
+      }
+    }
+    for (const PooledValue& v : group.measures) table.rows.push_back(row_of(v, full_name(v), "", "", name_of(group)));
+  }
+  return table;
+}
+
+ReportTable shared_table(const SharedFit& fit) {
+  ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law");
+  for (const SharedFit::Parameter& common : fit.common) {
+    for (std::size_t l = 0; l < common.values.size(); ++l) {
+      table.rows.push_back(row_of(common.values[l], common.name, fit.law, "joint",
+                                  common.condition.empty() ? "all runs" : common.levels[l]));
+    }
+  }
+  return table;
+}
+
+ReportTable trends_table(const Trends& trends) {
+  ReportTable table("Straight lines over the conditions");
+  table.text({"parameter", "law", "over"}).numbers({"slope", "95 % interval"}).text({"unit"});
+  table.numbers({"runs", "p", "p, corrected"});
+  for (const Trend& t : trends.trends) {
+    table.rows.push_back({t.parameter, t.law, t.condition, with_error(t.slope, t.std_error),
+                          interval_text(t.lower95, t.upper95, places_for(t.std_error)), slope_unit(t),
+                          std::to_string(t.runs), significant(t.p_value, 2), significant(t.p_corrected, 2)});
+  }
+  return table;
+}
+
+ReportTable runs_table(const std::string& friction_unit) {
+  ReportTable table;
+  table.text({"run"}).text({"conditions"}, 1).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
+  table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit), "alpha, beta [s/mm]"});
+  table.numbers({with_unit("held-out error", friction_unit)});
+  table.numbers({with_unit("noise floor", friction_unit)}, 2).text({"warnings"}, 4);
+  return table;
+}
+
+std::vector<std::string> run_row(const RunResult& r) {
+  const bool read = r.run.status != RunStatus::unreadable;
+  const ResultFit* best = r.run.status == RunStatus::ok && r.best < r.fits.size() ? &r.fits[r.best] : nullptr;
+  std::vector<std::string> row = {r.run.name, conditions_text(read ? r.conditions : r.run.conditions, r.run.others),
+                                  read ? std::to_string(r.cycles) : "",
+                                  read ? with_error(r.frequency.value, r.frequency.std_error) : "",
+                                  best != nullptr ? best->law : std::string(to_string(r.run.status))};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool known = best != nullptr && k < best->parameters.size() && best->parameters[k].effect.empty();
+    row.push_back(known ? with_error(best->parameters[k].value, best->parameters[k].std_error) : "");
+  }
+  row.push_back(best != nullptr ? significant(best->held_out_rmse, 3) : "");
+  row.push_back(best != nullptr ? significant(best->floor_rmse, 3) : "");
+  row.push_back(r.run.message.empty() ? std::to_string(r.warnings.size()) : r.run.message);
+  return row;
+}
+
+std::vector<std::string> run_row(const MissingRun& run) {
+  return {run.name, "", "", "", "missing", "", "", "", "", "", ""};
+}
+
+std::string runs_note() {
+  return "+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE";
+}
+
+std::vector<std::string> preference_sentences(const Statements& s, std::span<const PooledGroup> groups) {
+  std::vector<std::string> out;
+  if (s.overall.runs == 0) return out;
+  out.push_back("all: " + preference_text(s.overall));
+  for (std::size_t g = 0; g < s.preference.size(); ++g) {
+    if (s.preference[g].runs > 0) out.push_back(name_of(groups[g]) + ": " + preference_text(s.preference[g]));
+  }
+  return out;
+}
+
+std::vector<std::string> trend_sentences(const Trends& trends) {
+  std::vector<std::string> out;
+  for (const Trend& t : significant_trends(trends)) {
+    out.push_back(fmt::format("{} ({} law) {} with {}: {}{} ({}, corrected for {} trends)", t.parameter, t.law,
+                              t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error),
+                              unit_behind(slope_unit(t)), p_value_text(t.p_corrected), trends.trends.size()));
+  }
+  if (out.empty() && !trends.trends.empty()) out.push_back("no significant trend");
+  return out;
+}
+
+std::string pooled_table(const Pooled& pooled, const TerminalOptions& options) {
+  constexpr std::size_t kMostRows = 40;
+  if (pooled.groups.empty()) return "";
+  TerminalText text(options);
+  const ReportTable repeats = repeats_table(pooled.groups);
+  text.heading(repeats.caption);
+  text.table(repeats, kMostRows);
+  if (repeats.rows.size() > kMostRows) {
+    text.line(fmt::format("... and {} rows more: see pooled.csv", repeats.rows.size() - kMostRows));
+  }
+  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
+                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
+  if (single) text.line("* one run: what differs from run to run is not in its error");
+  for (const SharedFit& fit : pooled.shared) {
+    const ReportTable shared = shared_table(fit);
+    text.heading(shared.caption);
+    text.table(shared);
+    text.lines(fit.notes);
+  }
+  const std::vector<std::string> trends = trend_sentences(pooled.trends);
+  if (!trends.empty()) text.heading("Trends");
+  text.lines(trends, 2, 4);
+  for (const std::string& warning : pooled.trends.warnings) text.warning(warning);
+  return text.take();
+}
+
+std::string render_comparison(const ComparisonReport& report, std::span<const PooledGroup> groups,
+                              const TerminalOptions& options) {
+  TerminalText text(options);
+  text.heading("Beside " + report.values.path);
+  if (!report.values.values.empty()) {
+    text.table(comparison_table(report, groups));
+    text.line(
+        "std errors: the difference over the error of ours (statistical, between runs and systematic) and that of the "
+        "earlier value where it is stated; extremes: per-cycle extremes");
+  }
+  text.lines(report.values.unmatched, 2, 4);
+  const std::vector<std::string> preference = preference_sentences(report.statements, groups);
+  if (!preference.empty()) text.heading("Which law predicts better (joint fit, held-out cycles)");
+  text.lines(preference, 2, 4);
+  const ReportTable errors = error_table(report.statements, groups);
+  if (!errors.rows.empty()) {
+    text.heading(errors.caption);
+    text.table(errors);
+  }
+  text.raw("\n");
+  return text.take();
+}
+
+}  // namespace tribofit

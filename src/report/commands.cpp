@@ -1,0 +1,95 @@
+#include "commands.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "terminal_text.hpp"
+
+namespace tribofit {
+namespace {
+
+/// The words of a command; a quoted one stays whole.
+std::vector<std::string> split_command(const std::string& command) {
+  std::vector<std::string> words(1);
+  bool quoted = false;
+  for (const char c : command) {
+    if (c == '\'') quoted = !quoted;
+    if (c == ' ' && !quoted) {
+      words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+}  // namespace
+
+std::string shell_quoted(const std::string& argument) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string command_line(const std::vector<std::string>& words, const std::vector<std::string>& inputs) {
+  std::string text = "identify";
+  for (const std::string& word : words) text += " " + shell_quoted(word);
+  for (const std::string& input : inputs) text += " " + shell_quoted(input.rfind('-', 0) == 0 ? "./" + input : input);
+  return text;
+}
+
+std::string command_line(const TerminalOptions& options, const std::vector<std::string>& more,
+                         const std::string& path) {
+  std::vector<std::string> words = options.arguments;
+  words.insert(words.end(), more.begin(), more.end());
+  return command_line(words, {path});
+}
+
+std::vector<std::string> words_of(std::vector<std::string> words, const std::vector<std::string>& arguments,
+                                  const std::vector<std::string>& flags, const std::vector<std::string>& valued) {
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (contains(valued, arguments[k])) {
+      ++k;
+    } else if (!contains(flags, arguments[k])) {
+      words.push_back(arguments[k]);
+    }
+  }
+  return words;
+}
+
+bool has_option(const std::vector<std::string>& arguments, const std::string& name) {
+  return std::any_of(arguments.begin(), arguments.end(),
+                     [&](const std::string& a) { return a == name || a.rfind(name + "=", 0) == 0; });
+}
+
+std::string csv_folder_for(const std::string& path) {
+  return std::filesystem::path(path).stem().string() + "-csv";
+}
+
+std::string folded_command(const std::string& command, std::size_t width) {
+  constexpr std::size_t kIndent = 2, kContinued = 6;
+  std::string text(kIndent, ' ');
+  std::size_t column = kIndent;
+  for (const std::string& word : split_command(command)) {
+    const bool first = column == kIndent;
+    const std::size_t length = displayed(word);
+    if (!first && column + 1 + length + 2 > width) {
+      text += " \\\n" + std::string(kContinued, ' ') + word;
+      column = kContinued + length;
+      continue;
+    }
+    text += (first ? "" : " ") + word;
+    column += length + (first ? 0 : 1);
+  }
+  return text;
+}
+
+}  // namespace tribofit

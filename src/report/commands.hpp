@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "tribofit/report/terminal.hpp"
+
+namespace tribofit {
+
+/// A command that exists, with the user's own options, and what it is for.
+struct Suggestion {
+  std::string reason;  ///< "to ..."
+  std::string command;
+};
+
+/// `identify` with these words and inputs, as a shell reads them.
+std::string command_line(const std::vector<std::string>& words, const std::vector<std::string>& inputs);
+
+/// `identify` with the user's own options, `more` behind them, and the trace. options.arguments begins with the verb
+/// where there is one.
+std::string command_line(const TerminalOptions& options, const std::vector<std::string>& more, const std::string& path);
+
+/// `verb` and the user's own options; those named in `flags` are left out, and those in `valued` with their values.
+std::vector<std::string> words_of(std::vector<std::string> verb, const std::vector<std::string>& arguments,
+                                  const std::vector<std::string>& flags = {},
+                                  const std::vector<std::string>& valued = {});
+
+bool has_option(const std::vector<std::string>& arguments, const std::string& name);
+
+/// "NAME-csv" in the folder where one works: where the CSV files of a trace may go.
+std::string csv_folder_for(const std::string& path);
+
+/// A command on lines no longer than `width`, as a shell reads them: indented, and broken between words with a
+/// backslash.
+std::string folded_command(const std::string& command, std::size_t width);
+
+}  // namespace tribofit

@@ -1,0 +1,231 @@
+#include "fit_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/assessment.hpp"
+#include "numbers.hpp"
+#include "report_parts.hpp"
+
+namespace tribofit {
+namespace {
+
+std::string_view equation(BaseLaw law) {
+  switch (law) {
+    case BaseLaw::exponential:
+      return "mu = mu_k + (mu_s - mu_k) exp(-alpha v)";
+    case BaseLaw::fractional:
+      return "mu = mu_k + (mu_s - mu_k) / (1 + beta v)";
+    case BaseLaw::coulomb:
+      break;
+  }
+  return "mu = mu_k in slip, mu_s at break-away";
+}
+
+std::string_view name_of(Protocol protocol) {
+  return protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
+}
+
+/// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
+std::string remarks_on(const Fit& fit, std::size_t index) {
+  const FitParameter& p = fit.parameters[index];
+  std::string remarks;
+  const auto add = [&](std::string_view remark) { remarks += (remarks.empty() ? "" : ", ") + std::string(remark); };
+  if (p.at_bound) add("at bound");
+  if (p.value == p.start && fit.protocol == Protocol::joint) add("unmoved");
+  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
+                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
+  if (correlated) add("correlated");
+  if (!p.determined) add("not determined");
+  return remarks;
+}
+
+/// Value, errors, intervals, start and remarks of every parameter, in the digits that its error allows.
+ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic) {
+  const bool profile = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const FitParameter& p) {
+    return std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
+  });
+  ReportTable table;
+  table.text({"parameter"}).numbers({"value"}).numbers({"std error"}, 1).numbers({"relative"}, 2);
+  table.numbers({"95 % interval"});
+  if (profile) table.numbers({"by profile"});
+  if (systematic) table.numbers({"systematic"});
+  table.text({"unit"}).numbers({"start"}, 3).text({"remarks"});
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FitParameter& p = fit.parameters[k];
+    const int places = places_of(p);
+    const bool has_error = std::isfinite(p.std_error) && p.std_error > 0;
+    const auto text = [&](double si) { return fixed(shown(p, si), places); };
+    const auto interval = [&](double lower, double upper) {
+      return interval_text(shown(p, lower), shown(p, upper), places);
+    };
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row = {full_name(p), text(p.value), has_error ? text(p.std_error) : "-",
+           has_error && p.value != 0 ? "(" + percent(p.std_error / std::abs(p.value)) + ")" : "",
+           has_error ? interval(p.lower95, p.upper95) : "-"};
+    if (profile) row.push_back(interval(p.profile_lower95, p.profile_upper95));
+    // Nothing declared that bears on it is not the same as no uncertainty.
+    if (systematic) row.push_back(p.systematic > 0 ? text(p.systematic) : "-");
+    row.insert(row.end(), {shown_unit(p, motion), significant(shown(p, p.start), 3), remarks_on(fit, k)});
+  }
+  return table;
+}
+
+/// How parameters move together: the covariance as correlations.
+ReportTable correlation_table(const Fit& fit) {
+  const std::size_t n = fit.parameters.size();
+  ReportTable table("Correlations of the parameters");
+  table.text({""}).folded = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    table.numbers({full_name(fit.parameters[i])});
+    std::vector<std::string> row = {full_name(fit.parameters[i])};
+    for (std::size_t j = 0; j < n; ++j) {
+      const double size = std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
+      row.push_back(size > 0 ? fixed(fit.covariance[i * n + j] / size, 2) : "-");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
+  const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
+  section.items.emplace_back(soft_text(
+      fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}).",
+                  level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse), level(fit.floor.noise),
+                  fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter))));
+  section.items.emplace_back(soft_text(
+      fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
+                  percent(fit.error.mean_relative), percent(fit.error.max_relative), share_text(fit.explained))));
+  if (fit.model.acts_in_stick() && std::isfinite(fit.stick_rmse)) {
+    section.items.emplace_back(
+        soft_text(fmt::format("Creep in stick: RMSE {} mm/s.", significant(fit.stick_rmse / kMillimetre, 3))));
+  }
+}
+
+void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
+  section.items.emplace_back(
+      heading_text(fmt::format("{}, {}{}", fit.model.name(), name_of(fit.protocol), best ? " (best)" : "")));
+  section.items.emplace_back(soft_text(std::string(equation(fit.model.law()))));
+  for (const Effect& effect : fit.model.effects()) {
+    const EffectInfo info = describe(effect);
+    section.items.emplace_back(soft_text(info.spelled() + ": " + info.equation));
+  }
+  if (!fit.converged) {
+    section.items.emplace_back(ReportText{"This fit did not converge: do not rely on it.", ReportText::Kind::warning});
+  }
+  if (has_parameters(fit)) {
+    section.items.emplace_back(parameter_table(fit, motion, instruments_declared));
+    add_errors(fit, motion, section);
+    const std::size_t n = fit.parameters.size();
+    if (n > 1 && fit.covariance.size() == n * n) section.items.emplace_back(correlation_table(fit));
+  }
+  for (const std::string& message : fit.messages) {
+    section.items.emplace_back(ReportText{"Note: " + message, ReportText::Kind::item});
+  }
+}
+
+/// The joint fit of the same law, which may carry effects that per-cycle extremes do not know; nullptr: none.
+const Fit* partner_of(std::span<const Fit> fits, const Fit& fit) {
+  if (fit.protocol != Protocol::published) return nullptr;
+  const auto at = std::find_if(fits.begin(), fits.end(), [&](const Fit& other) {
+    return other.protocol == Protocol::joint && other.model.law() == fit.model.law();
+  });
+  return at == fits.end() ? nullptr : &*at;
+}
+
+/// A parameter from the per-cycle extremes lies outside the 95 % interval of the joint fit.
+bool differs(const FitParameter& extreme, const FitParameter& joint) {
+  return extreme.value < joint.lower95 || extreme.value > joint.upper95;
+}
+
+}  // namespace
+
+std::string curve_name(const Fit& fit) {
+  return fit.model.name() + (fit.protocol == Protocol::published ? ", per-cycle extremes" : "");
+}
+
+bool has_parameters(const Fit& fit) {
+  return !fit.parameters.empty();
+}
+
+void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
+              ReportSection& section) {
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (which == Fits::without_compared && partner_of(fits, fits[k]) != nullptr) continue;
+    add_fit(fits[k], motion, k == best && fits.size() > 1, instruments_declared, section);
+  }
+  section.items.emplace_back(heading_text("Intervals and range"));
+  section.items.emplace_back(soft_text(
+      instruments_declared
+          ? "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the declared "
+            "instruments, not part of them."
+          : "Intervals are statistical, from cycle to cycle. There is no systematic part: no instrument uncertainties "
+            "declared (--instruments)."));
+  if (fits[best].fastest > 0) {
+    section.items.emplace_back(
+        soft_text(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
+                              significant(fits[best].fastest / kMillimetre, 3))));
+  }
+}
+
+void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSection& section) {
+  ReportTable table;
+  table.text({"law", "parameter"}).numbers({"extremes", "joint fit", "difference"}).text({"unit", "remarks"});
+  std::vector<std::string> notes;
+  bool different = false;
+  for (const Fit& fit : fits) {
+    const Fit* joint = partner_of(fits, fit);
+    if (joint == nullptr || !joint->converged) continue;
+    if (!has_parameters(fit) || !fit.converged) {
+      for (const std::string& message : fit.messages) notes.push_back(fit.model.name() + ": " + message);
+    }
+    for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
+      const FitParameter &a = fit.parameters[k], &b = joint->parameters[k];
+      const int places = places_of(b);
+      table.rows.push_back({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
+                            fixed(shown(b, b.value), places),
+                            b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
+                            shown_unit(b, motion), differs(a, b) ? "outside the 95 % interval" : ""});
+      different |= differs(a, b);
+    }
+  }
+  if (table.rows.empty() && notes.empty()) return;
+  section.items.emplace_back(heading_text("Per-cycle extremes beside the joint fit"));
+  const bool agree = !table.rows.empty() && !different;
+  if (!table.rows.empty()) section.items.emplace_back(std::move(table));
+  if (agree) {
+    section.items.emplace_back(soft_text("The extremes agree within the 95 % intervals of the joint fit."));
+  }
+  if (different) {
+    section.items.emplace_back(soft_text(
+        "Per-cycle extremes take mu_s and mu_k from the maximum and minimum of each cycle: noise widens extremes, and "
+        "the minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
+        "values, the extremes to compare with papers that used them."));
+  }
+  for (std::string& note : notes) section.items.emplace_back(soft_text(std::move(note)));
+}
+
+std::vector<std::string> comparison_sentences(std::span<const Fit> fits, std::size_t best) {
+  std::vector<std::string> sentences;
+  for (const LawComparison& c : compare_laws(fits, best)) {
+    const Fit &first = fits[c.first], &second = fits[c.second];
+    const std::string figures =
+        fmt::format("{} against {}, {}", significant(first.error.held_out_rmse, 3),
+                    significant(second.error.held_out_rmse, 3), p_value_text(c.comparison.p_value));
+    if (c.clear) {
+      const bool ahead = c.comparison.first_better;
+      sentences.push_back(fmt::format("{} has the smaller held-out error than {} ({}).",
+                                      (ahead ? first : second).model.name(), (ahead ? second : first).model.name(),
+                                      figures));
+    } else {
+      sentences.push_back(fmt::format("{} and {} are not distinguishable with these data (held-out error {}).",
+                                      first.model.name(), second.model.name(), figures));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace tribofit

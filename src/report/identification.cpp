@@ -1,0 +1,96 @@
+#include "numbers.hpp"
+#include "report_parts.hpp"
+#include "verdict.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr std::size_t kDrawnModels = 3;
+
+/// The best fit, then the others by the same protocol.
+std::vector<DrawnModel> models_of(const Identification& result) {
+  std::vector<DrawnModel> models;
+  if (result.fits.empty()) return models;
+  const Fit& best = result.fits[result.best];
+  if (has_parameters(best)) models.push_back({curve_name(best), &best});
+  for (const Fit& fit : result.fits) {
+    if (&fit == &best || fit.protocol != best.protocol || !has_parameters(fit) || models.size() == kDrawnModels) {
+      continue;
+    }
+    models.push_back({curve_name(fit), &fit});
+  }
+  return models;
+}
+
+std::vector<DrawnModel> curves_of(const Identification& result) {
+  std::vector<DrawnModel> models;
+  for (const Fit& fit : result.fits) {
+    if (has_parameters(fit) && fit.fastest > 0) models.push_back({curve_name(fit), &fit});
+  }
+  return models;
+}
+
+/// The best law and its parameters: what a reader looks for first.
+Facts result_facts(const Identification& result) {
+  Facts facts;
+  if (result.fits.empty() || !has_parameters(result.fits[result.best])) return facts;
+  const Fit& best = result.fits[result.best];
+  facts.emplace_back("best law", curve_name(best));
+  for (const FitParameter& p : best.parameters) facts.emplace_back(full_name(p), value_text(p, result.motion));
+  return facts;
+}
+
+}  // namespace
+
+std::string render_terminal(const Identification& result, const TerminalOptions& options) {
+  TerminalText text(options);
+  add_record(result, text);
+  text.heading("Stick-slip");
+  for (const auto& [name, value] : stick_slip_facts(result)) {
+    text.item(name, name == "frequency" ? value + " (+/- is one standard error, here and below)" : value);
+  }
+  const SpectralPeak& peak = result.spectral_peak;
+  if (peak.frequency > 0 && result.segmentation.kind == MotionKind::stick_slip) {
+    text.item("spectrum of v_r", "peak at " + significant(peak.frequency, 4) + " Hz; a plain FFT would say " +
+                                     significant(peak.bin_frequency, 4) + " Hz, in bins of " +
+                                     significant(peak.bin_width, 3) + " Hz");
+  }
+  for (const std::string& note : result.segmentation.notes) text.item("note", note);
+  if (!result.fits.empty()) {
+    ReportSection section;
+    add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::without_compared, section);
+    add_protocols(result.fits, result.motion, section);
+    text.items(section.items);
+    const std::vector<std::string> sentences = comparison_sentences(result.fits, result.best);
+    if (!sentences.empty()) text.heading("Which law");
+    text.lines(sentences);
+  }
+  text.result(result.warnings, verdict(result), next_command(result, options));
+  return text.take();
+}
+
+Report report_of(const Identification& result, const ReportOptions& options) {
+  const TerminalOptions terminal = terminal_like(options);
+  Report report = titled_report("friction law", file_name(result.path), "Friction law", verdict(result));
+  report.warnings = result.warnings;
+  report.facts = result_facts(result);
+  for (auto& fact : facts_of(result)) report.facts.push_back(std::move(fact));
+  const std::vector<DrawnModel> models = models_of(result), curves = curves_of(result);
+  TraceSections sections;
+  sections.add_trace(DrawnTrace(result, models, curves, "t1"));
+  sections.trace.items.emplace_back(health_table({&result, 1}));
+  if (!result.fits.empty()) {
+    add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::all, sections.law);
+    add_protocols(result.fits, result.motion, sections.law);
+    for (std::string& sentence : comparison_sentences(result.fits, result.best)) {
+      sections.law.items.emplace_back(plain_text(std::move(sentence)));
+    }
+    add(profile_charts(result.fits[result.best], result.motion, "best"), sections.law);
+  }
+  sections.move_into(report);
+  report.sections.push_back(
+      run_section(command_line(terminal, {}, result.path), {&result, 1}, next_command(result, terminal)));
+  return report;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,159 @@
+#include "record_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "numbers.hpp"
+#include "segmentation/counts.hpp"
+#include "tribofit/pipeline.hpp"
+#include "tribofit/version.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "15 mm (command line)", or every step's own where they differ.
+std::string condition(const Motion& motion, Condition Conditions::*which, double unit, std::string_view name) {
+  const Condition& whole = motion.conditions.*which;
+  const auto with_source = [](std::string text, const std::string& source) {
+    return source.empty() ? text : text + " (" + source + ")";
+  };
+  if (whole.known()) return with_source(brief(whole.value / unit) + " " + std::string(name), whole.source);
+  std::string list, source;
+  for (const Step& step : motion.steps) {
+    const Condition& own = step.conditions.*which;
+    if (!own.known()) continue;
+    list += (list.empty() ? "" : ", ") + brief(own.value / unit);
+    source = own.source;
+  }
+  if (list.empty()) return "not known";
+  return with_source(list + " " + std::string(name) + " by step", source);
+}
+
+std::string speed_text(const Motion& motion) {
+  if (motion.disc_speed.empty()) return condition(motion, &Conditions::speed, kRpm, "rpm");
+  const auto [low, high] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
+  return fmt::format("{} to {} rpm (recorded)", brief(*low / kRpm), brief(*high / kRpm));
+}
+
+std::string cycles_text(const Segmentation& s) {
+  switch (s.kind) {
+    case MotionKind::always_slipping:
+      return "none: the block never sticks, friction is fitted over the whole slip";
+    case MotionKind::always_sticking:
+      return "none: the block never slips, there is no sliding friction to fit";
+    case MotionKind::stick_slip:
+      break;
+  }
+  const std::size_t both = count_of_cycles(s);
+  if (both == s.cycles.size()) return fmt::format("{} with a stick and a slip", both);
+  return fmt::format("{} with a stick and a slip ({} slips in all)", both, s.cycles.size());
+}
+
+std::string_view sign_of(HealthItem::Status status) {
+  switch (status) {
+    case HealthItem::Status::problem:
+      return "✕ problem";
+    case HealthItem::Status::warning:
+      return "! warning";
+    case HealthItem::Status::ok:
+      break;
+  }
+  return "✓ ok";
+}
+
+void add_health(const Motion& motion, TerminalText& text) {
+  text.heading("Health");
+  bool found = false;
+  for (const HealthItem& check : motion.health) {
+    if (check.status == HealthItem::Status::ok) continue;
+    found = true;
+    const std::string head =
+        check.status == HealthItem::Status::problem ? text.in_red("problem ") : text.in_yellow("warning ");
+    text.raw(fmt::format("  {} {:<16} {}\n", head, check.check, wrapped(check.message, text.width(), 28)));
+  }
+  if (!found) text.raw(fmt::format("  no problems found ({} checks)\n", motion.health.size()));
+}
+
+}  // namespace
+
+std::string record_sentence(const Identification& r) {
+  return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
+}
+
+Facts condition_facts(const Motion& motion) {
+  return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
+          {"disc speed", speed_text(motion)},
+          {"load", condition(motion, &Conditions::load, 1, "N")}};
+}
+
+Facts stick_slip_facts(const Identification& r) {
+  const Segmentation& s = r.segmentation;
+  Facts facts = {{"cycles", cycles_text(s)}};
+  const auto add = [&](const char* name, const Estimate& m, double unit, const char* unit_name,
+                       const std::string& more = "") {
+    if (!std::isfinite(m.value) || s.kind != MotionKind::stick_slip) return;
+    facts.emplace_back(name, with_error(m.value / unit, m.std_error / unit) + " " + unit_name + more);
+  };
+  add("frequency", s.frequency, 1, "Hz");
+  add("amplitude of v_r", s.amplitude, kMillimetre, "mm/s");
+  const LongSticks sticks = long_sticks(s);
+  add("stick time", s.stick_time, kMillisecond, "ms",
+      has_uneven_sticks(s)
+          ? fmt::format("; the longest {} s, {} over 1 s", significant(sticks.longest, 3), sticks.count)
+          : "");
+  add("slip time", s.slip_time, kMillisecond, "ms");
+  const Estimate& branches = s.branch_difference;
+  const Interval interval = interval_of(branches);
+  if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
+    facts.emplace_back(
+        "branches",
+        fmt::format("at the same speed friction is {} by {}{} while speeding up than while slowing down",
+                    branches.value > 0 ? "higher" : "lower", with_error(std::abs(branches.value), branches.std_error),
+                    unit_behind(friction_unit(r.motion))));
+  }
+  if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
+  return facts;
+}
+
+ReportTable health_table(std::span<const Identification> traces) {
+  const bool several = traces.size() > 1;
+  ReportTable table("Health of the data");
+  if (several) table.text({"trace"});
+  table.text({"check", "status", "what was found"});
+  for (const HealthItem::Status status :
+       {HealthItem::Status::problem, HealthItem::Status::warning, HealthItem::Status::ok}) {
+    for (const Identification& trace : traces) {
+      for (const HealthItem& item : trace.motion.health) {
+        if (item.status != status) continue;
+        std::vector<std::string> row = {item.check, std::string(sign_of(status)), item.message};
+        if (several) row.insert(row.begin(), trace.path);
+        table.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return table;
+}
+
+void add_record(const Identification& r, TerminalText& text) {
+  const Motion& m = r.motion;
+  text.raw(fmt::format("{}  {}\n", text.bold(fmt::format("tribofit {}", version)), r.path));
+  std::string line = record_sentence(r);
+  if (m.trimmed > 0) {
+    line += fmt::format("; the first {} s (run-up) left out", significant(static_cast<double>(m.trimmed) * m.step, 3));
+  }
+  text.line(line);
+  const std::vector<std::string>& elsewhere = r.segmentation.notes;  // they stand with the stick-slip
+  for (const std::string& note : r.notes) {
+    if (std::find(elsewhere.begin(), elsewhere.end(), note) == elsewhere.end()) text.line(note);
+  }
+  text.heading("Conditions");
+  for (const auto& [name, value] : condition_facts(m)) text.item(name, value);
+  if (m.friction_kind == FrictionKind::force) {
+    text.item("friction", "is a force in newtons: no normal force is known");
+  }
+  add_health(m, text);
+}
+
+}  // namespace tribofit

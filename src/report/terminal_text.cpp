@@ -1,0 +1,178 @@
+#include "terminal_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+namespace tribofit {
+
+TerminalText::TerminalText(const TerminalOptions& options)
+    : width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {
+  if (!options.colour) return;
+  bold_ = "\033[1m";
+  dim_ = "\033[2m";
+  yellow_ = "\033[33m";
+  red_ = "\033[31m";
+  off_ = "\033[0m";
+}
+
+std::string TerminalText::in_colour(std::string_view code, std::string_view text) const {
+  return std::string(code) + std::string(text) + std::string(off_);
+}
+
+std::string TerminalText::with_signs(std::string_view text) const {
+  std::string out(text);
+  if (!unicode_) return out;
+  for (std::size_t at = out.find("+/-"); at != std::string::npos; at = out.find("+/-", at)) {
+    out.replace(at, 3, "\u00b1");
+  }
+  return out;
+}
+
+void TerminalText::heading(std::string_view title) {
+  text_ += "\n" + bold(title) + "\n";
+}
+
+void TerminalText::line(std::string_view sentence, std::size_t indent, std::size_t hanging) {
+  const std::string text = wrapped(with_signs(sentence), width_, hanging == kAll ? indent : hanging);
+  text_ += std::string(indent, ' ') + text + "\n";
+}
+
+void TerminalText::lines(const std::vector<std::string>& sentences, std::size_t indent, std::size_t hanging) {
+  for (const std::string& sentence : sentences) line(sentence, indent, hanging);
+}
+
+void TerminalText::item(std::string_view name, std::string_view text, std::size_t name_width) {
+  text_ += fmt::format("  {:<{}}{}\n", name, name_width, wrapped(with_signs(text), width_, name_width + 2));
+}
+
+void TerminalText::warning(std::string_view text) {
+  text_ += "  " + in_yellow("warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
+}
+
+void TerminalText::table(const ReportTable& all, std::size_t most) {
+  constexpr std::size_t kIndent = 2;
+  ReportTable table = all;
+  table.rows.resize(std::min(most, table.rows.size()));
+  for (std::vector<std::string>& row : table.rows) {
+    for (std::string& cell : row) cell = with_signs(cell);
+  }
+  int detail = 0;
+  for (const ReportColumn& column : table.columns) detail = std::max(detail, column.detail);
+  std::vector<std::string> rows;
+  for (; detail >= 0; --detail) {
+    rows = aligned(table, kIndent, detail);
+    if (std::all_of(rows.begin(), rows.end(), [&](const std::string& row) { return displayed(row) <= width_; })) break;
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    text_ += (k == 0 ? dim(rows[k]) : rows[k]) + "\n";
+  }
+}
+
+void TerminalText::items(const std::vector<ReportItem>& items) {
+  for (const ReportItem& item : items) {
+    if (const auto* shown = std::get_if<ReportTable>(&item); shown != nullptr && !shown->folded) table(*shown);
+    const auto* text = std::get_if<ReportText>(&item);
+    if (text == nullptr) continue;
+    switch (text->kind) {
+      case ReportText::Kind::heading:
+        heading(text->text);
+        break;
+      case ReportText::Kind::warning:
+        warning(text->text);
+        break;
+      case ReportText::Kind::command:
+        text_ += folded_command(text->text, width_) + "\n";
+        break;
+      case ReportText::Kind::plain:
+      case ReportText::Kind::soft:
+        line(text->text);
+        break;
+      case ReportText::Kind::item:
+        line(text->text, 2, 4);
+        break;
+    }
+  }
+}
+
+void TerminalText::next(const Suggestion& next) {
+  text_ += "\n" + wrapped("Next, " + next.reason + ":", width_, 0) + "\n" + folded_command(next.command, width_) + "\n";
+}
+
+void TerminalText::result(const std::vector<std::string>& warnings, std::string_view verdict, const Suggestion& then) {
+  heading("Result");
+  for (const std::string& text : warnings) warning(text);
+  line(verdict);
+  next(then);
+}
+
+std::size_t displayed(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent) {
+  std::string result;
+  std::size_t column = indent;
+  while (!sentence.empty()) {
+    const std::size_t blank = sentence.find(' ');
+    const std::string_view word = sentence.substr(0, blank);
+    const std::size_t length = displayed(word);
+    if (column > indent) {
+      const bool fits = column + 1 + length <= width;
+      result += fits ? std::string(" ") : "\n" + std::string(indent, ' ');
+      column = fits ? column + 1 : indent;
+    }
+    result += word;
+    column += length;
+    sentence.remove_prefix(blank == std::string_view::npos ? sentence.size() : blank + 1);
+  }
+  return result;
+}
+
+std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, int detail) {
+  const std::size_t count = table.rows.size();
+  const auto cell = [&](std::size_t row, std::size_t k) -> std::string_view {  // row 0: the header
+    if (row == 0) return table.columns[k].brief.empty() ? table.columns[k].name : table.columns[k].brief;
+    return k < table.rows[row - 1].size() ? std::string_view(table.rows[row - 1][k]) : std::string_view();
+  };
+  std::vector<std::string> lines(count + 1, std::string(indent, ' '));
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    if (table.columns[k].detail > detail) continue;
+    std::size_t width = 0;
+    for (std::size_t i = 0; i <= count; ++i) width = std::max(width, displayed(cell(i, k)));
+    for (std::size_t i = 0; i <= count; ++i) {
+      const std::string gap(width - displayed(cell(i, k)), ' ');
+      const std::string text(cell(i, k));
+      lines[i] += (k == 0 ? "" : "  ") + (table.columns[k].number ? gap + text : text + gap);
+    }
+  }
+  for (std::string& line : lines) line.erase(line.find_last_not_of(' ') + 1);
+  return lines;
+}
+
+BarSigns bar_signs(bool unicode) {
+  return unicode ? BarSigns{"\u2591", "\u2588"} : BarSigns{"-", "#"};
+}
+
+std::string bar(double value, double full, std::size_t columns, bool unicode, double pale) {
+  static constexpr std::array<const char*, 8> eighths = {"",       "\u258f", "\u258e", "\u258d",
+                                                         "\u258c", "\u258b", "\u258a", "\u2589"};
+  if (!(full > 0) || !std::isfinite(value)) return "";
+  const double width = static_cast<double>(columns);
+  const double length = std::clamp(value / full, 0.0, 1.0) * width;
+  const auto light = static_cast<std::size_t>(std::round(std::min(std::clamp(pale / full, 0.0, 1.0) * width, length)));
+  const auto [pale_sign, full_sign] = bar_signs(unicode);
+  std::string text;
+  for (std::size_t k = 0; k < light; ++k) text += pale_sign;
+  double left = length - static_cast<double>(light);
+  if (!unicode) left = std::round(left);
+  for (; left >= 1; left -= 1) text += full_sign;
+  if (unicode && left > 0) text += eighths[static_cast<std::size_t>(8 * left)];
+  return text;
+}
+
+}  // namespace tribofit

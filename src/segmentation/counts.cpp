@@ -1,0 +1,36 @@
+#include "counts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tribofit/statistics/distributions.hpp"
+
+namespace tribofit {
+
+Interval interval_of(const Estimate& estimate) {
+  const double half = t_quantile_95(estimate.degrees_of_freedom) * estimate.std_error;
+  return {estimate.value - half, estimate.value + half};
+}
+
+LongSticks long_sticks(const Segmentation& segmentation) {
+  LongSticks out{0, std::nan("")};
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (!(cycle.stick_time > 0)) continue;
+    if (cycle.stick_time > 1) ++out.count;
+    if (!(out.longest >= cycle.stick_time)) out.longest = cycle.stick_time;
+  }
+  return out;
+}
+
+bool has_uneven_sticks(const Segmentation& segmentation) {
+  constexpr double kUneven = 3;
+  return long_sticks(segmentation).longest > kUneven * segmentation.stick_time.value;
+}
+
+std::size_t count_of_cycles(const Segmentation& segmentation) {
+  return static_cast<std::size_t>(
+      std::count_if(segmentation.cycles.begin(), segmentation.cycles.end(),
+                    [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
+}
+
+}  // namespace tribofit

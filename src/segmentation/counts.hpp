@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+
+#include "tribofit/segmentation/cycles.hpp"
+
+namespace tribofit {
+
+/// What is counted over the cycles of a record.
+
+struct Interval {
+  double lower = 0, upper = 0;
+};
+
+/// 95 % interval of a mean over cycles.
+Interval interval_of(const Estimate& estimate);
+
+/// Sticks of more than a second, and the longest [s] (NaN where none is complete).
+struct LongSticks {
+  std::size_t count = 0;
+  double longest = 0;
+};
+LongSticks long_sticks(const Segmentation& segmentation);
+
+/// Some stick lasts several times as long as the mean one: the mean alone would mislead.
+bool has_uneven_sticks(const Segmentation& segmentation);
+
+/// Cycles with a stick and a slip.
+std::size_t count_of_cycles(const Segmentation& segmentation);
+
+}  // namespace tribofit
