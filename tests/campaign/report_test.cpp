@@ -71,7 +71,7 @@ std::vector<std::string> cells_of(const Report& report, const std::string& secti
       const auto* table = std::get_if<ReportTable>(&item);
       if (table == nullptr) continue;
       for (const auto& row : table->rows) {
-        EXPECT_EQ(row.size(), table->header.size()) << table->caption;
+        EXPECT_EQ(row.size(), table->columns.size()) << table->caption;
         cells.insert(cells.end(), row.begin(), row.end());
       }
     }

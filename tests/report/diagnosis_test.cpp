@@ -165,24 +165,24 @@ TEST(DiagnosisPage, TellsTheWholeStoryInOrder) {
   for (const char* part :
        {"runs/r15.csv: 15 mm; 4 rpm; 50 N; 2 cycles", "0 exponential law", "0.00880 +/- 0.00020", "1 + runout", "99 %",
         "floor", "0.00310", "Where the exponential law fails",
-        "Most of the error above the floor goes with the disc angle", "angle", "82 %", "Verdict: effect-found",
-        "What is missing is runout (A = 0.0480 +/- 0.0010)", "falls from 0.00880 to 0.00320", "runout.A",
+        "Most of the error above the noise floor goes with the disc angle", "angle", "82 %", "Verdict: effect-found",
+        "The effect found is runout (A = 0.0480 +/- 0.0010)", "falls from 0.00880 to 0.00320", "runout.A",
         "[0.0460, 0.0500]", "load-dependence, crosstalk: there is no load channel",
         "identify --radius 15mm --effect runout runs/r15.csv"}) {
     const std::size_t found = text.find(part, at);
     ASSERT_NE(found, std::string::npos) << part << "\n" << text;
     at = found;
   }
-  EXPECT_THAT(text, Not(HasSubstr("Not told apart")));
+  EXPECT_THAT(text, Not(HasSubstr("Not distinguishable")));
   EXPECT_THAT(page(made_up_diagnosis()), EndsWith("\n  identify --radius 15mm --effect runout runs/r15.csv\n"));
 }
 
 TEST(DiagnosisPage, EveryVerdictSaysNoMoreThanIsKnown) {
   EXPECT_THAT(prose(sufficient()),
-              AllOf(HasSubstr("The exponential law is enough"), HasSubstr("that these data could show"),
+              AllOf(HasSubstr("The exponential law is enough"), HasSubstr("These data show no further effect"),
                     Not(HasSubstr("Where the")), HasSubstr("identify --radius 15mm --csv r15-csv runs/r15.csv")));
   EXPECT_THAT(prose(unexplained()),
-              AllOf(HasSubstr("But that is not all"), HasSubstr("2.0 times the floor"),
+              AllOf(HasSubstr("But that is not all"), HasSubstr("2.0 times the noise floor"),
                     HasSubstr("no effect explains the rest"), HasSubstr("goes with the sliding speed"),
                     HasSubstr("--effect runout --formula 'rest = a*exp(-v/w); a=0.02, w=6mm/s'")));
   DiagnosedTraces nothing = unexplained();
@@ -197,16 +197,17 @@ TEST(DiagnosisPage, NamesAGroupAndTheTestThatWouldSplitIt) {
   DiagnosedTraces result = made_up_diagnosis();
   result.diagnosis.ladder[1].equivalent = {"drift", "heating"};
   result.diagnosis.next_experiment = "Record three revolutions.";
-  EXPECT_THAT(prose(result),
-              AllOf(HasSubstr("What is missing is runout or drift or heating, which these data cannot tell apart"),
-                    HasSubstr("runout, drift and heating fit these data equally well"),
-                    HasSubstr("The test that would: Record three revolutions.")));
+  EXPECT_THAT(
+      prose(result),
+      AllOf(HasSubstr("The effect found is runout or drift or heating, which are not distinguishable with these data"),
+            HasSubstr("runout, drift and heating fit these data equally well"),
+            HasSubstr("Discriminating experiment: Record three revolutions.")));
 }
 
 TEST(DiagnosisPage, WhatShowsInTheMotionIsNoRungButNamed) {
   const std::string text = prose(in_the_motion());
-  EXPECT_THAT(text, AllOf(HasSubstr("What is missing is radius-offset or velocity-gain"),
-                          HasSubstr("The test that would: Tilt the laser"), Not(HasSubstr("falls from"))));
+  EXPECT_THAT(text, AllOf(HasSubstr("The effect found is radius-offset or velocity-gain"),
+                          HasSubstr("Discriminating experiment: Tilt the laser"), Not(HasSubstr("falls from"))));
 }
 
 TEST(DiagnosisPage, AConfirmationSaysWhetherItHeld) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "report/terminal_text.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -55,10 +57,10 @@ TEST(Numbers, CountsAndRates) {
 }
 
 TEST(Numbers, TablesLineUpWhateverTheAlphabet) {
-  Table table({"name", "value"});
-  table.add({"α", "1"});
-  table.add({"beta", "10.5"});
-  EXPECT_EQ(table.text(2), "  name  value\n  α         1\n  beta   10.5\n");
+  ReportTable table;
+  table.text({"name"}).numbers({"value"});
+  table.rows = {{"α", "1"}, {"beta", "10.5"}};
+  EXPECT_EQ(aligned(table, 2), (std::vector<std::string>{"  name  value", "  α         1", "  beta   10.5"}));
 }
 
 TEST(Numbers, SentencesBreakAtBlanks) {

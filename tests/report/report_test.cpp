@@ -52,12 +52,13 @@ TEST(ReportOfATrace, HoldsCommandParametersAndBothProtocols) {
   EXPECT_EQ(report.title, "r15.csv");
   EXPECT_THAT(commands_of(report), HasSubstr("identify --radius 15mm runs/r15.csv\n"));
   const std::vector<ReportTable> tables = all<ReportTable>(report);
-  const auto parameters = std::find_if(tables.begin(), tables.end(),
-                                       [](const ReportTable& table) { return table.header.front() == "parameter"; });
+  const auto parameters = std::find_if(
+      tables.begin(), tables.end(), [](const ReportTable& table) { return table.columns.front().name == "parameter"; });
   ASSERT_NE(parameters, tables.end());
-  EXPECT_THAT(parameters->rows[0], ElementsAre("mu_s", "0.5090", "1", "0.0012", ::testing::_, ::testing::_));
-  const auto protocols =
-      std::find_if(tables.begin(), tables.end(), [](const ReportTable& table) { return table.header[0] == "law"; });
+  EXPECT_THAT(parameters->rows[0],
+              ElementsAre("mu_s", "0.5090", "0.0012", "(0.24 %)", ::testing::_, "1", ::testing::_, ::testing::_));
+  const auto protocols = std::find_if(tables.begin(), tables.end(),
+                                      [](const ReportTable& table) { return table.columns[0].name == "law"; });
   ASSERT_NE(protocols, tables.end());
   EXPECT_EQ(protocols->rows.size(), 3u);
 }
@@ -70,7 +71,7 @@ TEST(ReportOfATrace, BestLawComesFirstAndThePublishedProtocolCanBeSwitchedOn) {
   }
   EXPECT_TRUE(shown.at("exponential"));
   EXPECT_TRUE(shown.at("fractional"));
-  EXPECT_FALSE(shown.at("exponential, published protocol"));
+  EXPECT_FALSE(shown.at("exponential, per-cycle extremes"));
 }
 
 TEST(ReportOfATrace, ShowsTheBlockVelocityAndTheDisc) {

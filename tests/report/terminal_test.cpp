@@ -100,11 +100,11 @@ TEST(Terminal, TheBiasOfThePublishedProtocolStandsBesideTheJointFit) {
   Identification result = made_up_result();
   EXPECT_THAT(rendered(result), ContainsRegex("alpha +0\\.06010 +0\\.05214 +\\+15\\.3 % +s/mm"));
   result.fits[2].parameters[2].value = 52.2;
-  EXPECT_THAT(rendered(result), HasSubstr("agrees within the 95 % intervals"));
+  EXPECT_THAT(rendered(result), HasSubstr("agree within the 95 % intervals"));
 }
 
 TEST(Terminal, ErrorsStandBesideTheFloor) {
-  EXPECT_THAT(rendered(made_up_result()), AllOf(HasSubstr("RMSE 0.00310, on held-out data 0.00320; floor 0.00310"),
+  EXPECT_THAT(rendered(made_up_result()), AllOf(HasSubstr("RMSE 0.00310, held-out error 0.00320; noise floor 0.00310"),
                                                 HasSubstr("mean 0.60 %, largest 5.0 %"), HasSubstr("explains 99.8 %")));
 }
 
