@@ -13,9 +13,9 @@
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
-#include "tribofit/report/diagnosis.hpp"
 #include "tribofit/report/json.hpp"
 #include "verbs.hpp"
+#include "tribofit/report/terminal.hpp"
 
 using namespace tribofit;
 

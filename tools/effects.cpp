@@ -6,7 +6,6 @@
 #include "parameter_options.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
-#include "tribofit/report/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 

@@ -1,5 +1,3 @@
-#include "tribofit/report/rig.hpp"
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +10,8 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "verbs.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "tribofit/report/json.hpp"
 
 using namespace tribofit;
 

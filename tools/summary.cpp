@@ -10,7 +10,6 @@
 #include "console.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/figures.hpp"
 #include "tribofit/report/pooled.hpp"
 #include "tribofit/report/whole_file.hpp"

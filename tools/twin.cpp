@@ -1,5 +1,3 @@
-#include "tribofit/report/twin.hpp"
-
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,6 +11,9 @@
 #include "tribofit/pipeline.hpp"
 #include "tribofit/study/twin.hpp"
 #include "verbs.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "tribofit/report/json.hpp"
+#include "tribofit/report/report.hpp"
 
 using namespace tribofit;
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tribofit/campaign/run_result.hpp"
-#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/pooled.hpp"
 #include "tribofit/report/report.hpp"
 

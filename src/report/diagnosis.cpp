@@ -1,5 +1,3 @@
-#include "tribofit/report/diagnosis.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "terminal_text.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include "diagnosis_sentences.hpp"
@@ -15,33 +14,6 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t kDrawnTraces = 8;
-
-/// The final model, then the law it began with.
-std::vector<DrawnModel> models_of(const DiagnosedTraces& result) {
-  std::vector<DrawnModel> models;
-  if (result.fits.empty()) return models;
-  const Fit& best = result.fits[result.best];
-  if (has_parameters(best)) models.push_back({curve_name(best), &best});
-  for (const Fit& fit : result.fits) {
-    if (&fit == &best || fit.model.law() != result.diagnosis.law || !has_parameters(fit) || models.size() > 1) continue;
-    models.push_back({curve_name(fit), &fit});
-  }
-  return models;
-}
-
-/// The models beside the samples, and the rungs between them.
-std::vector<DrawnModel> curves_of(const DiagnosedTraces& result, const std::vector<DrawnModel>& models) {
-  std::vector<DrawnModel> curves;
-  std::set<std::string> names;
-  const auto draw = [&](const Fit& fit) {
-    if (has_parameters(fit) && fit.fastest > 0 && names.insert(curve_name(fit)).second) {
-      curves.push_back({curve_name(fit), &fit});
-    }
-  };
-  for (const DrawnModel& model : models) draw(*model.fit);
-  for (const Fit& rung : result.rungs) draw(rung);
-  return curves;
-}
 
 /// Each status as people read it; JSON has its own words.
 std::string_view status_text(EffectStatus status) {
@@ -116,7 +88,9 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   }
   if (count == 1) report.facts = facts_of(result.traces.front());
   report.sections.push_back(diagnosis_section(result, motion));
-  const std::vector<DrawnModel> models = models_of(result), curves = curves_of(result, models);
+  const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
+  const std::vector<DrawnModel> models = drawn_models(result.fits, result.best, 2, bare);
+  const std::vector<DrawnModel> curves = drawn_curves(models, result.rungs);
   TraceSections sections;
   for (std::size_t k = 0; k < drawn; ++k) {
     const Identification& trace = result.traces[k];

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "terminal_text.hpp"
-#include "tribofit/report/fingerprint.hpp"
+#include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {

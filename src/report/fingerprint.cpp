@@ -1,6 +1,6 @@
-#include "tribofit/report/fingerprint.hpp"
-
+#include "tribofit/oscillator/fingerprint.hpp"
 #include <fmt/format.h>
+#include "tribofit/report/terminal.hpp"
 
 #include <algorithm>
 #include <cmath>

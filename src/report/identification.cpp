@@ -5,31 +5,6 @@
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kDrawnModels = 3;
-
-/// The best fit, then the others by the same protocol.
-std::vector<DrawnModel> models_of(const Identification& result) {
-  std::vector<DrawnModel> models;
-  if (result.fits.empty()) return models;
-  const Fit& best = result.fits[result.best];
-  if (has_parameters(best)) models.push_back({curve_name(best), &best});
-  for (const Fit& fit : result.fits) {
-    if (&fit == &best || fit.protocol != best.protocol || !has_parameters(fit) || models.size() == kDrawnModels) {
-      continue;
-    }
-    models.push_back({curve_name(fit), &fit});
-  }
-  return models;
-}
-
-std::vector<DrawnModel> curves_of(const Identification& result) {
-  std::vector<DrawnModel> models;
-  for (const Fit& fit : result.fits) {
-    if (has_parameters(fit) && fit.fastest > 0) models.push_back({curve_name(fit), &fit});
-  }
-  return models;
-}
-
 /// The best law and its parameters: what a reader looks for first.
 Facts result_facts(const Identification& result) {
   Facts facts;
@@ -70,12 +45,15 @@ std::string render_terminal(const Identification& result, const TerminalOptions&
 }
 
 Report report_of(const Identification& result, const ReportOptions& options) {
+  constexpr std::size_t kDrawnModels = 3;
   const TerminalOptions terminal = terminal_like(options);
   Report report = titled_report("friction law", file_name(result.path), "Friction law", verdict(result));
   report.warnings = result.warnings;
   report.facts = result_facts(result);
   for (auto& fact : facts_of(result)) report.facts.push_back(std::move(fact));
-  const std::vector<DrawnModel> models = models_of(result), curves = curves_of(result);
+  const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
+  const std::vector<DrawnModel> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
+  const std::vector<DrawnModel> curves = drawn_curves(models, result.fits);
   TraceSections sections;
   sections.add_trace(DrawnTrace(result, models, curves, "t1"));
   sections.trace.items.emplace_back(health_table({&result, 1}));

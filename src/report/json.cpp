@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "fit/assessment.hpp"
@@ -13,29 +14,9 @@
 namespace tribofit {
 namespace {
 
-std::string_view name_of(HealthItem::Status status) {
-  switch (status) {
-    case HealthItem::Status::ok:
-      return "ok";
-    case HealthItem::Status::warning:
-      return "warning";
-    case HealthItem::Status::problem:
-      break;
-  }
-  return "problem";
-}
-
-std::string_view name_of(MotionKind kind) {
-  switch (kind) {
-    case MotionKind::stick_slip:
-      return "stick-slip";
-    case MotionKind::always_slipping:
-      return "always-slipping";
-    case MotionKind::always_sticking:
-      break;
-  }
-  return "always-sticking";
-}
+// In the order of HealthItem::Status and MotionKind.
+constexpr std::array<const char*, 3> kStatus = {"ok", "warning", "problem"};
+constexpr std::array<const char*, 3> kMotion = {"stick-slip", "always-slipping", "always-sticking"};
 
 /// In the units in which the parameters are shown; empty where it is not known.
 Json covariance_json(const Fit& fit) {
@@ -151,7 +132,8 @@ Json conditions_of(const Motion& motion) {
 
 Json health_json(const Motion& motion) {
   return list_of(motion.health, [](const HealthItem& item) {
-    return object("check", item.check, "status", name_of(item.status), "message", item.message);
+    return object("check", item.check, "status", kStatus.at(static_cast<std::size_t>(item.status)), "message",
+                  item.message);
   });
 }
 
@@ -167,7 +149,8 @@ Json stick_slip_json(const Identification& result) {
       "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
       s.slip_time.std_error, "slips", s.cycles.size(), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s",
       long_sticks(s).longest, "branch_difference", s.branch_difference.value, "branch_difference_std_error",
-      s.branch_difference.std_error, "motion", name_of(s.kind), "notes", s.notes, "spectrum",
+      s.branch_difference.std_error, "motion", kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes,
+      "spectrum",
       object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
              peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
 }

@@ -1,6 +1,9 @@
 #include "tribofit/report/page.hpp"
 
+#include <algorithm>
+#include <initializer_list>
 #include <string_view>
+#include <utility>
 
 #include "page_parts.hpp"
 #include "report/charts/report_json.hpp"
@@ -9,36 +12,16 @@
 namespace tribofit {
 namespace {
 
-std::string html_escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-/// JSON that can stand within a script element: no name in it ends the element or begins a comment.
-std::string embedded(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+/// The text with some of its characters replaced.
+std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> by) {
   std::string out;
   out.reserve(text.size());
   for (const char c : text) {
-    if (c == '<') {
-      out += "\\u003c";  // stands in strings only
-    } else {
+    const auto at = std::find_if(by.begin(), by.end(), [&](const auto& one) { return one.first == c; });
+    if (at == by.end()) {
       out += c;
+    } else {
+      out += at->second;
     }
   }
   return out;
@@ -50,12 +33,13 @@ std::string assembled(const std::string& title, const Json& data) {
     throw InputError("this build leaves the report page out",
                      "build it where npm is installed (scripts/setup page), or use --json or --csv");
   }
-  const std::string text = embedded(data);
+  // No name in a string ends the script element or begins a comment.
+  const std::string text = replaced(line_of(data), {{'<', "\\u003c"}});
   constexpr std::size_t kPage = std::size_t{1} << 21;
   std::string page;
   page.reserve(kPage + text.size());
   for (const std::string_view piece : parts.head) page += piece;
-  page += html_escaped(title);
+  page += replaced(title, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}});
   for (const std::string_view piece : parts.middle) page += piece;
   page += text;
   for (const std::string_view piece : parts.tail) page += piece;

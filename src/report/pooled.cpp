@@ -7,7 +7,6 @@
 #include "csv_text.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
-#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "numbers.hpp"
@@ -49,18 +50,6 @@ std::string cycles_text(const Segmentation& s) {
   const std::size_t both = count_of_cycles(s);
   if (both == s.cycles.size()) return fmt::format("{} with a stick and a slip", both);
   return fmt::format("{} with a stick and a slip ({} slips in all)", both, s.cycles.size());
-}
-
-std::string_view sign_of(HealthItem::Status status) {
-  switch (status) {
-    case HealthItem::Status::problem:
-      return "✕ problem";
-    case HealthItem::Status::warning:
-      return "! warning";
-    case HealthItem::Status::ok:
-      break;
-  }
-  return "✓ ok";
 }
 
 void add_health(const Motion& motion, TerminalText& text) {
@@ -119,6 +108,7 @@ Facts stick_slip_facts(const Identification& r) {
 
 ReportTable health_table(std::span<const Identification> traces) {
   const bool several = traces.size() > 1;
+  constexpr std::array<const char*, 3> kSigns = {"✓ ok", "! warning", "✕ problem"};  // in the order of the status
   ReportTable table("Health of the data");
   if (several) table.text({"trace"});
   table.text({"check", "status", "what was found"});
@@ -127,7 +117,7 @@ ReportTable health_table(std::span<const Identification> traces) {
     for (const Identification& trace : traces) {
       for (const HealthItem& item : trace.motion.health) {
         if (item.status != status) continue;
-        std::vector<std::string> row = {item.check, std::string(sign_of(status)), item.message};
+        std::vector<std::string> row = {item.check, kSigns.at(static_cast<std::size_t>(status)), item.message};
         if (several) row.insert(row.begin(), trace.path);
         table.rows.push_back(std::move(row));
       }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "json_parts.hpp"
@@ -64,6 +65,30 @@ Facts facts_of(const Identification& r) {
   for (auto& fact : condition_facts(r.motion)) facts.push_back(std::move(fact));
   for (auto& fact : stick_slip_facts(r)) facts.push_back(std::move(fact));
   return facts;
+}
+
+std::vector<DrawnModel> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
+                                     const std::function<bool(const Fit&)>& wanted) {
+  std::vector<DrawnModel> models;
+  if (fits.empty()) return models;
+  if (has_parameters(fits[best])) models.push_back({curve_name(fits[best]), &fits[best]});
+  for (const Fit& fit : fits) {
+    if (&fit == &fits[best] || !wanted(fit) || !has_parameters(fit) || models.size() == most) continue;
+    models.push_back({curve_name(fit), &fit});
+  }
+  return models;
+}
+
+std::vector<DrawnModel> drawn_curves(const std::vector<DrawnModel>& models, std::span<const Fit> others) {
+  std::vector<DrawnModel> curves;
+  std::set<std::string> names;
+  const auto draw = [&](const Fit& fit) {
+    const bool known = has_parameters(fit) && fit.fastest > 0;
+    if (known && names.insert(curve_name(fit)).second) curves.push_back({curve_name(fit), &fit});
+  };
+  for (const DrawnModel& model : models) draw(*model.fit);
+  for (const Fit& fit : others) draw(fit);
+  return curves;
 }
 
 void TraceSections::add_trace(const DrawnTrace& drawn) {

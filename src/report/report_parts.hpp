@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,12 @@ Report titled_report(const std::string& kind, const std::string& title, const st
 
 /// Length, conditions and stick-slip of one trace.
 Facts facts_of(const Identification& trace);
+
+/// The best fit, then others that are wanted beside it; at most `most`.
+std::vector<DrawnModel> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
+                                     const std::function<bool(const Fit&)>& wanted);
+/// Laws that are drawn over speed: of the models beside the samples, then of others, each name once.
+std::vector<DrawnModel> drawn_curves(const std::vector<DrawnModel>& models, std::span<const Fit> others);
 
 /// Charts of one trace in the sections that a report has once.
 struct TraceSections {

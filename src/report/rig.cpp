@@ -1,5 +1,3 @@
-#include "tribofit/report/rig.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -8,6 +6,8 @@
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "record_parts.hpp"
+#include "tribofit/report/json.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {

@@ -1,5 +1,3 @@
-#include "tribofit/report/twin.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +7,9 @@
 #include "numbers.hpp"
 #include "record_parts.hpp"
 #include "report_parts.hpp"
+#include "tribofit/report/json.hpp"
+#include "tribofit/report/report.hpp"
+#include "tribofit/report/terminal.hpp"
 #include "twin_parts.hpp"
 
 namespace tribofit {

@@ -1,5 +1,3 @@
-#include "tribofit/report/diagnosis.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include "report/terminal_text.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {

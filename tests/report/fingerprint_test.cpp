@@ -1,5 +1,6 @@
+#include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/report/terminal.hpp"
 /// Pictures of fingerprints fit the page.
-#include "tribofit/report/fingerprint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/twin.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace {
 

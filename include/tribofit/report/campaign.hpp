@@ -7,7 +7,6 @@
 
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/campaign/run_result.hpp"
-#include "tribofit/report/comparison.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/pooled.hpp"
 #include "tribofit/report/report.hpp"

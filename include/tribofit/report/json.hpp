@@ -7,6 +7,8 @@ namespace tribofit {
 
 struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
+struct RigIdentification;
+struct TwinIdentification;
 
 struct JsonOptions {
   std::vector<std::string> arguments;  ///< of the command line, echoed under tool.arguments
@@ -24,5 +26,18 @@ std::string to_json(const Identification& result, const JsonOptions& options = {
 /// Of several traces diagnosed together "trace" becomes "traces", a list as "conditions" and "stick_slip" are, items of
 /// "health" carry the index of their trace, and parameters, all shared, carry "trace": null.
 std::string to_json(const DiagnosedTraces& result, const JsonOptions& options = {});
+
+/// {"tool", "trace", "conditions", "health", "stick_slip", "rig", "analysed", "warnings"}, where "rig" has mass_kg,
+/// damping_N_s_per_mm, stiffness_N_per_mm (mass_kg_per_N, damping_s_per_mm, stiffness_per_mm where no normal force is
+/// known), natural_frequency_hz, damping_ratio, stick_slope_stiffness_N_per_mm (or _per_mm), each {"value",
+/// "std_error", "ci95", "systematic_error"} or null, their covariance, and messages.
+std::string to_json(const RigIdentification& result, const JsonOptions& options = {});
+
+/// {"tool", "trace", "conditions", "health", "stick_slip", "fits", "rig" (beside the bare law), "rigs" (one a column),
+/// "twin", "analysed", "warnings"} with
+/// "twin": {"columns", "measures": [{"name", "unit", "measured": {"value", "std_error"}, "simulated": [{"value",
+/// "std_error", "difference_in_std_errors"}]}], "rms_difference", "failures", "simulations", "messages", "reason",
+/// "next"}.
+std::string to_json(const TwinIdentification& result, const JsonOptions& options = {});
 
 }  // namespace tribofit

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/campaign/compare.hpp"
 #include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/sharing.hpp"
+#include "tribofit/campaign/statements.hpp"
 #include "tribofit/campaign/trends.hpp"
 #include "tribofit/report/terminal.hpp"
 
@@ -31,5 +33,21 @@ void write_pooled(const std::string& folder, std::span<const RunResult> runs, co
 
 /// The same for people: repeats as mean and interval, what is shared, trends that are no chance, what goes together.
 std::string pooled_table(const Pooled& pooled, const TerminalOptions& options = {});
+
+/// A campaign beside published or earlier values.
+struct ComparisonReport {
+  EarlierComparison values;
+  Statements statements;
+};
+
+/// comparison.csv: a row for each pair of an earlier value and one of ours, with their conditions and units.
+std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups);
+
+/// The same as the JSON object {"path", "values", "unmatched", "relative_error", "law_preference"}, for summary.json.
+std::string comparison_json(const ComparisonReport& report, std::span<const PooledGroup> groups);
+
+/// The same for people: a line for each value with both protocols, then which law is better and the relative errors.
+std::string render_comparison(const ComparisonReport& report, std::span<const PooledGroup> groups,
+                              const TerminalOptions& options = {});
 
 }  // namespace tribofit

@@ -13,6 +13,7 @@ namespace tribofit {
 
 struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
+struct TwinIdentification;
 
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_page() makes one HTML file
 /// of it, write_pictures() a file of each chart. report_of() makes it of a result.
@@ -92,5 +93,9 @@ Report report_of(const Identification& result, const ReportOptions& options = {}
 /// A diagnosis: the same beside the first and the final model, with the ladder of errors, where the law fails and what
 /// became of each effect. Of many traces the first eight are drawn, all are listed.
 Report report_of(const DiagnosedTraces& result, const ReportOptions& options = {});
+
+/// A twin: measures in standard errors, three cycles of friction and velocity measured and simulated, the portraits,
+/// and the block on its disc, measured and simulated side by side.
+Report report_of(const TwinIdentification& result, const ReportOptions& options = {});
 
 }  // namespace tribofit

@@ -9,7 +9,11 @@
 
 namespace tribofit {
 
-struct Identification;  // fit/identification.hpp
+struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
+struct Fingerprint;      // oscillator/fingerprint.hpp
+struct Identification;   // fit/identification.hpp
+struct RigIdentification;
+struct TwinIdentification;  // study/twin.hpp
 
 struct TerminalOptions {
   bool colour = false;
@@ -28,11 +32,34 @@ struct TerminalOptions {
 /// Units as people read them: mm/s, s/mm, ms, rpm, mm. Plain ASCII apart from what the file itself brings.
 std::string render_terminal(const Identification& result, const TerminalOptions& options = {});
 
+/// After a diagnosis, in this order: what was diagnosed; the ladder of held-out errors as it falls, with bars against
+/// the noise floor; where the base law fails; the verdict in one sentence; the effects found with their parameters;
+/// what is not distinguishable with these data and the experiment that would tell; what they cannot show at all; how
+/// the finding did on runs that took no part; a closed form of what no effect explains; the next command.
+///
+/// No line but a word longer than the width is wider than options.width (at least 40 columns).
+std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options = {});
+
+/// After `identify rig`: trace, conditions, health, the rig with its uncertainties and the check by the slope of stick,
+/// what limits it, and the next command.
+std::string render_rig(const RigIdentification& result, const TerminalOptions& options = {});
+
+/// After `identify twin`: the laws and the rig in a line each, measured and simulated motion side by side with their
+/// difference in standard errors, where the twin fails, and the next command.
+std::string render_twin(const TwinIdentification& result, const TerminalOptions& options = {});
+
 /// The catalogue of effects: key and statement, one a line.
 std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options = {});
 
 /// One effect in full: equation, source, parameters with units and bounds, channels, best experiment.
 std::string render_effect(const EffectInfo& effect, const TerminalOptions& options = {});
+
+/// A fingerprint as a picture of characters, at most 80 columns and 20 lines, with its axes in the units people read.
+std::string render_fingerprint(const Fingerprint& fingerprint, const TerminalOptions& options = {});
+
+/// One effect in full, with its picture.
+std::string render_effect(const EffectInfo& effect, const Fingerprint& fingerprint,
+                          const TerminalOptions& options = {});
 
 /// `argument` as a POSIX shell needs it to read the same word back.
 std::string shell_quoted(const std::string& argument);

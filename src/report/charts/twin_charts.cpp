@@ -7,7 +7,7 @@
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "report/twin_parts.hpp"
-#include "tribofit/report/twin.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 namespace {
