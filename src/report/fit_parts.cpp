@@ -162,8 +162,8 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
       instruments_declared
           ? "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the declared "
             "instruments, not part of them."
-          : "Intervals are statistical, from cycle to cycle. There is no systematic part: no instrument uncertainties "
-            "declared (--instruments)."));
+          : "Intervals are statistical, from cycle to cycle; no instrument uncertainties declared (--instruments), so "
+            "there is no systematic part."));
   if (fits[best].fastest > 0) {
     section.items.emplace_back(
         soft_text(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",

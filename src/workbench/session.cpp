@@ -262,7 +262,7 @@ std::string WorkbenchSession::command_of(const WorkbenchChoice& choice) const {
   terminal.arguments = state_->options.arguments;
   const std::vector<std::string> own = arguments_of(choice);
   terminal.arguments.insert(terminal.arguments.end(), own.begin(), own.end());
-  return command_line(terminal, "", state_->options.input.path);
+  return command_line(terminal, {}, state_->options.input.path);
 }
 
 bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
@@ -290,7 +290,7 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   std::vector<std::string> own = arguments_of(part);
   own.erase(own.begin(), own.begin() + 2);  // the law: both climb
   add(own);
-  return s.diagnosis.begin(s.options.input, identify, part, command_line(terminal, "", s.options.input.path));
+  return s.diagnosis.begin(s.options.input, identify, part, command_line(terminal, {}, s.options.input.path));
 }
 
 void WorkbenchSession::cancel_diagnosis() {
