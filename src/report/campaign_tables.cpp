@@ -102,7 +102,7 @@ std::string slope_unit(const Trend& t) {
 ReportTable comparison_table(const ComparisonReport& report, std::span<const PooledGroup> groups) {
   ReportTable table("This campaign beside " + report.values.path);
   table.text({"conditions", "value", "law"}).numbers({"earlier", "joint fit", "difference", "std errors"});
-  table.numbers({"extremes", "difference"}, 1);
+  table.numbers({"extremes", "difference"});
   std::string before;
   for (const Pair& pair : pairs_of(report.values.values)) {
     const ComparedValue& v = *(pair.joint != nullptr ? pair.joint : pair.extremes);
@@ -134,7 +134,7 @@ ReportTable comparison_table(const ComparisonReport& report, std::span<const Poo
 ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
   ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r");
   table.text({"conditions", "law", "protocol"}).numbers({"samples below 0.08", "mean", "largest"});
-  table.numbers({"bins below 0.08", "largest of bins"}, 1);
+  table.numbers({"bins below 0.08", "largest of bins"});
   std::string before;
   for (const ErrorStatement& e : statements.errors) {
     const std::string conditions = name_of(groups[e.group]);
@@ -149,7 +149,7 @@ ReportTable error_table(const Statements& statements, std::span<const PooledGrou
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
   ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)");
   table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k", "alpha, beta [s/mm]"});
-  table.numbers({"best in"}, 1);
+  table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       if (fit.protocol != "joint") continue;
@@ -202,10 +202,10 @@ ReportTable trends_table(const Trends& trends) {
 
 ReportTable runs_table(const std::string& friction_unit) {
   ReportTable table;
-  table.text({"run"}).text({"conditions"}, 1).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
+  table.text({"run", "conditions"}).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
   table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit), "alpha, beta [s/mm]"});
   table.numbers({with_unit("held-out error", friction_unit)});
-  table.numbers({with_unit("noise floor", friction_unit)}, 2).text({"warnings"}, 4);
+  table.numbers({with_unit("noise floor", friction_unit)}).text({"warnings"}, 4);
   return table;
 }
 

@@ -173,7 +173,7 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
 
 void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSection& section) {
   ReportTable table;
-  table.text({"law", "parameter"}).numbers({"extremes", "joint fit", "difference"}).text({"unit", "remarks"});
+  table.text({"law", "parameter"}).numbers({"extremes", "joint fit", "difference"}).text({"unit"}).text({"remarks"}, 1);
   std::vector<std::string> notes;
   bool different = false;
   for (const Fit& fit : fits) {

@@ -33,7 +33,7 @@ std::string TerminalText::with_signs(std::string_view text) const {
 }
 
 void TerminalText::heading(std::string_view title) {
-  text_ += "\n" + bold(title) + "\n";
+  text_ += "\n" + bold(with_signs(title)) + "\n";
 }
 
 void TerminalText::line(std::string_view sentence, std::size_t indent, std::size_t hanging) {
