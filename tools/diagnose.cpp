@@ -14,8 +14,8 @@
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
-#include "verbs.hpp"
 #include "tribofit/report/terminal.hpp"
+#include "verbs.hpp"
 
 using namespace tribofit;
 

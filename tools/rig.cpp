@@ -9,9 +9,9 @@
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
-#include "verbs.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "verbs.hpp"
 
 using namespace tribofit;
 

@@ -9,11 +9,11 @@
 #include "options.hpp"
 #include "results.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/study/twin.hpp"
-#include "verbs.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
+#include "tribofit/report/terminal.hpp"
+#include "tribofit/study/twin.hpp"
+#include "verbs.hpp"
 
 using namespace tribofit;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace tribofit {
 

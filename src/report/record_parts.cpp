@@ -8,7 +8,7 @@
 
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "commands.hpp"
-#include "tribofit/pipeline.hpp"
 #include "tribofit/report/report.hpp"
+#include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 
