@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "console.hpp"
+#include "exit_status.hpp"
 #include "parameter_options.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -125,7 +126,7 @@ void read_reading(const Settings& s, ReadOptions& read) {
   read.threads = s.threads;
 }
 
-void read_laws(const std::vector<std::string>& names, std::vector<BaseLaw>& laws) {
+void read_laws(const std::vector<std::string>& names, std::vector<Law>& laws) {
   if (!names.empty()) laws.clear();
   for (const std::string& name : names) {
     const auto found = find_law(name);
@@ -134,7 +135,7 @@ void read_laws(const std::vector<std::string>& names, std::vector<BaseLaw>& laws
   }
 }
 
-void read_effects(const Settings& s, std::vector<Effect>& effects) {
+void read_effects(const Settings& s, const std::vector<Law>& laws, std::vector<Effect>& effects) {
   for (const std::string& key : s.effects) effects.push_back(effect_named(key));
   for (const std::string& formula : s.formulas) {
     if (formula.front() == '@') {
@@ -143,7 +144,19 @@ void read_effects(const Settings& s, std::vector<Effect>& effects) {
       effects.emplace_back(Formula(formula));
     }
   }
-  refuse_clashes(effects);
+  refuse_clashes(effects, laws);
+}
+
+}  // namespace
+
+namespace {
+
+void refuse_extremes(const IdentifyOptions& options) {
+  for (const Law& law : options.laws) {
+    if (options.fit.protocol == Protocol::joint || describe(law).has_per_cycle_extremes()) continue;
+    throw UsageError("--protocol published: the law '" + std::string(to_string(law)) +
+                     "' cannot be fitted so; it takes laws of mu_s, mu_k and at most one more parameter");
+  }
 }
 
 }  // namespace
@@ -155,12 +168,13 @@ IdentifyOptions options_from(const Settings& s) {
   options.motion.trim = s.trim;
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
   read_laws(s.laws, options.laws);
-  read_effects(s, options.effects);
+  read_effects(s, options.laws, options.effects);
   options.fit.given = given_from(s, options.laws, options.effects);
   options.selection = selection_from(s);
 
   options.published_protocol = s.protocol == "both";
   options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;
+  refuse_extremes(options);
   options.fit.loss = loss_from(s.loss);
   options.fit.starts = s.starts;
   options.fit.folds = s.folds;

@@ -77,8 +77,8 @@ Option Option::one_value_each() const {
   return *this;
 }
 
-Option Option::one_of(std::initializer_list<const char*> words) const {
-  return checked(parsed_, CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+Option Option::one_of(const std::vector<std::string>& words) const {
+  return checked(parsed_, CLI::IsMember(words));
 }
 
 Option Option::range(double least, double most) const {

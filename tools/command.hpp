@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -25,7 +24,7 @@ class Option {
   Option show_default() const;
   /// One value each time it is given; it may be given several times.
   Option one_value_each() const;
-  Option one_of(std::initializer_list<const char*> words) const;
+  Option one_of(const std::vector<std::string>& words) const;
   Option range(double least, double most) const;
   Option range(int least, int most) const;
 

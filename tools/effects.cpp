@@ -12,7 +12,8 @@
 using namespace tribofit;
 
 void add_effects(const Command& app) {
-  const Command verb = app.add_verb("effects", "List the effects that can be added to a law, or explain one");
+  const Command verb =
+      app.add_verb("effects", "List the laws and the effects that can be added to them, or explain an effect");
   verb.footer("Example:\n  identify effects rate-state");
   const auto key = std::make_shared<std::string>();
   verb.add_option("KEY", *key, "Effect to explain, KEY or KEY:FORM");
@@ -28,7 +29,7 @@ void add_effects(const Command& app) {
     }
     std::vector<EffectInfo> effects;
     for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
-    print(render_effects(effects, options));
+    print(render_laws(law_catalogue(), options) + render_effects(effects, options));
     return ExitStatus::done;
   });
 }

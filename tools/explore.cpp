@@ -103,7 +103,7 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
   options.begin.formulas = formulas_of(s);
   options.begin.given = options.identify.fit.given;
   options.begin.selection = options.identify.selection;
-  options.identify.laws = {BaseLaw::exponential, BaseLaw::fractional};  // both climb in a diagnosis
+  options.identify.laws = IdentifyOptions().laws;  // all of them climb in a diagnosis
   return options;
 }
 

@@ -66,10 +66,12 @@ ChosenEffect read_effect(const std::string& text) {
   return chosen;
 }
 
-BaseLaw read_law(const std::string& name) {
-  if (const std::optional<BaseLaw> law = find_law(name)) return *law;
-  const std::vector<std::string> known = {"exponential", "fractional", "coulomb"};
-  throw UsageError("there is no law '" + name + "'; did you mean '" + nearest_name(name, known) + "'?");
+Law read_law(const std::string& name) {
+  try {
+    return make_law(name);
+  } catch (const InputError& error) {
+    throw UsageError(error.what());
+  }
 }
 
 /// Effects with their values by key: the model puts them into its own order.
@@ -78,7 +80,7 @@ struct ChosenEffects {
   std::map<std::string, std::vector<double>> values;
 };
 
-ChosenEffects chosen_effects(const MachineRequest& request) {
+ChosenEffects chosen_effects(const MachineRequest& request, const Law& law) {
   ChosenEffects out;
   for (const std::string& text : request.effects) {
     const ChosenEffect chosen = read_effect(text);
@@ -91,24 +93,34 @@ ChosenEffects chosen_effects(const MachineRequest& request) {
     out.effects.emplace_back(formula);
     for (const Parameter& parameter : info.parameters) out.values[info.key].push_back(parameter.start * parameter.si);
   }
-  refuse_clashes(out.effects);
+  refuse_clashes(out.effects, {law});
   return out;
 }
 
-void set_levels(const MachineRequest& request, std::vector<double>& p) {
-  p[0] = given_or(request.mu_s, Quantity::dimensionless, "--mu-s", "", p[0]);
-  p[1] = given_or(request.mu_k, Quantity::dimensionless, "--mu-k", "", p[1]);
+/// "mu_s" is typed as --mu-s.
+std::string flag_of(const std::string& parameter) {
+  std::string flag = "--" + parameter;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
 }
 
-void set_decay(const MachineRequest& request, BaseLaw law, std::vector<double>& p) {
-  const bool exponential = law == BaseLaw::exponential, fractional = law == BaseLaw::fractional;
-  if ((!request.alpha.empty() && !exponential) || (!request.beta.empty() && !fractional)) {
-    throw InputError("the law '" + std::string(to_string(law)) + "' does not have the decay factor that was given",
-                     "--alpha is of the exponential law, --beta of the fractional one");
+void set_law_parameters(const MachineRequest& request, const Law& law, std::vector<double>& p) {
+  const std::vector<Parameter> parameters = describe(law).parameters;
+  for (const auto& [name, text] : request.law_parameters) {
+    if (text.empty()) continue;
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&, &of = name](const Parameter& parameter) { return parameter.name == of; });
+    if (found == parameters.end()) {
+      std::string list;
+      for (const Parameter& known : parameters) list += (list.empty() ? "" : ", ") + flag_of(known.name);
+      throw InputError("the law '" + std::string(to_string(law)) + "' has no parameter " + name +
+                           ", which was given as " + flag_of(name),
+                       "it takes " + list);
+    }
+    const Unit unit = find_unit(found->unit).value_or(Unit{Quantity::dimensionless, 1, 0});
+    p[static_cast<std::size_t>(found - parameters.begin())] =
+        parse_quantity(text, unit.quantity, flag_of(name), found->unit == "1" ? "" : found->unit);
   }
-  if (law == BaseLaw::coulomb) return;
-  p[2] = given_or(exponential ? request.alpha : request.beta, Quantity::inverse_velocity,
-                  exponential ? "--alpha" : "--beta", "s/mm", p[2]);
 }
 
 void set_rig(const MachineRequest& request, Rig& rig) {
@@ -144,7 +156,7 @@ double disc_speed_from(const std::string& text, double radius, const std::string
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
-  const BaseLaw law = request.law.empty() ? BaseLaw::exponential : read_law(request.law);
+  const Law law = request.law.empty() ? law_catalogue().front() : read_law(request.law);
   const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
   const PublishedTest test = published_test(radius, law);
   RequestedMachine out;
@@ -155,12 +167,10 @@ RequestedMachine machine_from(const MachineRequest& request) {
   machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, radius, "--speed");
   machine.rig = test.rig;
   set_rig(request, machine.rig);
-  const ChosenEffects chosen = chosen_effects(request);
+  const ChosenEffects chosen = chosen_effects(request, law);
   machine.model = FrictionModel(law, chosen.effects);
-  machine.parameters = {test.friction.mu_s, test.friction.mu_k};
-  if (law != BaseLaw::coulomb) machine.parameters.push_back(test.friction.decay);
-  set_levels(request, machine.parameters);
-  set_decay(request, law, machine.parameters);
+  machine.parameters = test.friction;
+  set_law_parameters(request, law, machine.parameters);
   for (const std::string& key : machine.model.effect_keys()) {
     const std::vector<double>& values = chosen.values.at(key);
     machine.parameters.insert(machine.parameters.end(), values.begin(), values.end());
@@ -169,8 +179,7 @@ RequestedMachine machine_from(const MachineRequest& request) {
 }
 
 Machine with_typed(Machine machine, const MachineRequest& request) {
-  set_levels(request, machine.parameters);
-  set_decay(request, machine.model.law(), machine.parameters);
+  set_law_parameters(request, machine.model.law(), machine.parameters);
   set_rig(request, machine.rig);
   return machine;
 }
@@ -178,6 +187,24 @@ Machine with_typed(Machine machine, const MachineRequest& request) {
 namespace {
 
 constexpr const char* kRigGroup = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
+
+/// An option for every parameter that a law of the list has.
+void add_law_parameters(const Command& verb, const char* group, MachineRequest& r) {
+  std::vector<Parameter> parameters;
+  std::map<std::string, std::string> laws;  // that have it
+  for (const Law& law : law_catalogue()) {
+    for (const Parameter& parameter : describe(law).parameters) {
+      std::string& known = laws[parameter.name];
+      if (known.empty()) parameters.push_back(parameter);
+      known += (known.empty() ? "" : ", ") + std::string(to_string(law));
+    }
+  }
+  for (const Parameter& p : parameters) {
+    const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
+    verb.add_option(flag_of(p.name), r.law_parameters[p.name], p.description + unit + " (" + laws[p.name] + ")")
+        .group(group);
+  }
+}
 
 }  // namespace
 
@@ -189,7 +216,7 @@ void add_machine_options(const Command& verb, MachineRequest& r) {
 }
 
 void add_machine_numbers(const Command& verb, MachineRequest& r) {
-  const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
+  const auto group = [&verb](const char* name, const char* flag, auto& value, const std::string& help) {
     return verb.add_option(flag, value, help).group(name);
   };
   const char* rig = kRigGroup;
@@ -198,11 +225,8 @@ void add_machine_numbers(const Command& verb, MachineRequest& r) {
   group(rig, "--damping", r.damping, "of the block on its spring, e.g. 0.0047Ns/mm");
   group(rig, "--damping-ratio", r.damping_ratio, "the same as c/(2 sqrt(k m)), e.g. 0.02");
   const char* law = "Friction (default: the published values at the nearest radius)";
-  group(law, "--law", r.law, "exponential (default), fractional or coulomb");
-  group(law, "--mu-s", r.mu_s, "static friction");
-  group(law, "--mu-k", r.mu_k, "kinetic friction");
-  group(law, "--alpha", r.alpha, "decay factor of the exponential law, e.g. 0.05214s/mm");
-  group(law, "--beta", r.beta, "decay factor of the fractional law, e.g. 0.09533s/mm");
+  group(law, "--law", r.law, list_of_laws() + " (default the first)");
+  add_law_parameters(verb, law, r);
   group(law, "--effect", r.effects,
         "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
       .one_value_each();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,9 @@
 
 /// A machine as typed; empty means: from the published test of the nearest radius.
 struct MachineRequest {
-  std::string radius = "15mm", speed, load, law;  // law: exponential
-  std::string mu_s, mu_k, alpha, beta, mass, stiffness, damping, damping_ratio;
+  std::string radius = "15mm", speed, load, law;      // law: the first of the list
+  std::map<std::string, std::string> law_parameters;  // by name
+  std::string mass, stiffness, damping, damping_ratio;
   std::vector<std::string> effects, formulas;
 };
 
@@ -26,7 +28,7 @@ struct RequestedMachine {
 /// Throws tribofit::InputError, or UsageError for unknown names.
 RequestedMachine machine_from(const MachineRequest& request);
 
-/// An identified machine with the levels, decay factor and rig that were typed in place of its own.
+/// An identified machine with the parameters of its law and the rig that were typed in place of its own.
 tribofit::Machine with_typed(tribofit::Machine machine, const MachineRequest& request);
 
 /// A speed of the disc [rad/s] from a rotational speed or, at the friction radius [m], from omega r ("4rpm",

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "parameter_options.hpp"
+
 void add_input_options(const Command& app, Settings& s) {
   app.add_option("TRACE", s.traces, "Traces (CSV), or folders of them");
   app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm").group("Conditions");
@@ -23,12 +25,10 @@ void add_input_options(const Command& app, Settings& s) {
 }
 
 void add_model_options(const Command& app, Settings& s) {
-  const auto fit = [&](const char* name, auto& value, const char* help) {
+  const auto fit = [&](const char* name, auto& value, const std::string& help) {
     return app.add_option(name, value, help).group("Law and fit");
   };
-  fit("--law", s.laws, "exponential, fractional or coulomb (repeatable; default the first two)")
-      .one_of({"exponential", "fractional", "coulomb"})
-      .one_value_each();
+  fit("--law", s.laws, list_of_laws() + " (repeatable; default the first two)").one_of(tribofit::law_keys()).one_value_each();
   fit("--effect", s.effects, "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)")
       .one_value_each();
   fit("--formula", s.formulas,

@@ -51,9 +51,9 @@ std::pair<Number, Number> range_from(const std::string& text, const std::string&
   return ends;
 }
 
-std::vector<Slot> slots_of(const std::vector<BaseLaw>& laws, const std::vector<Effect>& effects) {
+std::vector<Slot> slots_of(const std::vector<Law>& laws, const std::vector<Effect>& effects) {
   std::vector<Slot> slots;
-  for (const BaseLaw law : laws) {
+  for (const Law& law : laws) {
     const FrictionModel model(law, effects);
     for (const Slot& slot : model.parameters()) {
       const bool known = std::any_of(slots.begin(), slots.end(),
@@ -126,15 +126,22 @@ Effect effect_named(const std::string& name) {
   }
 }
 
-void refuse_clashes(const std::vector<Effect>& effects) {
+std::string list_of_laws() {
+  std::string list;
+  const std::vector<std::string> keys = law_keys();
+  for (const std::string& key : keys) list += (list.empty() ? "" : key == keys.back() ? " or " : ", ") + key;
+  return list;
+}
+
+void refuse_clashes(const std::vector<Effect>& effects, const std::vector<Law>& laws) {
   try {
-    FrictionModel(BaseLaw::exponential, effects);
+    for (const Law& law : laws) FrictionModel(law, effects);
   } catch (const InputError& error) {
     throw UsageError(error.what());
   }
 }
 
-std::vector<GivenParameter> given_from(const Settings& s, const std::vector<BaseLaw>& laws,
+std::vector<GivenParameter> given_from(const Settings& s, const std::vector<Law>& laws,
                                        const std::vector<Effect>& effects) {
   std::vector<GivenParameter> given;
   if (s.start_values.empty() && s.bounds.empty()) return given;

@@ -49,10 +49,11 @@ void set_exact(std::vector<double>& covariance, std::size_t k) {
   for (std::size_t i = 0; k < n && i < n; ++i) covariance[i * n + k] = covariance[k * n + i] = 0;
 }
 
-void forget_typed(const MachineRequest& typed, MachineCovariance& covariance) {
-  if (!typed.mu_s.empty()) set_exact(covariance.friction, 0);
-  if (!typed.mu_k.empty()) set_exact(covariance.friction, 1);
-  if (!typed.alpha.empty() || !typed.beta.empty()) set_exact(covariance.friction, 2);
+void forget_typed(const MachineRequest& typed, const FrictionModel& model, MachineCovariance& covariance) {
+  for (std::size_t k = 0; k < model.base_count(); ++k) {
+    const auto found = typed.law_parameters.find(model.parameters()[k].parameter.name);
+    if (found != typed.law_parameters.end() && !found->second.empty()) set_exact(covariance.friction, k);
+  }
   if (!typed.mass.empty()) set_exact(covariance.rig, 0);
   if (!typed.damping.empty() || !typed.damping_ratio.empty()) set_exact(covariance.rig, 1);
   if (!typed.stiffness.empty()) set_exact(covariance.rig, 2);
@@ -122,7 +123,7 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
   StudiedMachine out;
   out.machine = with_typed(std::move(found.machine), typed);
   out.covariance = std::move(found.covariance);
-  forget_typed(typed, out.covariance);
+  forget_typed(typed, out.machine.model, out.covariance);
   out.source = "identified from " + input.trace.path;
   out.notes = std::move(found.notes);
   if (rig.per_unit_load) {

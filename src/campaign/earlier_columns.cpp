@@ -8,10 +8,11 @@
 
 #include "ingest/column_names.hpp"
 #include "ingest/manifest_roles.hpp"
-#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/earlier.hpp"
+#include "tribofit/friction/laws/all.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -99,7 +100,7 @@ std::optional<EarlierColumn> EarlierColumns::value_column(const std::string& tit
   EarlierColumn column;
   column.title = title;
   std::string_view rest = title;
-  for (const std::string_view law : {"exponential", "fractional", "coulomb"}) {
+  for (const std::string& law : law_keys()) {
     if (take_prefix(rest, law)) column.law = law;
   }
   for (const std::string_view protocol : {"joint", "published"}) {
@@ -221,8 +222,8 @@ std::optional<std::size_t> EarlierColumns::error_of(std::size_t value) const {
 }
 
 void EarlierColumns::note_unknown(const EarlierColumn& column) {
-  static const std::vector<std::string> known = {"run", "runs", "file", "repeat", "status", "message", "note", "notes"};
-  if (column.title.empty() || has(known, column.title)) return;
+  static const std::vector<std::string> ignored = {"run", "runs", "file", "repeat", "status", "message", "note", "notes"};
+  if (column.title.empty() || has(ignored, column.title)) return;
   std::vector<std::string> names;
   for (const KnownQuantity& known : known_) names.push_back(known.name);
   const std::string nearest = likely_name(column.title, names);

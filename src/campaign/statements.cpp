@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "statistics/reductions.hpp"
+#include "tribofit/friction/laws/all.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -75,13 +76,18 @@ LawPreference preference_of(const std::vector<std::vector<double>>& conditions, 
   return out;
 }
 
+bool is_constant(const std::string& key) {
+  const std::optional<Law> law = find_law(key);
+  return law && constant_in_slip(*law);
+}
+
 /// The two laws that most runs were fitted with by the joint protocol, in the order of the fits.
 std::vector<std::string> two_laws(std::span<const PooledGroup> groups) {
   std::vector<std::string> laws;
   for (const PooledGroup& group : groups) {
     for (const auto& fit : group.fits) {
       const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
-      if (fit.protocol == "joint" && fit.law != "coulomb" && !known) laws.push_back(fit.law);
+      if (fit.protocol == "joint" && !is_constant(fit.law) && !known) laws.push_back(fit.law);
     }
   }
   return laws;

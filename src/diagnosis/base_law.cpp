@@ -8,24 +8,28 @@ namespace {
 
 /// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
 bool bends(const DiagnosisContext& context, const Trial& trial) {
-  const bool falls = trial.p[0] > trial.p[1];
-  return falls || stribeck_shape(trial.model.law(), trial.p[2] * context.fine.observations.fastest) < limits::kStraight;
+  const Law& law = trial.model.law();
+  const double fastest = context.fine.observations.fastest;
+  const bool falls = friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest);
+  return falls || remaining_fall(law, trial.p, fastest).value_or(0) < limits::kStraight;
 }
 
 }  // namespace
 
-std::vector<BaseLaw> base_laws(std::span<const Record> records, std::vector<BaseLaw> given) {
+std::vector<Law> base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects) {
   const bool sticks = std::any_of(records.begin(), records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;
   });
-  const bool present = std::find(given.begin(), given.end(), BaseLaw::coulomb) != given.end();
-  if (given.size() > 1 && !sticks && !present) given.push_back(BaseLaw::coulomb);
+  const bool present = std::any_of(given.begin(), given.end(), constant_in_slip);
+  const bool possible = std::all_of(effects.begin(), effects.end(),
+                                    [](const Effect& effect) { return obstacle_on(CoulombLaw{}, effect).empty(); });
+  if (given.size() > 1 && !sticks && !present && possible) given.push_back(CoulombLaw{});
   return given;
 }
 
 std::size_t reported_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders) {
   const auto coulomb =
-      std::find_if(ladders.begin(), ladders.end(), [](const Ladder& l) { return l.law == BaseLaw::coulomb; });
+      std::find_if(ladders.begin(), ladders.end(), [](const Ladder& l) { return constant_in_slip(l.law); });
   if (coulomb == ladders.end() || !coulomb->top().usable) return better_ladder(context, ladders);
   std::vector<Ladder> worthy = {*coulomb};
   std::vector<std::size_t> index = {static_cast<std::size_t>(coulomb - ladders.begin())};

@@ -232,14 +232,15 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
                  std::span<const double> residual) {
   Starts out;
   out.values.emplace_back();
-  const FrictionModel alone(BaseLaw::coulomb, {candidate.effect});
+  const FrictionModel alone(ExponentialLaw{}, {candidate.effect});
   const Bounds bounds = bounds_of(alone, observations);
+  const std::size_t first = alone.base_count();
   double last = 0;
   for (const Record& record : records) last = std::max(last, record.motion->time.back());
   const auto& parameters = candidate.info.parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const ParameterStarts own = starts_of_parameter(parameters[k], {bounds.lower[2 + k], bounds.upper[2 + k]}, last,
-                                                    records[0], observations, residual);
+    const ParameterStarts own = starts_of_parameter(parameters[k], {bounds.lower[first + k], bounds.upper[first + k]},
+                                                    last, records[0], observations, residual);
     std::vector<std::vector<double>> all;
     for (const auto& start : out.values) {
       for (const double value : own.values) {

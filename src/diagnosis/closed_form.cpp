@@ -58,7 +58,8 @@ std::vector<std::string> forms_of(const DiagnosisContext& context, const Trial& 
   for (const double value : probe.value) largest = std::max(largest, 5 * std::abs(value));
   if (probe.variable == "velocity" && probe.at.size() > 4) return humps(probe, largest);
   if (probe.variable == "time" && probe.period > 0 && probe.value.size() == 2) {
-    return {swing(probe, std::abs(top.p[1]), largest)};
+    const double level = kinetic_friction(top.model.law(), top.p, context.fine.observations.fastest);
+    return {swing(probe, std::abs(level), largest)};
   }
   return {};
 }

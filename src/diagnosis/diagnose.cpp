@@ -96,7 +96,7 @@ Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
 }
 
 /// The ladder to report, of those from every base law.
-Ladder reported_of(const DiagnosisContext& context, const std::vector<BaseLaw>& laws, const std::vector<Candidate>& all,
+Ladder reported_of(const DiagnosisContext& context, const std::vector<Law>& laws, const std::vector<Candidate>& all,
                    const DiagnosisOptions& options, ProgressReporter& progress) {
   std::vector<Candidate> from_the_start;
   for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});
@@ -205,7 +205,7 @@ std::string_view to_string(EffectStatus status) {
   return "untestable";
 }
 
-Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& given, const std::vector<Effect>& own,
+Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& given, const std::vector<Effect>& own,
                    const Instruments& instruments, const FitOptions& fit, const DiagnosisOptions& options) {
   Diagnosed out;
   Diagnosis& diagnosis = out.diagnosis;
@@ -226,7 +226,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& 
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
-  Ladder ladder = reported_of(context, base_laws(records, given), all, options, progress);
+  Ladder ladder = reported_of(context, base_laws(records, given, options.from_the_start), all, options, progress);
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;

@@ -83,7 +83,7 @@ bool undo_needless_corrections(const IdentifyOptions& options, const Diagnosed& 
 
 /// What the base law leaves where nothing of the motion is undone; nothing where nothing was, or where the record
 /// cannot be read like that.
-std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOptions options, BaseLaw law,
+std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOptions options, Law law,
                                    const EffectRoles& effects) {
   const Motion& motion = prepared.trace.motion;
   const bool corrected =

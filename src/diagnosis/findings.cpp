@@ -172,6 +172,12 @@ void describe_place(const FindingInputs& in, std::size_t k, EffectFinding& findi
   }
 }
 
+/// Why neither these data nor this law can show an effect; empty where they can.
+std::string obstacle_of(const FindingInputs& in, std::size_t k) {
+  const Candidate& candidate = in.all[k];
+  return candidate.untestable.empty() ? obstacle_on(in.ladder.law, candidate.effect) : candidate.untestable;
+}
+
 /// k: the candidate that stands for the effect.
 EffectFinding finding_of(const FindingInputs& in, std::size_t k) {
   EffectFinding finding;
@@ -179,9 +185,9 @@ EffectFinding finding_of(const FindingInputs& in, std::size_t k) {
   finding.held_out_rmse = finding.error_reduction = finding.p_value = kNaN;
   if (stands_from_the_start(in.ladder, finding.key)) {
     describe_from_the_start(in, finding);
-  } else if (!in.all[k].untestable.empty()) {
+  } else if (const std::string why = obstacle_of(in, k); !why.empty()) {
     finding.status = EffectStatus::untestable;
-    finding.reason = in.all[k].untestable;
+    finding.reason = why;
   } else {
     const LastJudged last = last_judged(in.ladder, k);
     if (last.judged != nullptr) describe_last_trial(in, last, finding);

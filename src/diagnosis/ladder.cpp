@@ -64,7 +64,7 @@ void finish(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   }
 }
 
-Ladder start_ladder(const DiagnosisContext& context, BaseLaw law, const std::vector<Candidate>& from_the_start) {
+Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<Candidate>& from_the_start) {
   Ladder ladder;
   ladder.law = law;
   LadderStep base;
@@ -99,7 +99,7 @@ bool is_beaten(const DiagnosisContext& context, const Ladder& ladder, const std:
 
 }  // namespace
 
-std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<BaseLaw>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<Law>& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& least, int most_effects,
                           const std::function<void(std::string_view, double)>& progress) {
@@ -107,7 +107,7 @@ std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<Bas
   run_tasks(laws.size(), context.threads,
             [&](std::size_t k) { ladders[k] = start_ladder(context, laws[k], from_the_start); });
   // Beside Coulomb friction the better ladder need not be the one to report (see reported_ladder): all are climbed.
-  const bool all_matter = std::find(laws.begin(), laws.end(), BaseLaw::coulomb) != laws.end();
+  const bool all_matter = std::any_of(laws.begin(), laws.end(), constant_in_slip);
   for (double rounds = 0;; ++rounds) {
     Ladder* next = nullptr;
     for (Ladder& ladder : ladders) {

@@ -25,7 +25,7 @@ struct LadderStep {
 
 /// The rungs from one base law up.
 struct Ladder {
-  BaseLaw law = BaseLaw::exponential;
+  Law law = ExponentialLaw{};
   std::vector<LadderStep> steps;       ///< the base law first
   std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
   std::vector<CandidateResult> last;   ///< candidates judged beside the last rung: none of them passes
@@ -38,7 +38,7 @@ struct Ladder {
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
-std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<BaseLaw>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<Law>& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& least, int most_effects,
                           const std::function<void(std::string_view, double)>& progress = {});

@@ -308,7 +308,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
     const bool at_rest = range.begin + i == range.end;
     // What a higher break-away does to the slip fades with speed as the law does.
     const double speed = at_rest ? 0 : std::abs(o.velocity[range.begin + i]);
-    const double fade = trial.model.base_count() == 3 ? std::exp(-trial.p[2] * speed) : (at_rest ? 1 : 0);
+    const double fade = at_rest ? 1 : break_away_left(trial.model.law(), trial.p, speed);
     return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? given[k] : low));
   };
   judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);

@@ -20,7 +20,7 @@ namespace tribofit::diagnosis {
 /// are those of the slips plus what v_r in stick leaves, less what a rigid stick would leave there. Models of rigid
 /// stick are thus what they were without that evidence.
 struct Trial {
-  FrictionModel model{BaseLaw::exponential};
+  FrictionModel model{ExponentialLaw{}};
   std::vector<double> p;  ///< SI
   std::vector<bool> at_bound;
   bool usable = false;  ///< finite

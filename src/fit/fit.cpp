@@ -146,6 +146,9 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   if (observations.cycles < kFewestCycles)
     return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
 
+  if (options.protocol == Protocol::published && !describe(model.law()).has_per_cycle_extremes())
+    return failed_fit(std::move(fit), "per-cycle extremes are for laws of mu_s, mu_k and at most one more parameter");
+
   FitContext context = context_of(model, records, observations, instruments, options);
   report_moved_starts(context, fit);
   const Solution solution = estimate(context, fit);

@@ -17,10 +17,12 @@ std::vector<std::pair<FrictionModel, FitOptions>> planned_fits(const IdentifyOpt
                                                                const std::vector<Effect>& effects) {
   std::vector<std::pair<FrictionModel, FitOptions>> fits;
   FitOptions inner = options.fit;
-  for (const BaseLaw law : options.laws) fits.emplace_back(FrictionModel(law, effects), inner);
+  for (const Law& law : options.laws) fits.emplace_back(FrictionModel(law, effects), inner);
   inner.protocol = Protocol::published;
-  for (const BaseLaw law : options.laws) {
-    if (options.published_protocol && law != BaseLaw::coulomb) fits.emplace_back(FrictionModel(law), inner);
+  for (const Law& law : options.laws) {
+    const LawInfo info = describe(law);
+    const bool fits_more = info.has_per_cycle_extremes() && !info.constant_in_slip;  // than the extremes themselves
+    if (options.published_protocol && fits_more) fits.emplace_back(FrictionModel(law), inner);
   }
   return fits;
 }
@@ -54,7 +56,7 @@ std::size_t values_per_slip(bool has_effects, FitDetail detail) {
 
 void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
   const std::vector<Effect> effects = friction_effects(options.effects);
-  const Channels needs = FrictionModel(BaseLaw::exponential, effects).needs();
+  const Channels needs = FrictionModel(ExponentialLaw{}, effects).needs();
   const Observations observations =
       observe(trace.motion, trace.segmentation, needs, values_per_slip(!effects.empty(), detail));
   if (observations.cycles < 3) {

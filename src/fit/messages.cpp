@@ -60,15 +60,17 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
                     shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
   }
   const FrictionModel& model = fit.model;
-  if (model.law() == BaseLaw::coulomb || fit.parameters.size() < 3) return;
-  const double missing = 1 - stribeck_shape(model.law(), fit.parameters[2].value * fit.slowest);
+  const std::vector<double> p = fit.values();
+  const std::optional<double> at_slowest = remaining_fall(model.law(), p, fit.slowest);
+  if (!at_slowest) return;
+  const double missing = 1 - *at_slowest;
   if (missing > 0.1) {
     fit.messages.push_back(
         fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the drop to mu_k "
                     "is already past",
                     fit.slowest * 1e3, 100 * missing));
   }
-  const double reached = stribeck_shape(model.law(), fit.parameters[2].value * fit.fastest);
+  const double reached = remaining_fall(model.law(), p, fit.fastest).value_or(0);
   const double drop = std::abs(fit.parameters[0].value - fit.parameters[1].value);
   if (reached > 0.1 && drop > 0) {
     fit.messages.push_back(fmt::format(

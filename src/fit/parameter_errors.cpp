@@ -37,7 +37,7 @@ Parameter parameter_of(const FitContext& context, std::size_t k) {
   Parameter out = context.model.parameters()[k].parameter;
   out.lower = context.given.lower[k] / out.si;
   out.upper = context.given.upper[k] / out.si;
-  if ((k < 2 || out.scales_with_friction) && context.records[0].motion->friction_kind == FrictionKind::force)
+  if (out.scales_with_friction && context.records[0].motion->friction_kind == FrictionKind::force)
     out.unit = in_newtons(out.unit);
   return out;
 }

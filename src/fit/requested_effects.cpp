@@ -35,7 +35,7 @@ std::vector<double> term_of(const Formula& formula, std::span<const double> p, c
 
 /// Why a formula cannot be fitted to a trace, as a sentence. Empty where it can.
 std::string trouble_with(const Formula& formula, const Identification& trace) {
-  const FrictionModel model(BaseLaw::coulomb, {formula});
+  const FrictionModel model(CoulombLaw{}, {formula});
   const Observations observations = observe(trace.motion, trace.segmentation, model.needs());
   const std::string key = formula.info().key;
   bool acts = observations.slips.empty();
@@ -84,7 +84,7 @@ MotionOptions with_corrections(MotionOptions options, std::span<const Effect> ef
 
 void require_channels(std::span<const Effect> effects, Identification& trace) {
   const Motion& motion = trace.motion;
-  const Channels needs = FrictionModel(BaseLaw::exponential, {effects.begin(), effects.end()}).needs();
+  const Channels needs = FrictionModel(ExponentialLaw{}, {effects.begin(), effects.end()}).needs();
   const auto require = [&](bool needed, bool present, const char* channel) {
     if (!needed || present) return;
     trace.refuse(std::string("an effect needs the channel '") + channel + "', which this trace does not have");

@@ -9,7 +9,7 @@
 namespace tribofit {
 
 /// Bounds of every parameter in SI. Levels of friction, and what scales with them, grow with the data where friction is
-/// a force; decay factors with the speeds that were recorded.
+/// a force; the steepness of a law with the speeds that were recorded.
 struct Bounds {
   std::vector<double> lower, upper;
 };
@@ -21,12 +21,11 @@ void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& 
 void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, const Bounds& bounds,
                  std::vector<double>& start);
 
-/// Start from the data: mu_s, mu_k and the decay factor from the best of a grid of decay factors, for each of which the
-/// two levels follow linearly from mean friction over speed; effects from their catalogue start.
+/// Start from the data: the law from mean friction over speed (its start()), effects from their catalogue start.
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations, const Bounds& bounds);
 
-/// At least `count` starts: the one from the data, the bare law with effects that hardly act, then seeded ones: decay
-/// factors log-uniform over what the data can resolve, effects over their bounds.
+/// At least `count` starts: the one from the data, the bare law with effects that hardly act, then seeded ones: the
+/// steepness of the law log-uniform over what the data can resolve, effects over their bounds.
 std::vector<std::vector<double>> make_starts(const FrictionModel& model, const Observations& observations,
                                              const Bounds& bounds, int count, std::uint64_t seed);
 

@@ -42,11 +42,12 @@ class Prediction {
 double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
                         const Segmentation& segmentation) {
   const Prediction predict(model, p, motion, segmentation);
+  const double at_rest = friction_at_rest(model.law(), p);
   double squares = 0, count = 0;
   for (const StickCreep& stick : stick_motion(motion, segmentation)) {
     for (const StickPart& part : stick.parts) {
       const double predicted = predict(stick, part);
-      if (part.friction >= p[0] || !std::isfinite(predicted)) continue;
+      if (part.friction >= at_rest || !std::isfinite(predicted)) continue;
       squares += std::pow(part.relative_velocity - predicted, 2);
       count += 1;
     }

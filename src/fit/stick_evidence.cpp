@@ -127,7 +127,7 @@ bool spins_rather_than_sags(const Motion& motion, const Segmentation& segmentati
     return part.disc_velocity * (part.time - stick.parts[0].time);
   });
   // Creep of constant friction is in proportion to the radius of the contact: any radius gives the pattern.
-  const FrictionModel spin(BaseLaw::coulomb, {ContactSpin{}});
+  const FrictionModel spin(CoulombLaw{}, {ContactSpin{}});
   double best = sag;
   for (const double above : {0.99, 1.0, 1.01, 1.02, 1.03, 1.05}) {  // mu_s of a contact that creeps is not read exactly
     const std::vector<double> p = {above * level, above * level, 1e-3};

@@ -64,7 +64,7 @@ FrictionDynamics::FrictionDynamics(FrictionModel model, std::vector<double> p)
   if (p_.size() != model_.parameters().size()) {
     throw std::invalid_argument("FrictionDynamics: wrong number of parameters");
   }
-  law_ = model_.base(p_.data());
+  law_ = model_.law_values(p_.data());
 }
 
 void FrictionDynamics::begin_stick(std::span<const double> state) {
@@ -82,14 +82,14 @@ void FrictionDynamics::begin_slip(double stick_time, double direction, double of
   slip.direction = direction;
   slip.from_stick = true;
   law_ = law_for(model_, p_.data(), slip);
-  law_.mu_s += offset;
+  law_.raise_break_away(offset);
   direction_ = direction;
   age_ = age_left_ + stick_time;
 }
 
 /// |mu| of a rigid stick at this break-away, before anything modulates it.
 double FrictionDynamics::friction_at_rest() const {
-  double level = law_.mu_s;
+  double level = law_at_rest(model_, law_);
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
     if constexpr (hooks::HasContactAge<E, double>) {
       const double speed = effect.equivalent_speed(q, age_);
@@ -148,8 +148,9 @@ void FrictionDynamics::steady_states(const SlidingState<double>& at, std::span<d
 double FrictionDynamics::run(const SlidingState<double>& now, std::span<const double> state, std::span<double> rate,
                              bool want_rates) const {
   if (model_.effects().empty()) {  // simulations spend most of their time here
-    const double shape = stribeck_shape(model_.law(), law_.decay * std::abs(now.velocity));
-    const double mu = law_.mu_k + (law_.mu_s - law_.mu_k) * shape;
+    double mu = std::abs(now.velocity);
+    detail::reduce_speed(model_, law_, std::span<double>(&mu, 1));
+    detail::apply_law(model_, law_, {}, std::span<double>(&mu, 1));
     return (now.velocity != 0 ? now.velocity : now.direction) < 0 ? -mu : mu;
   }
   SlidingState<double> at = now;

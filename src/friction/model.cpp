@@ -8,25 +8,6 @@
 
 namespace tribofit {
 
-std::string_view to_string(BaseLaw law) {
-  switch (law) {
-    case BaseLaw::exponential:
-      return "exponential";
-    case BaseLaw::fractional:
-      return "fractional";
-    case BaseLaw::coulomb:
-      break;
-  }
-  return "coulomb";
-}
-
-std::optional<BaseLaw> find_law(std::string_view name) {
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional, BaseLaw::coulomb}) {
-    if (to_string(law) == name) return law;
-  }
-  return std::nullopt;
-}
-
 namespace {
 
 bool in_stick(const Effect& effect) {
@@ -36,6 +17,15 @@ bool in_stick(const Effect& effect) {
 /// The contacts have an age, which counts the time of a rigid stick.
 bool ages(const Effect& effect) {
   return std::visit([]<class E>(const E&) { return hooks::HasContactAge<E, double>; }, effect);
+}
+
+void refuse_idle(const std::vector<Effect>& effects, const Law& law) {
+  for (const Effect& effect : effects) {
+    const std::string why = obstacle_on(law, effect);
+    if (why.empty()) continue;
+    throw InputError("the effect '" + describe(effect).spelled() + "' cannot act: " + why,
+                     "leave the effect out, or choose another law");
+  }
 }
 
 void refuse_two_of_stick(const std::vector<Effect>& effects) {
@@ -50,7 +40,13 @@ void refuse_two_of_stick(const std::vector<Effect>& effects) {
 
 }  // namespace
 
-FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
+std::string obstacle_on(const Law& law, const Effect& effect) {
+  const bool transforms = std::visit([]<class E>(const E&) { return hooks::TransformsSpeed<E, double>; }, effect);
+  if (!transforms || has_reduced_speed(law)) return {};
+  return "the " + std::string(to_string(law)) + " law has no scale of speed that it could change";
+}
+
+FrictionModel::FrictionModel(Law law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
   // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into
   // signed mu.
   std::stable_sort(effects_.begin(), effects_.end(), [&](const Effect& a, const Effect& b) {
@@ -58,28 +54,12 @@ FrictionModel::FrictionModel(BaseLaw law, std::vector<Effect> effects) : law_(la
   });
   refuse_same(effects_);
   refuse_two_of_stick(effects_);
-  slots_.push_back(
-      {{.name = "mu_s", .description = "static friction, the level at break-away", .upper = 5, .start = 0.5}, ""});
-  slots_.push_back(
-      {{.name = "mu_k", .description = "kinetic friction, the level at high speed", .upper = 5, .start = 0.3}, ""});
-  if (law == BaseLaw::exponential)
-    slots_.push_back({{.name = "alpha",
-                       .description = "decay of friction with speed",
-                       .unit = "s/mm",
-                       .si = 1e3,
-                       .lower = 1e-4,
-                       .upper = 10,
-                       .start = 0.05},
-                      ""});
-  if (law == BaseLaw::fractional)
-    slots_.push_back({{.name = "beta",
-                       .description = "decay of friction with speed",
-                       .unit = "s/mm",
-                       .si = 1e3,
-                       .lower = 1e-4,
-                       .upper = 10,
-                       .start = 0.1},
-                      ""});
+  refuse_idle(effects_, law_);
+  for (const Parameter& parameter : describe(law_).parameters) {
+    if (parameter.scales_with_friction) scaled_ |= 1U << slots_.size();
+    slots_.push_back({parameter, ""});
+  }
+  base_count_ = slots_.size();
   for (const Effect& effect : effects_) {
     const EffectInfo info = describe(effect);
     offsets_.push_back(slots_.size());
@@ -131,6 +111,7 @@ bool FrictionModel::acts_in_stick() const {
 }
 
 bool FrictionModel::acts_with(const Effect& effect) const {
+  if (!obstacle_on(law_, effect).empty()) return false;
   if (in_stick(effect)) return !acts_in_stick() && std::none_of(effects_.begin(), effects_.end(), ages);
   return !ages(effect) || !acts_in_stick();
 }

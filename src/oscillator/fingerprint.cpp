@@ -22,7 +22,7 @@ const FingerprintAxis kMu = {"mu", "", 1}, kLeft = {"mu minus bare law", "", 1},
 
 /// A record with the effect, and what it is compared with.
 struct Scene {
-  PublishedTest test = published_test(0.015, BaseLaw::exponential);
+  PublishedTest test = published_test(0.015, ExponentialLaw{});
   SimulatedRecording with, without;
   const Trace& trace() const { return with.recording.trace; }
   double stated() const { return test.speed * test.radius; }
@@ -37,7 +37,7 @@ struct Scene {
   double left(std::size_t i) const {
     const double v = relative_velocity(i);
     const double law =
-        test.friction.mu_k + (test.friction.mu_s - test.friction.mu_k) * std::exp(-test.friction.decay * std::abs(v));
+        test.friction[1] + (test.friction[0] - test.friction[1]) * std::exp(-test.friction[2] * std::abs(v));
     return trace().friction[i] - (v < 0 ? -law : law);
   }
 };
@@ -67,7 +67,7 @@ Drive drive_for(View view, const PublishedTest& test) {
 Scene play(View view, const FrictionModel& model, const std::vector<double>& effect) {
   Scene scene;
   const PublishedTest& test = scene.test;
-  std::vector<double> p = {test.friction.mu_s, test.friction.mu_k, test.friction.decay};
+  std::vector<double> p = test.friction;
   const std::vector<double> bare = p;
   p.insert(p.end(), effect.begin(), effect.end());
   SimulationOptions options{.duration = 1.2, .settle = 1.6, .tolerance = 1e-8};
@@ -78,7 +78,7 @@ Scene play(View view, const FrictionModel& model, const std::vector<double>& eff
   const Drive drive = drive_for(view, test);
   scene.with = simulate_recording(model, p, test.rig, drive, options);
   const bool compares = view == View::curve || view == View::stick_time || view == View::creep;
-  if (compares) scene.without = simulate_recording(FrictionModel(BaseLaw::exponential), bare, test.rig, drive, options);
+  if (compares) scene.without = simulate_recording(FrictionModel(ExponentialLaw{}), bare, test.rig, drive, options);
   return scene;
 }
 
@@ -275,7 +275,7 @@ Fingerprint fingerprint(const Effect& effect) {
   }
   std::vector<double> p;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) p.push_back(sketch.values[i] * info.parameters[i].si);
-  const Scene scene = play(sketch.view, FrictionModel(BaseLaw::exponential, {effect}), p);
+  const Scene scene = play(sketch.view, FrictionModel(ExponentialLaw{}, {effect}), p);
   Fingerprint print = draw(sketch.view, scene);
   print.conditions = conditions(info, sketch.values);
   return print;

@@ -1,5 +1,7 @@
 #include "simulation_checks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,14 +14,25 @@ namespace tribofit {
 
 namespace {
 
+/// "mu_s = 0.5, mu_k = 0.3, alpha = 0.05 s/mm".
+std::string example_of(const Law& law) {
+  std::string text;
+  for (const Parameter& parameter : describe(law).parameters) {
+    text += (text.empty() ? "" : ", ") + fmt::format("{} = {:g}", parameter.name, parameter.start);
+    if (parameter.unit != "1") text += " " + parameter.unit;
+  }
+  return text;
+}
+
 void check_friction(const FrictionModel& model, std::span<const double> p) {
   require(p.size() == model.parameters().size(),
           "the model has " + std::to_string(model.parameters().size()) + " parameters, not " + std::to_string(p.size()),
           "give one value for each of model.parameters()");
   require(std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); }),
           "a parameter of the friction model is not finite", "give numbers");
-  require(p[0] > 0 && p[1] >= 0, "mu_s or mu_k is not positive", "give levels such as 0.5 and 0.3");
-  require(model.base_count() < 3 || p[2] >= 0, "the decay factor of the law is negative", "give e.g. 0.05 s/mm");
+  require(is_possible(model.law(), p.first(model.base_count())),
+          "friction at rest is not positive, or a parameter of the law that cannot be negative is",
+          "give values such as " + example_of(model.law()));
   require(model.state_count() <= kMostMemories,
           "the model has " + std::to_string(model.state_count()) + " effects with a memory",
           "simulate with at most " + std::to_string(kMostMemories));

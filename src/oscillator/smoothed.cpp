@@ -84,7 +84,7 @@ SmoothedSimulation::SmoothedSimulation(const Rig& rig, const Drive& drive, const
     : law_(law),
       options_(options),
       crest_(law.crest()),
-      setup_(rig, drive, FrictionModel(BaseLaw::exponential)),
+      setup_(rig, drive, FrictionModel(ExponentialLaw{})),
       integrator_(problem(), 0 - options.settle, initial_state(),
                   {.relative_tolerance = options.tolerance,
                    // Speeds of a slip are about that of the block when the drop of friction is let go.
@@ -291,12 +291,11 @@ double SmoothedLaw::crest() const {
 SmoothedLaw smoothed_law(const FrictionModel& model, std::span<const double> p, double sharpness) {
   const std::size_t viscous = model.offset_of(Viscous::key);
   const bool is_viscous = viscous < model.parameters().size();
-  if (model.law() != BaseLaw::exponential || model.effects().size() != (is_viscous ? 1U : 0U)) {
+  if (model.law() != Law(ExponentialLaw{}) || model.effects().size() != (is_viscous ? 1U : 0U)) {
     throw InputError("the smoothed law is that of the exponential law, alone or with 'viscous', not of " + model.name(),
                      "take the exponential law, or leave the effects out");
   }
-  const LawParameters<double> law = model.base(p.data());
-  SmoothedLaw made{.mu_brk = law.mu_s, .mu_c = law.mu_k, .decay = law.decay, .sharpness = sharpness};
+  SmoothedLaw made{.mu_brk = p[0], .mu_c = p[1], .decay = p[2], .sharpness = sharpness};
   if (is_viscous) made.viscous = p[viscous];
   return made;
 }

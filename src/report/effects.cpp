@@ -35,9 +35,9 @@ std::string channels_text(const Channels& needs, bool in_full) {
 }
 
 /// "sigma [s/mm] -0.0005..0.002", one after the other.
-std::string parameters_text(const EffectInfo& effect) {
+std::string parameters_text(std::span<const Parameter> parameters) {
   std::string text;
-  for (const Parameter& p : effect.parameters) {
+  for (const Parameter& p : parameters) {
     text += fmt::format("{}{}{} {:g}..{:g}", text.empty() ? "" : ", ", p.name, p.unit == "1" ? "" : " [" + p.unit + "]",
                         p.lower, p.upper);
   }
@@ -85,6 +85,20 @@ void add_next(const EffectInfo& effect, TerminalText& text) {
 
 }  // namespace
 
+std::string render_laws(std::span<const Law> laws, const TerminalOptions& options) {
+  TerminalText text(options);
+  text.heading("Laws, one of which every model has (--law KEY)");
+  for (const Law& law : laws) {
+    const LawInfo info = describe(law);
+    text.raw("  " + text.bold(std::string(to_string(law))) + "\n");
+    text.line(info.statement, 4);
+    text.line(info.equation, 4);
+    text.raw("    " + text.dim(wrapped(parameters_text(info.parameters), text.width(), 4)) + "\n");
+  }
+  text.raw("\n");
+  return text.take();
+}
+
 std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options) {
   TerminalText text(options);
   text.raw("Effects that can be added to a base law with --effect KEY (bounds: dry contacts)\n");
@@ -100,7 +114,7 @@ std::string render_effects(std::span<const EffectInfo> effects, const TerminalOp
         text.line(effect.key + ":" + form.name + ": " + form.statement, 4);
       }
       const std::string needs = channels_text(effect.needs, false);
-      const std::string all = parameters_text(effect) + (needs.empty() ? "" : "; needs " + needs);
+      const std::string all = parameters_text(effect.parameters) + (needs.empty() ? "" : "; needs " + needs);
       text.raw("    " + text.dim(wrapped(all, text.width(), 4)) + "\n");
     }
   }

@@ -12,18 +12,6 @@
 namespace tribofit {
 namespace {
 
-std::string_view equation(BaseLaw law) {
-  switch (law) {
-    case BaseLaw::exponential:
-      return "mu = mu_k + (mu_s - mu_k) exp(-alpha v)";
-    case BaseLaw::fractional:
-      return "mu = mu_k + (mu_s - mu_k) / (1 + beta v)";
-    case BaseLaw::coulomb:
-      break;
-  }
-  return "mu = mu_k in slip, mu_s at break-away";
-}
-
 std::string_view name_of(Protocol protocol) {
   return protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
 }
@@ -108,7 +96,7 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
 void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
   section.items.emplace_back(
       heading_text(fmt::format("{}, {}{}", fit.model.name(), name_of(fit.protocol), best ? " (best)" : "")));
-  section.items.emplace_back(soft_text(std::string(equation(fit.model.law()))));
+  section.items.emplace_back(soft_text(describe(fit.model.law()).equation));
   for (const Effect& effect : fit.model.effects()) {
     const EffectInfo info = describe(effect);
     section.items.emplace_back(soft_text(info.spelled() + ": " + info.equation));

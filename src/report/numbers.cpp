@@ -87,7 +87,7 @@ std::string friction_unit(const Motion& motion) {
 
 std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
   const std::string& unit = parameter.parameter.unit;
-  const bool level = parameter.parameter.scales_with_friction || (parameter.effect.empty() && unit == "1");
+  const bool level = parameter.parameter.scales_with_friction;
   const bool in_newtons = unit.rfind('N', 0) == 0;  // a fit to forces says so itself
   if (!level || in_newtons || motion.friction_kind != FrictionKind::force) return unit;
   if (unit == "1") return "N";

@@ -31,7 +31,10 @@ Response study_response(const Machine& machine, std::size_t harmonics, const Set
   const double natural = rig.natural_frequency(), ratio = rig.damping_ratio();
   out.natural_frequency = natural / (2 * std::numbers::pi);
   out.damped_natural_frequency = ratio < 1 ? std::sqrt(1 - ratio * ratio) * out.natural_frequency : 0;
-  out.force = 0.5 * machine.load * (machine.parameters[0] - machine.parameters[1]);
+  const auto law = std::span(machine.parameters).first(machine.model.base_count());
+  const double fastest = 2 * machine.disc_velocity();  // of a slip, about
+  out.force = 0.5 * machine.load *
+              (friction_at_rest(machine.model.law(), law) - kinetic_friction(machine.model.law(), law, fastest));
   const bool repeats = out.settled.regime == Regime::stick_slip || out.settled.regime == Regime::vibration;
   if (repeats) {
     constexpr std::size_t kSamples = 16384;

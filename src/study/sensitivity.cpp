@@ -13,10 +13,11 @@ namespace tribofit {
 namespace {
 
 std::vector<std::string> default_variables(const Machine& machine) {
-  std::vector<std::string> out = {"stiffness", "mass", "damping", "load", "velocity", "ratio"};
-  for (const Variable& v : variables_of(machine)) {
-    const bool of_effect = v.name.find('.') != std::string::npos;
-    if (v.name == "alpha" || v.name == "beta" || of_effect) out.push_back(v.name);
+  std::vector<std::string> out = {"stiffness", "mass", "damping", "load", "velocity"};
+  const bool two_levels = describe(machine.model.law()).two_levels;
+  if (two_levels) out.emplace_back("ratio");
+  for (std::size_t k = two_levels ? 2 : 0; k < machine.parameters.size(); ++k) {
+    out.push_back(machine.model.parameters()[k].full_name());
   }
   // What is zero cannot be varied in proportion.
   std::erase_if(out, [&](const std::string& name) { return value_of(machine, name) == 0; });

@@ -30,9 +30,8 @@ Eigen::MatrixXd root_of(const std::vector<double>& covariance, std::size_t count
 }
 
 bool can_be(const Machine& m) {
-  const bool decays = m.model.base_count() < 3 || m.parameters[2] >= 0;
-  return m.rig.mass > 0 && m.rig.stiffness > 0 && m.rig.damping >= 0 && m.parameters[0] > 0 && m.parameters[1] >= 0 &&
-         decays;
+  const auto law = std::span(m.parameters).first(m.model.base_count());
+  return m.rig.mass > 0 && m.rig.stiffness > 0 && m.rig.damping >= 0 && is_possible(m.model.law(), law);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/study/vary.hpp"
+#include "tribofit/ingest/units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 namespace tribofit {
 
 namespace {
-
 
 /// A parameter of the model as studies call it: mu_s, alpha, viscous.sigma.
 std::string called(const FrictionModel::Slot& slot) {
@@ -49,7 +48,9 @@ std::vector<Variable> variables_of(const Machine& machine) {
     out.push_back({called(slot), q.unit, q.si, unit ? unit->quantity : Quantity::dimensionless,
                    slot.effect.empty() ? "of the friction law" : "of the effect " + slot.effect});
   }
-  out.push_back({"ratio", "1", 1, Quantity::dimensionless, "mu_k/mu_s, varied by mu_k"});
+  if (describe(machine.model.law()).two_levels) {
+    out.push_back({"ratio", "1", 1, Quantity::dimensionless, "mu_k/mu_s, varied by mu_k"});
+  }
   return out;
 }
 
@@ -70,7 +71,8 @@ double value_of(const Machine& machine, std::string_view name) {
   if (name == "radius") return machine.radius;
   if (name == "speed") return machine.speed;
   if (name == "velocity") return machine.disc_velocity();
-  if (name == "ratio") return machine.parameters[1] / machine.parameters[0];
+  const bool two_levels = describe(machine.model.law()).two_levels;
+  if (name == "ratio" && two_levels) return machine.parameters[1] / machine.parameters[0];
   for (std::size_t k = 0; k < machine.parameters.size(); ++k) {
     if (called(machine.model.parameters()[k]) == name) return machine.parameters[k];
   }
@@ -95,7 +97,7 @@ Machine with_value(Machine machine, std::string_view name, double value) {
     machine.speed = value;
   } else if (name == "velocity") {
     machine.speed = value / machine.radius;
-  } else if (name == "ratio") {
+  } else if (name == "ratio" && describe(machine.model.law()).two_levels) {
     machine.parameters[1] = value * machine.parameters[0];
   } else {
     for (std::size_t k = 0; k < machine.parameters.size(); ++k) {

@@ -103,7 +103,7 @@ Json begin_json(const WorkbenchSession& session) {
   return {{"trace", trace_json(trace)},
           {"cycles", trace.segmentation.cycles.size()},
           {"sticks", trace.segmentation.kind == MotionKind::stick_slip},
-          {"laws", {"exponential", "fractional", "coulomb"}},
+          {"laws", law_keys()},
           {"effects", catalogue_json(trace.motion)},
           {"begin", choice_json(session.begin())},
           {"rungs", rungs_json(session)}};

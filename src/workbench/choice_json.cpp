@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/nearest_name.hpp"
 
 namespace tribofit::workbench {
 
@@ -15,7 +14,6 @@ namespace {
 
 constexpr int kDeepest = 8;
 constexpr std::size_t kMostEffects = 16, kMostStretches = 200, kLongestFormula = 2000;
-const std::vector<std::string> kLaws = {"exponential", "fractional", "coulomb"};
 
 [[noreturn]] void refuse(const std::string& problem, const std::string& advice) {
   throw InputError(problem, advice);
@@ -49,11 +47,9 @@ std::vector<std::string> texts(const Json& json, const char* key, std::size_t mo
   return out;
 }
 
-BaseLaw law_from(const Json& json) {
+Law law_from(const Json& json) {
   const std::string name = json.contains("law") && json["law"].is_string() ? json["law"].get<std::string>() : "";
-  const auto law = find_law(name);
-  if (!law) refuse("there is no law '" + name + "'", "did you mean '" + nearest_name(name, kLaws) + "'?");
-  return *law;
+  return make_law(name);
 }
 
 /// The shown unit of a parameter in SI; nothing for a parameter that the model does not have.
@@ -117,8 +113,9 @@ Selection selection_from(const Json& json) {
 
 /// The same where another law with these effects may have it.
 double unit_in_any_law(const WorkbenchChoice& choice, const std::string& name) {
-  for (const BaseLaw law : {choice.law, BaseLaw::exponential, BaseLaw::fractional, BaseLaw::coulomb}) {
-    if (const auto unit = unit_of(FrictionModel(law, effects_of(choice)), name)) return *unit;
+  if (const auto unit = unit_of(model_of(choice), name)) return *unit;
+  for (const Law& law : law_catalogue()) {
+    if (const auto unit = unit_of(FrictionModel(law), name)) return *unit;
   }
   return 1;
 }

@@ -23,7 +23,7 @@ const Identification& analysed_twin() {
     recovery::Twin twin = recovery::make_twin(options);
     Identification out;
     for (const Protocol protocol : {Protocol::joint, Protocol::published}) {
-      for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+      for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
         out.fits.push_back(recovery::fit_twin(twin, law, protocol));
       }
     }

@@ -60,9 +60,9 @@ struct Made {
     options.rate = 5e3;
     options.noise = kNoise;
     options.scatter = 0.002;
-    std::vector<double> p = synthetic::table4_15mm(BaseLaw::exponential);
+    std::vector<double> p = synthetic::table4_15mm(ExponentialLaw{});
     p.insert(p.end(), values.begin(), values.end());
-    return synthetic::make(FrictionModel(BaseLaw::exponential, truth), p, options);
+    return synthetic::make(FrictionModel(ExponentialLaw{}, truth), p, options);
   }
 
   /// Squares that one row of noise leaves.
@@ -70,7 +70,7 @@ struct Made {
 
   LadderStep base() const {
     LadderStep step;
-    step.trial = try_base(context, context.fine, FrictionModel(BaseLaw::exponential));
+    step.trial = try_base(context, context.fine, FrictionModel(ExponentialLaw{}));
     look_beside(context, step);
     return step;
   }
@@ -261,7 +261,7 @@ TEST(Withdraw, TakesWhatStandsOnItToo) {
 CandidateResult result(const std::vector<Candidate>& all, std::size_t k, double p_value, bool passes) {
   CandidateResult out;
   out.candidate = k;
-  out.trial.model = FrictionModel(BaseLaw::exponential, {all[k].effect});
+  out.trial.model = FrictionModel(ExponentialLaw{}, {all[k].effect});
   for (const auto& slot : out.trial.model.parameters()) {
     out.trial.p.push_back(slot.parameter.start * slot.parameter.si);
     out.trial.at_bound.push_back(false);
@@ -276,7 +276,7 @@ CandidateResult result(const std::vector<Candidate>& all, std::size_t k, double 
 
 Fit fit_with(const std::vector<Effect>& effects, double held_out) {
   Fit fit;
-  fit.model = FrictionModel(BaseLaw::exponential, effects);
+  fit.model = FrictionModel(ExponentialLaw{}, effects);
   fit.error.held_out_rmse = held_out;
   for (const auto& slot : fit.model.parameters()) {
     FitParameter parameter;

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/oscillator/rig.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 
@@ -42,7 +42,7 @@ Made make(const std::vector<Effect>& effects, const std::vector<double>& values,
   sensors.friction_noise = 0.001;
   sensors.velocity_noise = 2e-5;
   sensors.seed = 22;
-  const FrictionModel model(BaseLaw::exponential, effects);
+  const FrictionModel model(ExponentialLaw{}, effects);
   SimulatedRecording hidden =
       simulate_recording(model, p, rig_with_damping_ratio(0.85, 16.2e3, 0.02), drive, options, sensors);
   Made made;
@@ -105,7 +105,7 @@ TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
 TEST(ChangePoint, IsFoundWithIntervalsThatHoldIt) {
   for (const double when : {9.37, 14.05, 21.62}) {
     const Made made = make({make_effect("step")}, {0.02, when}, steady(), 0.004);
-    const FrictionModel model(BaseLaw::exponential, {make_effect("step")});
+    const FrictionModel model(ExponentialLaw{}, {make_effect("step")});
     const Fit fit =
         fit_model(model, made.motion, made.segmentation, observe(made.motion, made.segmentation, model.needs(), 1000));
     ASSERT_EQ(fit.parameters.size(), 5u);

@@ -64,7 +64,7 @@ TEST_F(RealData, PositioningSystemClimbsFromCoulombFrictionToItsPublishedModel) 
   read.columns = {{"time", "time_s"}, {"v_r", "dq_f_m_per_s"}, {"force", "Force1_N"}};
   const DiagnosedTraces result = diagnosed("emps/emps_training_measured.csv", read);
   ASSERT_TRUE(result.analysed);
-  EXPECT_EQ(result.diagnosis.law, BaseLaw::coulomb);  // no Stribeck drop
+  EXPECT_EQ(result.diagnosis.law, Law(CoulombLaw{}));  // no Stribeck drop
   const std::vector<std::string> added = rungs(result);
   for (const char* key : {"sensor-inertia", "viscous", "sensor-offset"}) EXPECT_THAT(added, Contains(key));
   EXPECT_FALSE(std::count(added.begin(), added.end(), "stribeck-exponent"));
@@ -107,7 +107,7 @@ TEST_F(RealData, RotaryTribometerFrictionRisesWithSpeedAndNeverSticks) {
     const DiagnosedTraces result = diagnosed(std::string("rotary-tribometer/") + file, read);
     ASSERT_TRUE(result.analysed) << file;
     EXPECT_EQ(result.traces[0].segmentation.kind, MotionKind::always_slipping) << file;
-    const bool law_rises = result.diagnosis.law != BaseLaw::coulomb &&
+    const bool law_rises = result.diagnosis.law != Law(CoulombLaw{}) &&
                            result.fits.back().parameters[0].value < result.fits.back().parameters[1].value;
     const bool viscous_rises =
         finding(result, "viscous").status == EffectStatus::found && value_of(result, "sigma") > 0;

@@ -35,7 +35,7 @@ synthetic::Record plain(std::uint64_t seed = 1) {
   synthetic::Options options;
   options.noise = kNoise;
   options.seed = seed;
-  return synthetic::make(FrictionModel(BaseLaw::exponential), synthetic::table4_15mm(BaseLaw::exponential), options);
+  return synthetic::make(FrictionModel(ExponentialLaw{}), synthetic::table4_15mm(ExponentialLaw{}), options);
 }
 
 /// Adds `more(time, velocity)` to friction wherever the block slips.
@@ -85,17 +85,17 @@ TEST(Candidates, ARecordThatNeverSticksHasNoBreakAway) {
 TEST(BaseLaws, CoulombIsTriedWhereNothingSticksAndAChoiceIsGiven) {
   synthetic::Record made = plain();
   const Record record = {&made.motion, &made.segmentation};
-  const std::vector<BaseLaw> two = {BaseLaw::exponential, BaseLaw::fractional};
+  const std::vector<Law> two = {Law(ExponentialLaw{}), Law(FractionalLaw{})};
   made.segmentation.kind = MotionKind::stick_slip;
   EXPECT_EQ(base_laws(std::span(&record, 1), two), two);
   made.segmentation.kind = MotionKind::always_slipping;
-  EXPECT_EQ(base_laws(std::span(&record, 1), two).back(), BaseLaw::coulomb);
-  EXPECT_EQ(base_laws(std::span(&record, 1), {BaseLaw::exponential}).size(), 1U);  // the user has chosen
+  EXPECT_EQ(base_laws(std::span(&record, 1), two).back(), Law(CoulombLaw{}));
+  EXPECT_EQ(base_laws(std::span(&record, 1), {Law(ExponentialLaw{})}).size(), 1U);  // the user has chosen
 }
 
 /// What is left of the friction of a record when the true law is taken away.
 std::vector<double> residual_of_truth(const Observations& observations) {
-  const std::vector<double> p = synthetic::table4_15mm(BaseLaw::exponential);
+  const std::vector<double> p = synthetic::table4_15mm(ExponentialLaw{});
   std::vector<double> residual;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const double mu = p[1] + (p[0] - p[1]) * std::exp(-p[2] * std::abs(observations.velocity[i]));
@@ -138,7 +138,7 @@ std::vector<Probe> probes_of(const synthetic::Record& made) {
   const Observations fine = observe(made.motion, made.segmentation, channels(), 200);
   const Observations coarse = observe(made.motion, made.segmentation, channels(), 40);
   const DiagnosisContext context(std::span(&record, 1), fine, coarse, kNoise, 0.004);
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   const Trial trial = try_base(context, context.fine, model);
   return probe_all(context, try_model(context, context.coarse, model, trial.p), trial, residual_of(context, trial));
 }

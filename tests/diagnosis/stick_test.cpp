@@ -10,10 +10,10 @@
 
 #include "../fit/synthetic.hpp"
 #include "fit/stick_evidence.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/rig.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace {
@@ -28,7 +28,7 @@ Observations sticks_with(double colour, std::uint64_t seed, bool high_pass, F cr
   synthetic::Options options;
   options.cycles = 400;
   options.seed = seed;
-  synthetic::Record made = synthetic::make(FrictionModel(BaseLaw::exponential), {0.509, 0.318, 52.14}, options);
+  synthetic::Record made = synthetic::make(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14}, options);
   boost::random::mt19937_64 engine(seed);
   synthetic::ColouredNoise noise(colour, engine);
   for (const Cycle& cycle : made.segmentation.cycles) {
@@ -117,7 +117,7 @@ DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double
   sensors.velocity_noise = 2e-5;
   sensors.noise_colour = colour;
   sensors.seed = 12;
-  const FrictionModel model(BaseLaw::exponential, {make_effect(key)});
+  const FrictionModel model(ExponentialLaw{}, {make_effect(key)});
   SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
   TraceInput input;
   input.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));

@@ -26,7 +26,7 @@ Fit fit_record(const FrictionModel& model, const synthetic::Record& record, cons
 /// Every model returns the parameters it was simulated with.
 struct Case {
   const char* name;
-  BaseLaw law;
+  Law law;
   std::vector<Effect> effects;
   std::vector<double> extra;
 };
@@ -37,7 +37,7 @@ TEST_P(Recovers, ParametersOfNoiseFreeData) {
   const Case& c = GetParam();
   const FrictionModel model(c.law, c.effects);
   std::vector<double> truth = synthetic::table4_15mm(c.law);
-  if (c.law == BaseLaw::coulomb) truth.pop_back();
+  if (c.law == Law(CoulombLaw{})) truth.pop_back();
   truth.insert(truth.end(), c.extra.begin(), c.extra.end());
   for (const double direction : {1.0, -1.0}) {
     synthetic::Options options;
@@ -56,13 +56,13 @@ TEST_P(Recovers, ParametersOfNoiseFreeData) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, Recovers,
-    testing::Values(Case{"exponential", BaseLaw::exponential, {}, {}}, Case{"fractional", BaseLaw::fractional, {}, {}},
-                    Case{"coulomb", BaseLaw::coulomb, {}, {}},
-                    Case{"viscous", BaseLaw::exponential, {make_effect("viscous")}, {1.2}},
-                    Case{"rate_state", BaseLaw::exponential, {make_effect("rate-state")}, {60e-6, 0.004}},
-                    Case{"healing", BaseLaw::exponential, {make_effect("rate-state:healing")}, {60e-6, 0.004}},
+    testing::Values(Case{"exponential", Law(ExponentialLaw{}), {}, {}},
+                    Case{"fractional", Law(FractionalLaw{}), {}, {}}, Case{"coulomb", Law(CoulombLaw{}), {}, {}},
+                    Case{"viscous", Law(ExponentialLaw{}), {make_effect("viscous")}, {1.2}},
+                    Case{"rate_state", Law(ExponentialLaw{}), {make_effect("rate-state")}, {60e-6, 0.004}},
+                    Case{"healing", Law(ExponentialLaw{}), {make_effect("rate-state:healing")}, {60e-6, 0.004}},
                     Case{"formula",
-                         BaseLaw::exponential,
+                         Law(ExponentialLaw{}),
                          {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")},
                          {0.02, 25, 6}}),
     [](const auto& c) { return std::string(c.param.name); });
@@ -71,9 +71,9 @@ TEST(Fit, WhatTheDataDoNotDetermineHasNoFiniteInterval) {
   synthetic::Options options;
   options.noise = 0.003;
   options.cycles = 40;
-  const FrictionModel law(BaseLaw::exponential);
-  const synthetic::Record record = synthetic::make(law, synthetic::table4_15mm(BaseLaw::exponential), options);
-  const Fit product = fit_record(FrictionModel(BaseLaw::exponential, {Formula("x = a*b*v; a=0.01, b=0.02")}), record);
+  const FrictionModel law(ExponentialLaw{});
+  const synthetic::Record record = synthetic::make(law, synthetic::table4_15mm(ExponentialLaw{}), options);
+  const Fit product = fit_record(FrictionModel(ExponentialLaw{}, {Formula("x = a*b*v; a=0.01, b=0.02")}), record);
   ASSERT_EQ(product.parameters.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) {
     const FitParameter& p = product.parameters[k];
@@ -83,13 +83,13 @@ TEST(Fit, WhatTheDataDoNotDetermineHasNoFiniteInterval) {
   }
   EXPECT_THAT(product.messages, testing::Contains(testing::HasSubstr("x a and x b are not determined")));
   // The rest is what it is beside the one term that the two make.
-  const Fit one = fit_record(FrictionModel(BaseLaw::exponential, {Formula("x = a*v; a=0.0002")}), record);
+  const Fit one = fit_record(FrictionModel(ExponentialLaw{}, {Formula("x = a*v; a=0.0002")}), record);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(product.parameters[k].std_error / one.parameters[k].std_error, 1, 1e-3) << k;
   }
   EXPECT_TRUE(std::all_of(one.parameters.begin(), one.parameters.end(), [](const auto& p) { return p.determined; }));
   // A constant is what mu_s and mu_k hold already.
-  const Fit constant = fit_record(FrictionModel(BaseLaw::exponential, {Formula("c = a; a=0.01")}), record);
+  const Fit constant = fit_record(FrictionModel(ExponentialLaw{}, {Formula("c = a; a=0.01")}), record);
   EXPECT_FALSE(constant.parameters[0].determined);
   EXPECT_FALSE(constant.parameters[1].determined);
   EXPECT_TRUE(constant.parameters[2].determined);
@@ -97,7 +97,7 @@ TEST(Fit, WhatTheDataDoNotDetermineHasNoFiniteInterval) {
 }
 
 TEST(Fit, MeansOverAFewSamplesDoNotMoveTheBareLaws) {
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     const std::vector<double> truth = synthetic::table4_15mm(law);
     synthetic::Options options;
     options.rate = 100e3;
@@ -108,13 +108,13 @@ TEST(Fit, MeansOverAFewSamplesDoNotMoveTheBareLaws) {
 }
 
 TEST(Fit, ReportsTheNoiseAsItsErrorAndItsFloor) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   for (const double colour : {0.0, 0.9}) {
     synthetic::Options options;
     options.noise = 0.003;
     options.colour = colour;
     options.cycles = 60;
-    const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+    const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options));
     EXPECT_NEAR(fit.error.rmse, 0.003, 0.0001) << colour;
     EXPECT_NEAR(fit.floor.noise, 0.003, 0.0001) << colour;
     EXPECT_NEAR(fit.error.held_out_rmse, fit.error.rmse, 0.00003) << colour;
@@ -124,8 +124,8 @@ TEST(Fit, ReportsTheNoiseAsItsErrorAndItsFloor) {
 }
 
 TEST(Fit, FloorHoldsBreakAwayScatter) {
-  const FrictionModel model(BaseLaw::exponential);
-  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
+  const std::vector<double> truth = synthetic::table4_15mm(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.003;
   options.scatter = 0.01;
@@ -137,8 +137,8 @@ TEST(Fit, FloorHoldsBreakAwayScatter) {
 
 TEST(Fit, PublishedProtocolCarriesTheBiasTheLawPredicts) {
   // Without noise the minimum in slip is the law at the fastest slip, not mu_k: physics of [D] Eq 2.
-  const FrictionModel model(BaseLaw::exponential);
-  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
+  const std::vector<double> truth = synthetic::table4_15mm(ExponentialLaw{});
   synthetic::Options options;
   options.peak = 0.03;
   const synthetic::Record record = synthetic::make(model, truth, options);
@@ -155,7 +155,7 @@ TEST(Fit, PublishedProtocolCarriesTheBiasTheLawPredicts) {
 }
 
 TEST(Fit, ComparisonPrefersTheGeneratingLaw) {
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     synthetic::Options options;
     options.noise = 0.003;
     options.colour = 0.9;
@@ -163,7 +163,7 @@ TEST(Fit, ComparisonPrefersTheGeneratingLaw) {
     const synthetic::Record record = synthetic::make(FrictionModel(law), synthetic::table4_15mm(law), options);
     const Fit right = fit_record(FrictionModel(law), record);
     const Fit wrong =
-        fit_record(FrictionModel(law == BaseLaw::exponential ? BaseLaw::fractional : BaseLaw::exponential), record);
+        fit_record(FrictionModel(law == Law(ExponentialLaw{}) ? Law(FractionalLaw{}) : Law(ExponentialLaw{})), record);
     const Comparison comparison = compare_held_out(right, wrong);
     EXPECT_TRUE(comparison.first_better);
     EXPECT_LT(comparison.p_value, 0.01);
@@ -181,12 +181,12 @@ TEST(Fit, SaysWhatTheDataDoNotSay) {
   };
   // Slips that end far from mu_k leave it to extrapolation and tie it to the decay factor.
   options.peak = 0.01;
-  const FrictionModel model(BaseLaw::exponential);
-  const Fit slow = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+  const FrictionModel model(ExponentialLaw{});
+  const Fit slow = fit_record(model, synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options));
   EXPECT_TRUE(has(slow, "mu_k is extrapolated"));
   EXPECT_TRUE(has(slow, "strongly correlated"));
   // A viscous term beyond its plausible bound ends there.
-  const FrictionModel viscous(BaseLaw::exponential, {make_effect("viscous")});
+  const FrictionModel viscous(ExponentialLaw{}, {make_effect("viscous")});
   options.peak = 0.08;
   const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 6.0}, options));
   EXPECT_TRUE(bound.parameters[3].at_bound);
@@ -196,15 +196,15 @@ TEST(Fit, SaysWhatTheDataDoNotSay) {
 TEST(Fit, FewerThanThreeCyclesIsAReasonNotAnException) {
   synthetic::Options options;
   options.cycles = 2;
-  const FrictionModel model(BaseLaw::exponential);
-  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options));
+  const FrictionModel model(ExponentialLaw{});
+  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options));
   EXPECT_FALSE(fit.converged);
   ASSERT_FALSE(fit.messages.empty());
   EXPECT_NE(fit.messages[0].find("fewer than three cycles"), std::string::npos);
 }
 
 TEST(Fit, FrictionThatRisesWithSpeedIsNotForcedToFall) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   const std::vector<double> truth = {0.15, 0.21, 40};
   synthetic::Options options;
   options.noise = 0.002;
@@ -215,8 +215,8 @@ TEST(Fit, FrictionThatRisesWithSpeedIsNotForcedToFall) {
 }
 
 TEST(Fit, RobustLossStandsBadSamples) {
-  const FrictionModel model(BaseLaw::exponential);
-  const std::vector<double> truth = synthetic::table4_15mm(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
+  const std::vector<double> truth = synthetic::table4_15mm(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.003;
   synthetic::Record record = synthetic::make(model, truth, options);
@@ -234,14 +234,13 @@ TEST(Fit, RobustLossStandsBadSamples) {
 }
 
 TEST(Fit, ProfileAgreesWithTheSymmetricIntervalWhereTheModelIsNearlyLinear) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.003;
   options.cycles = 60;
   FitOptions with;
   with.profile = true;
-  const Fit fit =
-      fit_record(model, synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options), with);
+  const Fit fit = fit_record(model, synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options), with);
   for (const FitParameter& p : fit.parameters) {
     const double width = p.upper95 - p.lower95;
     EXPECT_NEAR(p.profile_lower95, p.lower95, 0.05 * width) << p.parameter.name;
@@ -272,10 +271,10 @@ TEST_P(Systematic, PartIsWhatARerunWithTheMovedQuantityGives) {
       {"force gain", gain, [](double mu) { return mu / 1.01; }, same_velocity},
       {"load", load, [](double mu) { return mu / 1.01; }, same_velocity},
       {"vibrometer gain", vibrometer, same, [](double v, double disc) { return disc - (disc - v) / 1.01; }}};
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.001;
-  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options);
   FitOptions with;
   with.protocol = GetParam();
   for (const Moved& c : cases) {
@@ -311,11 +310,11 @@ synthetic::Record without_fold(const synthetic::Record& record, const Fit& fit, 
 }
 
 TEST(Fit, HeldOutParametersAreThoseOfRefits) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.003;
   options.scatter = 0.01;
-  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options);
   for (const Protocol protocol : {Protocol::joint, Protocol::published}) {
     FitOptions with;
     with.protocol = protocol;
@@ -332,12 +331,12 @@ TEST(Fit, HeldOutParametersAreThoseOfRefits) {
 }
 
 TEST(Fit, MeansOverAFewSamplesDoNotChangeTheErrors) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   synthetic::Options options;
   options.noise = 0.003;
   options.rate = 40e3;
   options.scatter = 0.01;
-  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const synthetic::Record record = synthetic::make(model, synthetic::table4_15mm(ExponentialLaw{}), options);
   const Fit reduced = fit_record(model, record), every = fit_record(model, record, {}, 0);
   EXPECT_NEAR(reduced.error.held_out_rmse / every.error.held_out_rmse, 1, 1e-4);
   EXPECT_NEAR(reduced.error.rmse / every.error.rmse, 1, 1e-4);
@@ -346,23 +345,22 @@ TEST(Fit, MeansOverAFewSamplesDoNotChangeTheErrors) {
 TEST(Fit, AnEffectThatIsNotThereDoesNotMakeTheFitWorse) {
   synthetic::Options options;
   options.noise = 0.003;
-  const FrictionModel bare(BaseLaw::exponential);
-  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const FrictionModel bare(ExponentialLaw{});
+  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(ExponentialLaw{}), options);
   const double error = fit_record(bare, record).error.rmse;
-  EXPECT_LT(fit_record(FrictionModel(BaseLaw::exponential, {make_effect("viscous")}), record).error.rmse,
-            1.001 * error);
+  EXPECT_LT(fit_record(FrictionModel(ExponentialLaw{}, {make_effect("viscous")}), record).error.rmse, 1.001 * error);
   // The least memory within bounds, 0.5 um, still shows where these slips come to rest as gently as no rig does.
-  const FrictionModel memory(BaseLaw::exponential, {make_effect("rate-state")});
+  const FrictionModel memory(ExponentialLaw{}, {make_effect("rate-state")});
   EXPECT_LT(fit_record(memory, record, {}, 1000).error.rmse, 1.06 * error);
 }
 
 TEST(Fit, AFormulaThatIsNotFiniteIsAReason) {
   synthetic::Options options;
-  const FrictionModel bare(BaseLaw::exponential);
-  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(BaseLaw::exponential), options);
+  const FrictionModel bare(ExponentialLaw{});
+  const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(ExponentialLaw{}), options);
   for (const char* text :
        {"x = a/0; a=0.1", "x = a*log(v-500); a=0.001", "x = a*sqrt(v-50); a=1", "x = a*1e308*1e308; a=1"}) {
-    const Fit fit = fit_record(FrictionModel(BaseLaw::exponential, {Formula(text)}), record);
+    const Fit fit = fit_record(FrictionModel(ExponentialLaw{}, {Formula(text)}), record);
     EXPECT_FALSE(fit.converged) << text;
     ASSERT_FALSE(fit.messages.empty()) << text;
     EXPECT_NE(fit.messages[0].find("not finite"), std::string::npos) << fit.messages[0];
@@ -370,7 +368,7 @@ TEST(Fit, AFormulaThatIsNotFiniteIsAReason) {
 }
 
 TEST(Fit, PublishedCoulombFrictionHasNothingLeftToFit) {
-  const FrictionModel model(BaseLaw::coulomb);
+  const FrictionModel model(CoulombLaw{});
   synthetic::Options options;
   options.noise = 0.002;
   FitOptions published;
@@ -388,9 +386,9 @@ TEST(Fit, CurveIsTheModelInSteadySliding) {
                                        {make_effect("bristle")},
                                        {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s")}};
   for (const auto& effects : every) {
-    const FrictionModel model(BaseLaw::exponential, effects);
-    const Fit fit = fit_record(model, synthetic::make(FrictionModel(BaseLaw::exponential),
-                                                      synthetic::table4_15mm(BaseLaw::exponential), options));
+    const FrictionModel model(ExponentialLaw{}, effects);
+    const Fit fit = fit_record(
+        model, synthetic::make(FrictionModel(ExponentialLaw{}), synthetic::table4_15mm(ExponentialLaw{}), options));
     const double speed = 0.031;
     const Curve curve = law_curve(fit, std::vector<double>{speed});
     const std::vector<double> time = {0, 0.5, 1}, velocity(3, speed);
@@ -407,7 +405,7 @@ TEST(Fit, CurveIsTheModelInSteadySliding) {
 
 TEST(Fit, EffectsScaleWithAForce) {
   // The same record in newtons: levels and viscous coefficient times the load, same decay factor.
-  const FrictionModel model(BaseLaw::exponential, {make_effect("viscous")});
+  const FrictionModel model(ExponentialLaw{}, {make_effect("viscous")});
   synthetic::Options options;
   options.noise = 0.001;
   synthetic::Record record = synthetic::make(model, {0.509, 0.318, 52.14, 1.0}, options);

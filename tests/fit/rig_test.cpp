@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 /// A test of [D] as recorded: noise 0.003 on mu and 0.2 mm/s on v_b, break-away scatter that wanders.
 struct Recorded {
   double radius = 0.015;
-  BaseLaw law = BaseLaw::exponential;
+  Law law = ExponentialLaw{};
   double duration = 10, rate = 20e3;
   SpeedProfile speed = {};  // none: that of the test
   Sensors sensors = {.friction_noise = 0.003, .velocity_noise = 0.2e-3};
@@ -32,7 +32,7 @@ struct Recorded {
 Trace trace_of(const Recorded& r) {
   const PublishedTest test = published_test(r.radius, r.law);
   const FrictionModel model(r.law);
-  const std::vector<double> p = {test.friction.mu_s, test.friction.mu_k, test.friction.decay};
+  const std::vector<double> p = test.friction;
   Drive drive;
   drive.speed = r.speed.speed ? r.speed : constant_speed(test.speed);
   drive.radius = test.radius;
@@ -76,7 +76,7 @@ std::string all(const std::vector<std::string>& messages) {
 
 TEST(RigFit, RigsOfThePublishedTestsComeBack) {
   for (const double radius : {0.009, 0.012, 0.015, 0.018}) {
-    for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
       for (const double colour : {0.0, 0.9}) {
         Recorded r{.radius = radius, .law = law};
         r.sensors.noise_colour = colour;

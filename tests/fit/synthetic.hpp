@@ -150,8 +150,8 @@ inline Record make(const tribofit::FrictionModel& model, const std::vector<doubl
 }
 
 /// SI parameters of the 15 mm row of Table 4 of [D].
-inline std::vector<double> table4_15mm(tribofit::BaseLaw law) {
-  return {0.509, 0.318, law == tribofit::BaseLaw::fractional ? 95.33 : 52.14};
+inline std::vector<double> table4_15mm(tribofit::Law law) {
+  return {0.509, 0.318, law == tribofit::Law(tribofit::FractionalLaw{}) ? 95.33 : 52.14};
 }
 
 }  // namespace synthetic

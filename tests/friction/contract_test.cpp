@@ -38,7 +38,7 @@ std::vector<std::string> every_name() {
 
 class EveryEffect : public testing::TestWithParam<std::string> {
  protected:
-  FrictionModel model_{BaseLaw::exponential, {make_effect(GetParam())}};
+  FrictionModel model_{ExponentialLaw{}, {make_effect(GetParam())}};
 
   /// Base law of [D] at 15 mm; effects a third of the way between their bounds, so that each of them acts, and a delay
   /// lies between samples.
@@ -206,7 +206,7 @@ struct CutOut {
 TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
   // SimulatedRecording in a simulated record and cut out of it, a slip must read as the fit evaluates it. Noise is
   // 0.003.
-  const PublishedTest test = published_test(0.015, BaseLaw::exponential);
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
   const Drive drive = {.speed = constant_speed(test.speed),
                        .radius = test.radius,
                        .mean_load = test.load,

@@ -13,7 +13,7 @@ using namespace tribofit;
 const double kOmega = 0.419;
 
 FrictionModel with(const char* key) {
-  return FrictionModel(BaseLaw::exponential, {make_effect(key)});
+  return FrictionModel(ExponentialLaw{}, {make_effect(key)});
 }
 
 Slip slip_in(double direction) {

@@ -52,7 +52,7 @@ struct SecondSlip {
   SecondSlip& operator=(const SecondSlip&) = delete;
 };
 
-FrictionModel healing(BaseLaw law = BaseLaw::exponential) {
+FrictionModel healing(Law law = Law(ExponentialLaw{})) {
   return FrictionModel(law, {make_effect("rate-state:healing")});
 }
 
@@ -113,7 +113,7 @@ TEST(Healing, ConvergesWithTheSquareOfTheStep) {
 }
 
 TEST(Healing, SteadySlidingIsTheLawAtThatSpeed) {
-  for (const BaseLaw base : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law base : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     for (const double speed : {1e-5, 1e-3, 0.05, 5.0}) {
       std::vector<double> time, velocity(50, speed);
       for (std::size_t i = 0; i < velocity.size(); ++i) time.push_back(1e-3 * static_cast<double>(i));
@@ -121,7 +121,7 @@ TEST(Healing, SteadySlidingIsTheLawAtThatSpeed) {
       slip.time = time;
       slip.velocity = velocity;
       const double expected =
-          base == BaseLaw::exponential ? 0.3 + 0.2 * std::exp(-50 * speed) : 0.3 + 0.2 / (1 + 50 * speed);
+          base == Law(ExponentialLaw{}) ? 0.3 + 0.2 * std::exp(-50 * speed) : 0.3 + 0.2 / (1 + 50 * speed);
       const std::vector<double> mu = run(healing(base), {0.5, 0.3, 50, 20e-6, 0.003}, slip);
       EXPECT_NEAR(mu.front(), expected + 0.003 * std::asinh(speed / 2e-3), 1e-12);
       EXPECT_NEAR(mu.back(), expected + 0.003 * std::asinh(speed / 2e-3), 1e-12);
@@ -149,14 +149,14 @@ TEST(Healing, BreakAwayGrowsWithTheTimeAtRestUpToStaticFriction) {
 TEST(Healing, ShortMemoryIsTheLawAlone) {
   const SecondSlip second(1e-5);
   const std::vector<double> with = run(healing(), {0.509, 0.318, 52.14, 1e-9, 0}, second.slip);
-  const std::vector<double> without = run(FrictionModel(BaseLaw::exponential), {0.509, 0.318, 52.14}, second.slip);
+  const std::vector<double> without = run(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14}, second.slip);
   // Away from rest: within D_c of it every memory is long.
   for (std::size_t i = 200; i + 200 < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 1e-4);
 }
 
 TEST(Healing, MemoriesAfterItStartFromItsBreakAway) {
   SecondSlip second(1e-5);
-  const FrictionModel model(BaseLaw::exponential, {make_effect("rate-state:healing"), make_effect("frictional-lag")});
+  const FrictionModel model(ExponentialLaw{}, {make_effect("rate-state:healing"), make_effect("frictional-lag")});
   std::vector<double> p = {0.509, 0.318, 52.14};
   for (const auto& slot : model.parameters().subspan(3)) p.push_back(slot.parameter.start * slot.parameter.si);
   p[model.offset_of("rate-state")] = 200e-6;
@@ -187,13 +187,12 @@ TEST(Healing, IsAFormOfRateState) {
   EXPECT_EQ(info.spelled(), "rate-state:healing");
   EXPECT_EQ(healing().name(), "exponential + rate-state:healing");
   EXPECT_EQ(healing().effect_keys(), std::vector<std::string>{"rate-state"});
-  EXPECT_THROW(FrictionModel(BaseLaw::exponential, {make_effect("rate-state"), make_effect("rate-state:healing")}),
+  EXPECT_THROW(FrictionModel(ExponentialLaw{}, {make_effect("rate-state"), make_effect("rate-state:healing")}),
                InputError);
-  EXPECT_THROW(FrictionModel(BaseLaw::exponential, {make_effect("bristle"), make_effect("rate-state:healing")}),
+  EXPECT_THROW(FrictionModel(ExponentialLaw{}, {make_effect("bristle"), make_effect("rate-state:healing")}),
                InputError);
   EXPECT_FALSE(healing().acts_with(make_effect("bristle")));
-  EXPECT_FALSE(
-      FrictionModel(BaseLaw::exponential, {make_effect("bristle")}).acts_with(make_effect("rate-state:healing")));
+  EXPECT_FALSE(FrictionModel(ExponentialLaw{}, {make_effect("bristle")}).acts_with(make_effect("rate-state:healing")));
   EXPECT_TRUE(healing().acts_with(make_effect("viscous")));
   for (const auto& [name, hint] :
        {std::pair("rate-state:heling", "rate-state:healing"), std::pair("rate-stat", "rate-state"),

@@ -19,8 +19,8 @@ struct StickSlip {
   SimulatedMotion motion;
 
   explicit StickSlip(double duration) {
-    const PublishedTest test = published_test(0.015, BaseLaw::exponential);
-    const std::vector<double> p = {test.friction.mu_s, test.friction.mu_k, test.friction.decay};
+    const PublishedTest test = published_test(0.015, ExponentialLaw{});
+    const std::vector<double> p = test.friction;
     Drive drive;
     drive.speed = constant_speed(test.speed);
     drive.radius = test.radius;
@@ -30,7 +30,7 @@ struct StickSlip {
     options.settle = settling_time(test.rig, drive, p);
     options.scatter = {0.01, 0};
     options.seed = 5;
-    motion = simulate(test.rig, drive, FrictionModel(BaseLaw::exponential), p, options);
+    motion = simulate(test.rig, drive, FrictionModel(ExponentialLaw{}), p, options);
   }
   /// mu and v_b [mm/s] at time t
   std::pair<double, double> at(double t) const {

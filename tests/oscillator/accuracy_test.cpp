@@ -36,7 +36,7 @@ TEST(Accuracy, CoulombAgreesWithTheClosedForm) {
   for (const double radius : {0.009, 0.012, 0.015, 0.018}) {
     for (const double speed : {0.2, 1.0, 4.0, 20.0, 60.0}) {
       SCOPED_TRACE(std::to_string(1e3 * radius) + " mm, " + std::to_string(speed) + " rpm");
-      Case c = published_case(radius, BaseLaw::coulomb);
+      Case c = published_case(radius, CoulombLaw{});
       c.rig.damping = 0;
       c.drive.speed = constant_speed(speed * kRevolutionPerMinute);
       const double w = c.rig.natural_frequency(), v = radius * speed * kRevolutionPerMinute;
@@ -92,10 +92,10 @@ struct NamedLaw {
 };
 
 std::vector<NamedLaw> laws_with_damping() {
-  const auto exponential = published_case(0.012, BaseLaw::exponential);
-  const auto fractional = published_case(0.018, BaseLaw::fractional);
-  auto viscous = published_case(0.015, BaseLaw::exponential);
-  viscous.model = FrictionModel(BaseLaw::exponential, {Viscous{}});
+  const auto exponential = published_case(0.012, ExponentialLaw{});
+  const auto fractional = published_case(0.018, FractionalLaw{});
+  auto viscous = published_case(0.015, ExponentialLaw{});
+  viscous.model = FrictionModel(ExponentialLaw{}, {Viscous{}});
   viscous.p.push_back(0.2);  // s/m
   const auto falls = [](const Case& c, double v) { return c.p[1] + (c.p[0] - c.p[1]) * std::exp(-c.p[2] * v); };
   return {{"exponential", exponential, [=](double v) { return falls(exponential, v); }},
@@ -153,7 +153,7 @@ TEST(Accuracy, EventTimesConvergeAtTheOrderOfTheIntegrator) {
 }
 
 TEST(Accuracy, PeriodErrorFollowsTheTolerance) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const auto period = [&](double tolerance) {
     return mean_period(simulate(c, {.duration = 20, .rate = 0, .settle = 3, .tolerance = tolerance}));
   };

@@ -27,12 +27,12 @@ TEST(Presets, AreThePublishedTable) {
     std::vector<double> row;
     for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
     ASSERT_GE(row.size(), 5U);
-    for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+    for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
       const PublishedTest test = published_test(1e-3 * row[0], law);
       EXPECT_DOUBLE_EQ(1e3 * test.radius, row[0]);
-      EXPECT_DOUBLE_EQ(test.friction.mu_s, row[1]);
-      EXPECT_DOUBLE_EQ(test.friction.mu_k, row[2]);
-      EXPECT_DOUBLE_EQ(1e-3 * test.friction.decay, law == BaseLaw::exponential ? row[3] : row[4]);
+      EXPECT_DOUBLE_EQ(test.friction[0], row[1]);
+      EXPECT_DOUBLE_EQ(test.friction[1], row[2]);
+      EXPECT_DOUBLE_EQ(1e-3 * test.friction[2], law == Law(ExponentialLaw{}) ? row[3] : row[4]);
       EXPECT_NEAR(test.rig.damping_ratio(), 0.02, 1e-15);
     }
   }
@@ -40,15 +40,15 @@ TEST(Presets, AreThePublishedTable) {
 }
 
 TEST(Presets, TheNearestRadiusIsTaken) {
-  EXPECT_DOUBLE_EQ(published_test(0.001, BaseLaw::coulomb).radius, 0.009);
-  EXPECT_DOUBLE_EQ(published_test(0.0104, BaseLaw::coulomb).radius, 0.009);
-  EXPECT_DOUBLE_EQ(published_test(0.0106, BaseLaw::coulomb).radius, 0.012);
-  EXPECT_DOUBLE_EQ(published_test(1, BaseLaw::coulomb).radius, 0.018);
+  EXPECT_DOUBLE_EQ(published_test(0.001, CoulombLaw{}).radius, 0.009);
+  EXPECT_DOUBLE_EQ(published_test(0.0104, CoulombLaw{}).radius, 0.009);
+  EXPECT_DOUBLE_EQ(published_test(0.0106, CoulombLaw{}).radius, 0.012);
+  EXPECT_DOUBLE_EQ(published_test(1, CoulombLaw{}).radius, 0.018);
 }
 
 // The example is what data/README.md says: the same simulation gives every number of it.
 TEST(Presets, TheExampleTraceIsMadeAsStated) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const SimulationOptions options{
       .duration = 5, .rate = 20000, .settle = settling_time(c.rig, c.drive, c.p), .scatter = {0.004, 0}, .seed = 1};
   const SimulatedMotion motion = simulate(c, options);

@@ -18,8 +18,8 @@ double exponential(const Case& c, double speed) {
 }
 
 Case with_effect(const char* key, std::vector<double> values) {
-  Case c = published_case(0.015, BaseLaw::exponential);
-  c.model = FrictionModel(BaseLaw::exponential, {make_effect(key)});
+  Case c = published_case(0.015, ExponentialLaw{});
+  c.model = FrictionModel(ExponentialLaw{}, {make_effect(key)});
   c.p.insert(c.p.end(), values.begin(), values.end());
   return c;
 }
@@ -129,7 +129,7 @@ TEST(Presliding, BristleSlipsAreFoundAndScatter) {
 // A stiff contact is a rigid one.
 TEST(Presliding, StiffBristleApproachesRigidStick) {
   const SimulationOptions options{.duration = 4, .rate = 0, .settle = 3, .tolerance = 1e-8};
-  const double rigid = mean_period(simulate(published_case(0.015, BaseLaw::exponential), options));
+  const double rigid = mean_period(simulate(published_case(0.015, ExponentialLaw{}), options));
   const auto difference = [&](double sigma0) {
     return std::abs(mean_period(simulate(with_effect("bristle", {sigma0, 1e-4 * sigma0}), options)) / rigid - 1);
   };
@@ -190,7 +190,7 @@ TEST(Memory, HealingContactsAgeThroughStickAndSlip) {
 // Slip begins from v_r = 0, where even a short distance takes time: the limit is reached slowly, but reached.
 TEST(Memory, ShortMemoryIsNone) {
   const SimulationOptions options{.duration = 4, .rate = 0, .settle = 3, .tolerance = 1e-8};
-  const double without = mean_period(simulate(published_case(0.015, BaseLaw::exponential), options));
+  const double without = mean_period(simulate(published_case(0.015, ExponentialLaw{}), options));
   const auto difference = [&](double critical_distance) {
     return mean_period(simulate(with_effect("rate-state", {critical_distance, 0}), options)) / without - 1;
   };

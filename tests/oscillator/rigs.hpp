@@ -15,13 +15,12 @@ struct Case {
   std::vector<double> p;
 };
 
-inline Case published_case(double radius, BaseLaw law) {
+inline Case published_case(double radius, Law law) {
   const PublishedTest test = published_test(radius, law);
-  Case made{test.rig, {}, FrictionModel(law), {test.friction.mu_s, test.friction.mu_k}};
+  Case made{test.rig, {}, FrictionModel(law), test.friction};
   made.drive.speed = constant_speed(test.speed);
   made.drive.radius = test.radius;
   made.drive.mean_load = test.load;
-  if (law != BaseLaw::coulomb) made.p.push_back(test.friction.decay);
   return made;
 }
 

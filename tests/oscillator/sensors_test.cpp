@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRate = 20000;
 
-const FrictionModel kLaw(BaseLaw::coulomb);
+const FrictionModel kLaw(CoulombLaw{});
 const std::vector<double> kLevels = {0.5, 0.3};
 
 /// A made-up motion: mu and v are sines of frequency f.
@@ -133,7 +133,7 @@ TEST(Sensors, HighPassAndGainOfTheVibrometer) {
 }
 
 TEST(Sensors, HighPassStartsSettled) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const Sensors sensors{.velocity_high_pass = 0.5};
   const SimulatedMotion motion = simulate(c, {.duration = 8, .rate = kRate, .settle = 3.05});
   const SimulatedMotion late = simulate(c, {.duration = 3, .rate = kRate, .settle = 8.05});
@@ -167,7 +167,7 @@ TEST(Sensors, ReadingsAreRounded) {
 }
 
 TEST(Floor, IsNoiseAndScatter) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const SimulatedMotion clean = simulate(c, {.duration = 10, .rate = kRate, .settle = 3});
   EXPECT_NEAR(floor_rmse(clean, record(clean, c.model, c.p), c.model, c.p), 0, 1e-12);
   const Recording noisy = record(clean, c.model, c.p, {.friction_noise = 0.003});

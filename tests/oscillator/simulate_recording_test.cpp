@@ -16,10 +16,10 @@ namespace {
 /// The published 15 mm test with one effect; p of the effect in SI.
 SimulatedRecording hidden_with(const std::string& key, const std::vector<double>& effect,
                                const SimulationOptions& options) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   std::vector<double> p = c.p;
   p.insert(p.end(), effect.begin(), effect.end());
-  return simulate_recording(FrictionModel(BaseLaw::exponential, {make_effect(key)}), p, c.rig, c.drive, options);
+  return simulate_recording(FrictionModel(ExponentialLaw{}, {make_effect(key)}), p, c.rig, c.drive, options);
 }
 
 TEST(Ripple, SpeedIsTheRateOfTheAngleAndFollowsIt) {
@@ -109,7 +109,7 @@ TEST(Drives, StepsAndPausesChangeTheSpeedAsStated) {
 }
 
 TEST(Simulation, RefusesWhatCannotBeOrNeverEnds) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   Rig stiff = c.rig;
   stiff.damping = 1e9;
   EXPECT_THROW(simulate(stiff, c.drive, c.model, c.p, {.duration = 1}), InputError);

@@ -27,13 +27,13 @@ void time_it(std::string_view what, const std::function<std::size_t()>& simulati
 }
 
 void run() {
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional, BaseLaw::coulomb}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{}), Law(CoulombLaw{})}) {
     const Case c = published_case(0.015, law);
     time_it(fmt::format("one hour at the 15 mm rig of [D], {}", to_string(law)),
             [&] { return simulate(c, {.duration = 3600, .rate = 0}).slips.size(); });
   }
-  Case lag = published_case(0.015, BaseLaw::exponential);
-  lag.model = FrictionModel(BaseLaw::exponential, {FrictionalLag{}});
+  Case lag = published_case(0.015, ExponentialLaw{});
+  lag.model = FrictionModel(ExponentialLaw{}, {FrictionalLag{}});
   lag.p.push_back(2e-3);
   time_it("one hour at the 15 mm rig of [D], exponential + lag",
           [&] { return simulate(lag, {.duration = 3600, .rate = 0}).slips.size(); });

@@ -162,7 +162,7 @@ TEST(Smoothed, StartsAtRestLikeTheSources) {
 // The crest of the law is below mu_brk by a term in 1/sqrt(s), so the block breaks away too early; what the block gains
 // while it passes the crest makes up for a part of it. Differences fall between s^-1/2 and s^-0.8.
 TEST(Smoothed, TendsToTheEventLocatedMotionAsItSharpens) {
-  const FrictionModel model(BaseLaw::exponential);
+  const FrictionModel model(ExponentialLaw{});
   const std::vector<double> p{0.6, 0.1, kDecay};
   const Measures exact = measures_of(simulate(kRig, drive_at(kDisc), model, p, {.duration = 60, .rate = 0}));
   double last_period = 0, last_swing = 0;
@@ -187,7 +187,7 @@ TEST(Smoothed, TendsToTheEventLocatedMotionAsItSharpens) {
 }
 
 TEST(Smoothed, ViscousTermIsThatOfTheEffect) {
-  const FrictionModel model(BaseLaw::exponential, {Viscous{}});
+  const FrictionModel model(ExponentialLaw{}, {Viscous{}});
   const std::vector<double> p{0.6, 0.1, kDecay, 20};
   const Measures exact = measures_of(simulate(kRig, drive_at(kDisc), model, p, {.duration = 60, .rate = 0}));
   const SmoothedLaw law = smoothed_law(model, p, 1e9);
@@ -229,8 +229,8 @@ TEST(Smoothed, WhatCannotBeIsRefused) {
   refused([](auto&, auto&, auto&, SmoothedOptions& o) { o.tolerance = 0; });
   refused([](auto&, auto&, auto&, SmoothedOptions& o) { o.start.velocity = std::nan(""); });
   const std::vector<double> p{0.6, 0.1, kDecay};
-  EXPECT_THROW(smoothed_law(FrictionModel(BaseLaw::fractional), p, 1), InputError);
-  EXPECT_THROW(smoothed_law(FrictionModel(BaseLaw::coulomb), p, 1), InputError);
+  EXPECT_THROW(smoothed_law(FrictionModel(FractionalLaw{}), p, 1), InputError);
+  EXPECT_THROW(smoothed_law(FrictionModel(CoulombLaw{}), p, 1), InputError);
 }
 
 // Beyond what doubles can hold the integrator gives up, and says where.

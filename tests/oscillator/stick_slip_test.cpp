@@ -24,11 +24,11 @@ TEST(StickSlip, PublishedFrequencies) {
   const std::vector<double> amplitude = {56.5, 66.2, 83.9, 72.7};      // mm/s
   for (std::size_t i = 0; i < radii.size(); ++i) {
     SimulationOptions options{.duration = 20, .rate = 5000, .settle = 3};
-    const SimulatedMotion motion = simulate(published_case(radii[i], BaseLaw::exponential), options);
+    const SimulatedMotion motion = simulate(published_case(radii[i], ExponentialLaw{}), options);
     EXPECT_NEAR(1 / mean_period(motion), published[i], 0.01 * published[i]) << radii[i];
     const double peak = *std::max_element(motion.relative_velocity.begin(), motion.relative_velocity.end());
     EXPECT_NEAR(1e3 * peak, amplitude[i], 0.015 * amplitude[i]) << radii[i];
-    const SimulatedMotion other = simulate(published_case(radii[i], BaseLaw::fractional), options);
+    const SimulatedMotion other = simulate(published_case(radii[i], FractionalLaw{}), options);
     EXPECT_NEAR(1 / mean_period(other), fractional[i], 0.003 * fractional[i]) << radii[i];
   }
 }
@@ -39,7 +39,7 @@ TEST(StickSlip, PublishedFrequencies) {
 //   V]) T = findroot(lambda t: V - f(t)[1], (0.029, 0.03), solver='anderson'); print(T, f(T)[0])
 TEST(StickSlip, SlipsAgreeWithATaylorSeries) {
   const double slip_time = 0.029554974325347709, x_end = 0.00046675895575892678;
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const double v = 0.015 * 4 * 2 * std::numbers::pi / 60;
   const double x_break = (c.drive.mean_load * c.p[0] - c.rig.damping * v) / c.rig.stiffness;
   const SimulatedMotion motion = simulate(c, {.duration = 60, .rate = 0});
@@ -54,7 +54,7 @@ TEST(StickSlip, SlipsAgreeWithATaylorSeries) {
 }
 
 TEST(StickSlip, EachSlipUsesItsOwnStaticFriction) {
-  const Case c = published_case(0.015, BaseLaw::exponential);
+  const Case c = published_case(0.015, ExponentialLaw{});
   const double deviation = 0.004, wander = 0.7;
   const SimulatedMotion motion =
       simulate(c, {.duration = 600, .rate = 1000, .settle = 3, .scatter = {deviation, wander}, .seed = 5});
@@ -82,7 +82,7 @@ TEST(StickSlip, EachSlipUsesItsOwnStaticFriction) {
 }
 
 TEST(StickSlip, ForceBalanceHoldsAtEverySample) {
-  Case c = published_case(0.018, BaseLaw::fractional);
+  Case c = published_case(0.018, FractionalLaw{});
   c.drive.load = [](double t) { return 50 + 5 * std::sin(7 * t); };
   c.drive.speed = run_up_speed(0.42, 1);
   const double rate = 100000;
@@ -98,7 +98,7 @@ TEST(StickSlip, ForceBalanceHoldsAtEverySample) {
 }
 
 TEST(StickSlip, RunUpStartsAtRest) {
-  Case c = published_case(0.015, BaseLaw::exponential);
+  Case c = published_case(0.015, ExponentialLaw{});
   const double omega = 4 * 2 * std::numbers::pi / 60;
   c.drive.speed = run_up_speed(omega, 1);
   const SimulatedMotion motion = simulate(c, {.duration = 3, .rate = 1000});
@@ -115,7 +115,7 @@ TEST(StickSlip, RunUpStartsAtRest) {
 }
 
 TEST(StickSlip, ReversingDriveIsSymmetric) {
-  Case c = published_case(0.015, BaseLaw::exponential);
+  Case c = published_case(0.015, ExponentialLaw{});
   c.drive.speed = reversing_speed(4, 0.5);
   const SimulatedMotion motion = simulate(c, {.duration = 8, .rate = 5000});
   int forward = 0, backward = 0;
@@ -133,7 +133,7 @@ TEST(StickSlip, ReversingDriveIsSymmetric) {
 
 // The disc shakes harder than friction can carry the block along: m v_disc' > N mu_s where v_r = 0.
 TEST(StickSlip, MotionTurnsRoundWhereFrictionCannotHoldTheBlock) {
-  Case c = published_case(0.015, BaseLaw::coulomb);
+  Case c = published_case(0.015, CoulombLaw{});
   c.p = {0.2, 0.2};
   c.drive.speed = reversing_speed(67, 20);  // 126 m/s^2
   const SimulatedMotion motion = simulate(c, {.duration = 5, .rate = 2000});
@@ -145,7 +145,7 @@ TEST(StickSlip, MotionTurnsRoundWhereFrictionCannotHoldTheBlock) {
 }
 
 TEST(StickSlip, SteadySlidingRestsAtTheLaw) {
-  Case c = published_case(0.015, BaseLaw::exponential);
+  Case c = published_case(0.015, ExponentialLaw{});
   c.rig = rig_with_damping_ratio(c.rig.mass, c.rig.stiffness, 3);  // above the slope N |dmu/dv| of the law
   const SimulatedMotion motion = simulate(c, {.duration = 2, .rate = 1000, .settle = 5});
   const double v = c.drive.radius * 4 * 2 * std::numbers::pi / 60;
@@ -160,7 +160,7 @@ TEST(StickSlip, SteadySlidingRestsAtTheLaw) {
 }
 
 TEST(StickSlip, FrictionThatRisesWithSpeedSlidesOn) {
-  Case c = published_case(0.015, BaseLaw::exponential);
+  Case c = published_case(0.015, ExponentialLaw{});
   c.p = {0.3, 0.5, 52};
   const SimulatedMotion motion = simulate(c, {.duration = 2, .rate = 1000, .settle = 5});
   EXPECT_EQ(motion.break_away_count(), 0U);
@@ -169,9 +169,8 @@ TEST(StickSlip, FrictionThatRisesWithSpeedSlidesOn) {
 
 // A term in the block's acceleration makes friction depend on what it causes.
 TEST(StickSlip, FrictionAndAccelerationAreConsistent) {
-  Case c = published_case(0.015, BaseLaw::exponential);
-  c.model =
-      FrictionModel(BaseLaw::exponential, {Formula("inertia = b*acceleration; b=1e-6")});  // acceleration in mm/s^2
+  Case c = published_case(0.015, ExponentialLaw{});
+  c.model = FrictionModel(ExponentialLaw{}, {Formula("inertia = b*acceleration; b=1e-6")});  // acceleration in mm/s^2
   c.p.push_back(1e-6);
   const SimulatedMotion motion = simulate(c, {.duration = 2, .rate = 5000, .settle = 3});
   EXPECT_GT(motion.break_away_count(), 5U);
@@ -184,7 +183,7 @@ TEST(StickSlip, FrictionAndAccelerationAreConsistent) {
 
 // Friction that rises at once with motion holds the block, although the spring is past its static friction.
 TEST(StickSlip, ABlockThatCannotStartStaysStuck) {
-  Case c = published_case(0.015, BaseLaw::coulomb);
+  Case c = published_case(0.015, CoulombLaw{});
   c.p = {0.3, 0.5};
   const SimulatedMotion motion = simulate(c, {.duration = 3, .rate = 1000});
   ASSERT_EQ(motion.slips.size(), 1U);
@@ -209,7 +208,7 @@ TEST(StickSlip, SpeedProfilesAreConsistent) {
 }
 
 TEST(StickSlip, WhatCannotBeIsRefused) {
-  const Case good = published_case(0.015, BaseLaw::exponential);
+  const Case good = published_case(0.015, ExponentialLaw{});
   const auto refused = [&](auto&& change) {
     Case c = good;
     SimulationOptions options;

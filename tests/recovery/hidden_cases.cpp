@@ -208,14 +208,14 @@ Case draw(std::string group, std::size_t number, Kind kind, Setting setting, std
   c.group = std::move(group);
   constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
   c.radius = kRadii[cell % 4];
-  c.law = (cell / 4) % 2 == 0 ? BaseLaw::exponential : BaseLaw::fractional;
+  c.law = (cell / 4) % 2 == 0 ? Law(ExponentialLaw{}) : Law(FractionalLaw{});
   c.colour = (cell / 8) % 2 == 0 ? 0 : 0.9;
   c.wander = (cell / 16) % 2 == 0 ? 0 : 0.7;
   c.scatter = random.uniform(0.004, 0.02);
   c.rig = rig_with_damping_ratio(random.uniform(0.75, 0.95), 1e3 * random.uniform(11, 16), random.uniform(0.01, 0.04));
-  c.friction.mu_s = random.uniform(0.49, 0.53);
-  c.friction.mu_k = random.uniform(0.31, 0.39);
-  c.friction.decay = 1e3 * (c.law == BaseLaw::exponential ? random.uniform(0.03, 0.06) : random.uniform(0.05, 0.11));
+  c.friction[0] = random.uniform(0.49, 0.53);
+  c.friction[1] = random.uniform(0.31, 0.39);
+  c.friction[2] = 1e3 * (c.law == Law(ExponentialLaw{}) ? random.uniform(0.03, 0.06) : random.uniform(0.05, 0.11));
   c.speed = 4 * kRpm;
   c.load = 50;
   return c;
@@ -232,10 +232,9 @@ Effect alien(const Case& c, const Ingredient& what) {
     return Formula(
         fmt::format("hump = a*exp(-((v-v0)/w)^2); a={}, v0={}, w={}", number(p[0]), number(p[1]), number(p[2])));
   }
-  const char* fall = c.law == BaseLaw::exponential ? "exp(-{}*v)" : "1/(1+{}*v)";
-  const std::string level =
-      fmt::format("({}+{}*{})", number(c.friction.mu_k), number(c.friction.mu_s - c.friction.mu_k),
-                  fmt::format(fmt::runtime(fall), number(c.friction.decay * 1e-3)));
+  const char* fall = c.law == Law(ExponentialLaw{}) ? "exp(-{}*v)" : "1/(1+{}*v)";
+  const std::string level = fmt::format("({}+{}*{})", number(c.friction[1]), number(c.friction[0] - c.friction[1]),
+                                        fmt::format(fmt::runtime(fall), number(c.friction[2] * 1e-3)));
   return Formula(fmt::format("swing = a*{}*cos({}*t+b); a={}, b={}", level, number(2 * std::numbers::pi / p[1]),
                              number(p[0]), number(p[2])));
 }
@@ -268,7 +267,7 @@ Model true_model(const Case& c) {
     values.emplace_back(info.key, std::move(si));
     effects.push_back(effect);
   }
-  Model out{FrictionModel(c.law, std::move(effects)), {c.friction.mu_s, c.friction.mu_k, c.friction.decay}};
+  Model out{FrictionModel(c.law, std::move(effects)), c.friction};
   for (const std::string& key : out.model.effect_keys()) {
     const auto at = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == key; });
     out.p.insert(out.p.end(), at->second.begin(), at->second.end());

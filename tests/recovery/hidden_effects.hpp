@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/oscillator/rig.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace recovery {
 
@@ -62,8 +62,8 @@ struct Case {
   Setting setting = Setting::fast;
   std::vector<Ingredient> hidden;
   std::string variable;  ///< aliens: the one over which they show
-  tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
-  tribofit::LawParameters<double> friction{};
+  tribofit::Law law = tribofit::ExponentialLaw{};
+  std::vector<double> friction = {0, 0, 0};  ///< parameters of the law [SI]
   tribofit::Rig rig;
   double radius = 0;  ///< [m]
   double speed = 0;   ///< [rad/s]
@@ -108,8 +108,8 @@ struct Experiment {
 };
 Experiment& operator+=(Experiment& all, const Experiment& more);
 
-/// The experiment that discriminating_experiment() of the catalogue names for two effects; empty where it names none. The order of
-/// the keys does not matter.
+/// The experiment that discriminating_experiment() of the catalogue names for two effects; empty where it names none.
+/// The order of the keys does not matter.
 Experiment telling_experiment(std::string_view key_a, std::string_view key_b);
 
 /// Every pair that has one.
@@ -120,7 +120,7 @@ tribofit::Instruments measured_by_hand(const Case& c, const std::vector<std::str
 
 /// A case as recorded.
 struct Simulated {
-  tribofit::FrictionModel model{tribofit::BaseLaw::exponential};
+  tribofit::FrictionModel model{tribofit::ExponentialLaw{}};
   std::vector<double> truth;  ///< parameters of `model` [SI]
   std::vector<std::shared_ptr<const tribofit::Trace>> traces;
   double floor_rmse = 0;  ///< what the true law leaves over slip, all traces together [1]
@@ -156,7 +156,7 @@ struct Outcome {
   Case of;
   std::vector<Name> names;  ///< rungs beyond the base law, and effects of the motion that were found
   tribofit::Verdict verdict = tribofit::Verdict::sufficient;
-  tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
+  tribofit::Law law = tribofit::ExponentialLaw{};
   std::string remaining;  ///< variable of the largest remaining share; empty: none
   double remaining_share = 0;
   std::string status;      ///< of the first hidden effect of the catalogue

@@ -276,7 +276,7 @@ std::string conditions_table(const Outcomes& outcomes) {
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, g.size(),
                    percent(count(g, is_right), g.size()));
   };
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     row(std::string(to_string(law)), [&](const Outcome* o) { return o->of.law == law; });
   }
   for (const double radius : {0.009, 0.012, 0.015, 0.018}) {

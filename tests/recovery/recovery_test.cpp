@@ -21,17 +21,17 @@ using recovery::Twin;
 using recovery::TwinOptions;
 
 constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
-constexpr BaseLaw kLaws[] = {BaseLaw::exponential, BaseLaw::fractional};
+constexpr Law kLaws[] = {Law(ExponentialLaw{}), Law(FractionalLaw{})};
 
-BaseLaw other(BaseLaw law) {
-  return law == BaseLaw::exponential ? BaseLaw::fractional : BaseLaw::exponential;
+Law other(Law law) {
+  return law == Law(ExponentialLaw{}) ? Law(FractionalLaw{}) : Law(ExponentialLaw{});
 }
 
 /// The eight twins: each law at each radius. Prints value, error and the published protocol's bias beside it.
 TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
   std::printf("%-12s %-7s %-22s %-22s %-26s  %s\n", "law", "radius", "mu_s (joint, publ.)", "mu_k (joint, publ.)",
               "decay (joint, publ.)", "held-out p");
-  for (const BaseLaw law : kLaws) {
+  for (const Law& law : kLaws) {
     for (const double radius : kRadii) {
       TwinOptions options;
       options.radius = radius;
@@ -80,8 +80,8 @@ TEST(Effects, ComeBackFromTheRigTheyWereSimulatedOn) {
       return fit_model(model, twin.motion, twin.segmentation,
                        observe(twin.motion, twin.segmentation, model.needs(), 1000), {}, fit);
     };
-    const Fit bare = fitted(FrictionModel(BaseLaw::exponential));
-    const Fit fit = fitted(FrictionModel(BaseLaw::exponential, options.effects));
+    const Fit bare = fitted(FrictionModel(ExponentialLaw{}));
+    const Fit fit = fitted(FrictionModel(ExponentialLaw{}, options.effects));
     const FitParameter& p = fit.parameters[3 + h.main];
     std::printf("%-10s %s = %.4g (%.4g..%.4g), truth %.4g; held-out RMSE %.5f -> %.5f, floor %.5f\n", h.key,
                 p.parameter.name.c_str(), p.value / p.parameter.si, p.lower95 / p.parameter.si,

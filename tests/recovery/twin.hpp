@@ -16,7 +16,7 @@ namespace recovery {
 /// How a twin of a test of [D] is recorded.
 struct TwinOptions {
   double radius = 0.015;  ///< [m]
-  tribofit::BaseLaw law = tribofit::BaseLaw::exponential;
+  tribofit::Law law = tribofit::ExponentialLaw{};
   double duration = 20;  ///< [s]
   double colour = 0;     ///< AR(1) coefficient of both noises, per sample
   double scatter = 0.004;
@@ -40,7 +40,7 @@ inline Twin make_twin(const TwinOptions& o) {
   using namespace tribofit;
   Twin twin;
   twin.test = published_test(o.radius, o.law);
-  twin.truth = {twin.test.friction.mu_s, twin.test.friction.mu_k, twin.test.friction.decay};
+  twin.truth = twin.test.friction;
   const FrictionModel model(o.law, o.effects);
   twin.truth.insert(twin.truth.end(), o.effect_parameters.begin(), o.effect_parameters.end());
   Drive drive;
@@ -71,7 +71,7 @@ inline Twin make_twin(const TwinOptions& o) {
   return twin;
 }
 
-inline tribofit::Fit fit_twin(const Twin& twin, tribofit::BaseLaw law,
+inline tribofit::Fit fit_twin(const Twin& twin, tribofit::Law law,
                               tribofit::Protocol protocol = tribofit::Protocol::joint) {
   tribofit::FitOptions options;
   options.protocol = protocol;

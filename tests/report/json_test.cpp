@@ -90,7 +90,7 @@ TEST(Json, HoldsBothProtocolsAndPointsAtTheBest) {
 TEST(Json, EffectsCarryTheirKey) {
   Identification result = made_up_result();
   Fit& fit = result.fits[0];
-  fit.model = FrictionModel(BaseLaw::exponential, {make_effect("viscous")});
+  fit.model = FrictionModel(ExponentialLaw{}, {make_effect("viscous")});
   fit.parameters.push_back(made_up_parameter(fit.model, 3, 0.5, 0.1));
   const json j = parsed(result);
   EXPECT_EQ(j["fits"][0]["effects"], json({"viscous"}));

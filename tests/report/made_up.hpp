@@ -22,7 +22,7 @@ inline FitParameter made_up_parameter(const FrictionModel& model, std::size_t k,
   return p;
 }
 
-inline Fit made_up_fit(BaseLaw law, double decay, Protocol protocol = Protocol::joint) {
+inline Fit made_up_fit(Law law, double decay, Protocol protocol = Protocol::joint) {
   Fit fit;
   fit.model = FrictionModel(law);
   fit.protocol = protocol;
@@ -101,8 +101,8 @@ inline Identification made_up_result() {
   r.motion = made_up_motion();
   r.segmentation = made_up_segmentation();
   r.spectral_peak = {4.881, 0.0264, 4.883, 0.6104};
-  r.fits = {made_up_fit(BaseLaw::exponential, 52.14), made_up_fit(BaseLaw::fractional, 95.33),
-            made_up_fit(BaseLaw::exponential, 60.1, Protocol::published)};
+  r.fits = {made_up_fit(ExponentialLaw{}, 52.14), made_up_fit(FractionalLaw{}, 95.33),
+            made_up_fit(ExponentialLaw{}, 60.1, Protocol::published)};
   r.fits[1].error.held_out_rmse = 0.0060;
   return r;
 }
@@ -114,10 +114,10 @@ inline DiagnosedTraces made_up_diagnosis() {
   out.traces = {made_up_result()};
   out.traces[0].fits.clear();
   out.traces[0].motion.conditions.load = {50, "command line"};
-  Fit fit = made_up_fit(BaseLaw::exponential, 52.14);
+  Fit fit = made_up_fit(ExponentialLaw{}, 52.14);
   out.fits = {fit};
   out.fits[0].error.held_out_rmse = 0.0088;
-  fit.model = FrictionModel(BaseLaw::exponential, {make_effect("runout")});
+  fit.model = FrictionModel(ExponentialLaw{}, {make_effect("runout")});
   fit.parameters.push_back(made_up_parameter(fit.model, 3, 0.048, 0.001));
   fit.parameters.push_back(made_up_parameter(fit.model, 4, 0.3, 0.02));
   fit.covariance.assign(25, 0.0);

@@ -75,7 +75,7 @@ void expect_sound(const Report& report) {
 
 TEST(StudyReport, CoulombPortraitIsAnArcAndAStraightLine) {
   Machine machine = tribofit::testing::published_machine();
-  machine.model = FrictionModel(BaseLaw::coulomb);
+  machine.model = FrictionModel(CoulombLaw{});
   machine.parameters = {0.5, 0.3};
   machine.rig.damping = 0;
   const double k = machine.rig.stiffness, omega = machine.rig.natural_frequency(), v = machine.disc_velocity();

@@ -64,7 +64,7 @@ std::string along(const std::vector<double>& values, double si, const char* unit
 Machine creak_machine(double decay, double viscous) {
   Machine machine = uradnicek_machine(decay, kSlow);
   if (viscous == 0) return machine;
-  machine.model = FrictionModel(BaseLaw::exponential, {Viscous{}});
+  machine.model = FrictionModel(ExponentialLaw{}, {Viscous{}});
   machine.parameters.push_back(viscous);
   return machine;
 }

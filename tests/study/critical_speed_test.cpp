@@ -50,7 +50,7 @@ TEST(CriticalSpeed, StickVanishesWhereTheSlipFromBreakAwayJustReachesTheDisc) {
 
 Machine with_effect(const std::string& key, double value) {
   Machine machine = published_machine();
-  machine.model = FrictionModel(BaseLaw::exponential, {make_effect(key)});
+  machine.model = FrictionModel(ExponentialLaw{}, {make_effect(key)});
   machine.parameters.push_back(value);
   return machine;
 }

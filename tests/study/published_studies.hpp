@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/friction/law.hpp"
+#include "tribofit/friction/laws/all.hpp"
 #include "tribofit/oscillator/machine.hpp"
 #include "tribofit/study/map.hpp"
 #include "tribofit/study/response.hpp"
@@ -128,10 +128,10 @@ struct CalibratedRadius {
   double rms_block = 0, rms_relative = 0;  ///< of v_b and v_r [m/s]
   int least_events = 0, most_events = 0;   ///< break-aways in any one second
 };
-CalibratedRadius calibrated_radius(const PublishedRadius& published, BaseLaw law, double frequency);
+CalibratedRadius calibrated_radius(const PublishedRadius& published, Law law, double frequency);
 
 /// Frequencies within each published bin with which the published ratios of the lines come out (the 15 mm test in the
 /// middle of its bin); NaN where none does [Hz].
-std::array<double, 4> frequencies_with_published_ratios(BaseLaw law);
+std::array<double, 4> frequencies_with_published_ratios(Law law);
 
 }  // namespace tribofit::testing

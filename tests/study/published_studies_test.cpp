@@ -228,7 +228,7 @@ TEST(Creak, MapsHaveTheirLeastWhereItIsSaid) {
 // ---- [D]
 
 TEST(Radii, CalibratedRigsHaveThePublishedFrequencyAndAmplitude) {
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     std::vector<CalibratedRadius> all;
     for (const PublishedRadius& published : kPublishedRadii) {
       const CalibratedRadius& c = all.emplace_back(calibrated_radius(published, law, published.frequency));
@@ -253,7 +253,7 @@ TEST(Radii, CalibratedRigsHaveThePublishedFrequencyAndAmplitude) {
 TEST(Radii, PublishedRatiosOfLinesLieWithinTheBins) {
   // A line off the middle of its bin reads low by up to 36 %: frequencies within the bins give the published ratios,
   // so these do not contradict the law; matched one by one they prove nothing either.
-  const std::array<double, 4> frequencies = frequencies_with_published_ratios(BaseLaw::exponential);
+  const std::array<double, 4> frequencies = frequencies_with_published_ratios(ExponentialLaw{});
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(frequencies[i], kPublishedRadii[i].frequency, kBinOfRadii / 2);
   }

@@ -17,10 +17,10 @@ constexpr double kDampingRatio = 0.02;
 constexpr std::size_t kTransform = 32768;
 constexpr double kRate = 20000;  // Hz
 
-Machine machine_with(const PublishedTest& test, BaseLaw law, double stiffness, double mass) {
+Machine machine_with(const PublishedTest& test, Law law, double stiffness, double mass) {
   return {rig_with_damping_ratio(mass, stiffness, kDampingRatio),
           FrictionModel(law),
-          {test.friction.mu_s, test.friction.mu_k, test.friction.decay},
+          test.friction,
           test.load,
           test.radius,
           test.speed};
@@ -61,7 +61,7 @@ void count_events(CalibratedRadius& out) {
 
 }  // namespace
 
-CalibratedRadius calibrated_radius(const PublishedRadius& published, BaseLaw law, double frequency) {
+CalibratedRadius calibrated_radius(const PublishedRadius& published, Law law, double frequency) {
   const PublishedTest test = published_test(published.radius, law);
   const auto misses = [&](double log_k, double log_m) {
     const Settled s = settle(machine_with(test, law, std::exp(log_k), std::exp(log_m)));
@@ -96,7 +96,7 @@ CalibratedRadius calibrated_radius(const PublishedRadius& published, BaseLaw law
   return out;
 }
 
-std::array<double, 4> frequencies_with_published_ratios(BaseLaw law) {
+std::array<double, 4> frequencies_with_published_ratios(Law law) {
   std::array<double, 4> found{};
   const PublishedRadius& reference = kPublishedRadii[2];
   const double at_reference = calibrated_radius(reference, law, reference.frequency).bin;

@@ -197,7 +197,7 @@ void creak(bool maps) {
 
 void radii() {
   fmt::print("\n### [D]\n");
-  for (const BaseLaw law : {BaseLaw::exponential, BaseLaw::fractional}) {
+  for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     std::vector<CalibratedRadius> all;
     for (const PublishedRadius& p : kPublishedRadii) all.push_back(calibrated_radius(p, law, p.frequency));
     const std::array<double, 4> off_centre = frequencies_with_published_ratios(law);

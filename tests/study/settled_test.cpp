@@ -31,7 +31,7 @@ TEST(SteadySliding, IsLostWhereDampingNoLongerOutweighsTheFallOfFriction) {
 TEST(SteadySliding, OfALawWithALagHasTheRootsOfItsCubic) {
   // m s^2 + c s + k = N f'(v)/(1 + tau s) (-s): m tau s^3 + (m + c tau) s^2 + (c + k tau + N f') s + k = 0.
   Machine machine = published_machine();
-  machine.model = FrictionModel(BaseLaw::exponential, {make_effect("frictional-lag")});
+  machine.model = FrictionModel(ExponentialLaw{}, {make_effect("frictional-lag")});
   const double tau = 2e-3;
   machine.parameters.push_back(tau);
   const double v = machine.disc_velocity(), decay = machine.parameters[2];
@@ -50,7 +50,7 @@ TEST(Settled, CoulombFrictionWithoutDampingHasAClosedForm) {
   // Slip is an arc about x_k = N mu_k/k that begins at x_k + d, d = N (mu_s - mu_k)/k, with the speed of the disc and
   // ends at x_k - d with it: radius sqrt(d^2 + (v/w)^2), duration (2 pi - 2 atan2(d, -... )) from the two angles.
   Machine machine = published_machine();
-  machine.model = FrictionModel(BaseLaw::coulomb);
+  machine.model = FrictionModel(CoulombLaw{});
   machine.parameters = {0.5, 0.3};
   machine.rig.damping = 0;
   const double w = machine.rig.natural_frequency(), v = machine.disc_velocity();
@@ -92,7 +92,7 @@ TEST(Settled, WhatHardlySwingsSlidesWithAllItsMeasures) {
 TEST(Settled, RoundingIsNoVibration) {
   // Damped by friction that rises with speed: after twenty periods nothing is left of the push but rounding.
   Machine machine = published_machine();
-  machine.model = FrictionModel(BaseLaw::exponential, {make_effect("viscous")});
+  machine.model = FrictionModel(ExponentialLaw{}, {make_effect("viscous")});
   machine.parameters.push_back(2);
   for (double v = 0.038; v < 0.06; v += 0.0005) {
     const Settled settled = settle(with_value(machine, "velocity", v), {.start = StartFrom::sliding});
@@ -102,7 +102,7 @@ TEST(Settled, RoundingIsNoVibration) {
 
 TEST(Settled, FrictionThatGoesWithTheAngleDoesNotSettleAndSaysWhatWasSeen) {
   Machine machine = published_machine();
-  machine.model = FrictionModel(BaseLaw::exponential, {make_effect("runout")});
+  machine.model = FrictionModel(ExponentialLaw{}, {make_effect("runout")});
   machine.parameters.insert(machine.parameters.end(), {0.05, 0.3});
   const Settled settled = settle(machine, {.longest_cycles = 50});
   EXPECT_EQ(settled.regime, Regime::not_settled);
@@ -134,7 +134,7 @@ TEST(Settled, SmoothedLawTendsToTheLawWithLocatedEvents) {
   }
   EXPECT_LT(last, 2e-3);
   EXPECT_EQ(settle(uradnicek_machine(330, 12e-3), {.sharpness = 5e5}).regime, Regime::sliding);
-  EXPECT_THROW(settle(published_machine(BaseLaw::fractional), {.sharpness = 5e5}), InputError);
+  EXPECT_THROW(settle(published_machine(FractionalLaw{}), {.sharpness = 5e5}), InputError);
 }
 
 TEST(Settled, FromRestOverTheLossOfStabilityVibrationDiesOutThoughStickSlipIsThere) {

@@ -30,11 +30,11 @@ struct Hiding {
 };
 
 TraceInput record_with(const Hiding& hiding) {
-  const PublishedTest test = published_test(0.015, BaseLaw::exponential);
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
   std::vector<Effect> effects;
   if (!hiding.effect.empty()) effects.push_back(make_effect(hiding.effect));
-  const FrictionModel model(BaseLaw::exponential, effects);
-  std::vector<double> p = {test.friction.mu_s, test.friction.mu_k, test.friction.decay};
+  const FrictionModel model(ExponentialLaw{}, effects);
+  std::vector<double> p = test.friction;
   p.insert(p.end(), hiding.parameters.begin(), hiding.parameters.end());
   Drive drive;
   drive.speed = constant_speed(test.speed);
@@ -218,8 +218,8 @@ TEST(Twin, ReportDrawsBothMotions) {
   EXPECT_EQ(chart->lines[0].name, "measured");
   EXPECT_EQ(chart->lines[1].name, "simulated, exponential");
   // Nothing is hidden: both loops are those of the machine, to the scatter of break-away.
-  const PublishedTest test = published_test(0.015, BaseLaw::exponential);
-  const double top = 1e3 * test.radius * test.speed, limit = 1e3 * test.load * test.friction.mu_s / test.rig.stiffness;
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
+  const double top = 1e3 * test.radius * test.speed, limit = 1e3 * test.load * test.friction[0] / test.rig.stiffness;
   for (const ChartLine& line : chart->lines) {
     const double fastest = *std::max_element(line.y.begin(), line.y.end());
     const double furthest = *std::max_element(line.x.begin(), line.x.end());

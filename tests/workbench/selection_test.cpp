@@ -17,7 +17,7 @@ using workbench_test::lagging;
 Identification identified(const Selection& selection) {
   IdentifyOptions options;
   options.read.conditions.radius = {0.015, "command line"};
-  options.laws = {BaseLaw::exponential};
+  options.laws = {Law(ExponentialLaw{})};
   options.selection = selection;
   return identify(lagging().path, options);
 }
@@ -46,7 +46,7 @@ TEST(Selection, hides_a_bang_from_the_fit) {
   Trace trace = *read_input({lagging().path, {}, {}}, {});
   trace.conditions.radius = {0.015, "command line"};
   IdentifyOptions options;
-  options.laws = {BaseLaw::exponential};
+  options.laws = {Law(ExponentialLaw{})};
   const auto fit_of = [&](const Trace& record, const Selection& selection) {
     options.selection = selection;
     Identification out = prepare_trace({"made", {}, std::make_shared<const Trace>(record)}, options);

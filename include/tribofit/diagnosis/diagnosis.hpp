@@ -95,7 +95,7 @@ struct Confirmation {
 /// shorter one is reported. Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
-  BaseLaw law = BaseLaw::exponential;
+  Law law = ExponentialLaw{};
   std::vector<std::string> from_the_start = {};  ///< effects beside the law on every rung, as the command line has them
   std::vector<Share> where;                      ///< of the base law, largest first
   std::vector<Share> remaining;                  ///< of the last rung, largest first
@@ -133,8 +133,8 @@ struct DiagnosedTraces {
 /// Diagnoses one record, or several together with all parameters shared.
 /// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.
 /// Cost: about 1 s for 100 slips, on two threads.
-Diagnosed diagnose(std::span<const Record> records, const std::vector<BaseLaw>& laws,
-                   const std::vector<Effect>& own = {}, const Instruments& instruments = {}, const FitOptions& fit = {},
+Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& laws, const std::vector<Effect>& own = {},
+                   const Instruments& instruments = {}, const FitOptions& fit = {},
                    const DiagnosisOptions& options = {});
 
 }  // namespace tribofit

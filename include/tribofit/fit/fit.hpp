@@ -90,7 +90,7 @@ struct Correlation {
 
 /// One fitted model. A fit that fails says why in `messages` and has converged == false.
 struct Fit {
-  FrictionModel model{BaseLaw::exponential};
+  FrictionModel model{ExponentialLaw{}};
   Protocol protocol = Protocol::joint;
   std::vector<FitParameter> parameters;
   ErrorFigures error;

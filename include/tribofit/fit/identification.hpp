@@ -22,7 +22,7 @@ struct IdentifyOptions {
   Instruments instruments;
   MotionOptions motion;
   FitOptions fit;
-  std::vector<BaseLaw> laws = {BaseLaw::exponential, BaseLaw::fractional};
+  std::vector<Law> laws = {Law(ExponentialLaw{}), Law(FractionalLaw{})};
   int threads = 0;                 ///< 0: as many as there are; the result does not depend on it
   std::vector<Effect> effects;     ///< added to every law
   bool published_protocol = true;  ///< fit by per-cycle extremes too, beside the joint fit

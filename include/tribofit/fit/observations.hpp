@@ -20,8 +20,8 @@ namespace tribofit {
 /// stretch of equal length where nothing sticks.
 ///
 /// Samples may be means over `samples_per_value` neighbours. Each carries the variance of v_r within it, so that the
-/// bare laws are averaged over it as the samples are (stribeck_shape_mean): at 80 values a slip their parameters move
-/// by less than 1e-5.
+/// bare laws are averaged over it as the samples are (mean_friction of a law): at 80 values a slip their parameters
+/// move by less than 1e-5.
 struct Observations {
   /// Where its beginning was not recorded, stick_time is the median of the others (NaN where none was); and it is
   /// without what its own break-away level made of it.

@@ -26,7 +26,7 @@ T speed_for(const FrictionModel& model, const T* p, const Slip& slip, double dis
             double first) {
   std::vector<double> q(model.parameters().size());
   for (std::size_t k = 0; k < q.size(); ++k) q[k] = scalar_part(p[k]);
-  const LawParameters<double> law = law_for(model, q.data(), slip);
+  const LawValues<double> law = law_for(model, q.data(), slip);
   SlidingState<double> at;
   at.disc_speed = disc_speed;
   const auto excess = [&](double v) {
@@ -95,16 +95,16 @@ inline CreepLaw creep_law(const FrictionModel& model) {
 /// p: parameters in SI. Motion is taken to be slow: friction is in equilibrium with the spring at each moment.
 template <class T>
 T creep_in_stick(const FrictionModel& model, const T* p, const Slip& slip, const StickMoment& moment) {
-  const LawParameters<T> law = law_for(model, p, slip);
+  const T mu_s = law_at_rest(model, law_for(model, p, slip));
   constexpr double kNearest = 0.98;  // of mu_s: beyond it the block breaks away
   T creep = T(0.0 * p[0]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (requires { effect.creep(q, law.mu_s, 0.0, 0.0); }) {
-      const double friction = std::min(moment.friction, kNearest * scalar_part(law.mu_s));
-      creep += effect.creep(q, law.mu_s, friction, moment.friction_rate);
+    if constexpr (requires { effect.creep(q, mu_s, 0.0, 0.0); }) {
+      const double friction = std::min(moment.friction, kNearest * scalar_part(mu_s));
+      creep += effect.creep(q, mu_s, friction, moment.friction_rate);
     } else if constexpr (hooks::AveragesOverContact<E, T>) {
       // Constant friction in the contact gives a first value; that it falls with speed moves it by a little.
-      const T first = effect.creep(q, law.mu_s, moment.friction, moment.friction_rate, moment.disc_speed);
+      const T first = effect.creep(q, mu_s, moment.friction, moment.friction_rate, moment.disc_speed);
       creep += moment.friction <= 0
                    ? T(-first)  // still swinging back: the contact creeps the other way
                    : detail::speed_for(model, p, slip, moment.disc_speed, moment.friction, scalar_part(first));

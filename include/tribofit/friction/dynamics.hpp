@@ -26,8 +26,8 @@ class FrictionDynamics {
   /// Opens a stick, with the states of the memories in which it begins.
   void begin_stick(std::span<const double> state);
 
-  /// Opens a slip: levels of the law for the stick time before it and its direction (+1, -1), plus `offset` on mu_s
-  /// (the scatter of this break-away [1]). Models that act in stick keep one law from begin_slip to the next.
+  /// Opens a slip: parameters of the law for the stick time before it and its direction (+1, -1), with `offset`
+  /// on break-away (its scatter [1]). Models that act in stick keep one law from begin_slip to the next.
   void begin_slip(double stick_time, double direction, double offset = 0);
 
   /// |mu| at which this slip breaks away, at rest, at the instant `at` (its velocity is ignored) [1].
@@ -53,7 +53,7 @@ class FrictionDynamics {
 
   FrictionModel model_;
   std::vector<double> p_;
-  LawParameters<double> law_{};
+  LawValues<double> law_{};
   double direction_ = 1;
   double age_left_ = 0, age_ = 0;  ///< of contacts with an age: when the stick began, and when it ends [s]
 };

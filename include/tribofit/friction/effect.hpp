@@ -26,10 +26,10 @@ struct Motion;
 /// hook is a const member template over the number type T (double, or a dual number for derivatives), takes its own
 /// parameters p in SI and is left out where it has nothing to say:
 ///
-///   void adjust(p, const Slip&, LawParameters<T>&)
-///        levels of the base law for a whole slip
+///   void adjust(p, const Slip&, LawValues<T>&)
+///        parameters of the base law for a whole slip
 ///   T transform_speed(p, const T& x)
-///        reduced speed x = decay v of the base law
+///        reduced speed x = steepness v of the base law, where it has one
 ///   LocalSliding<T> average_over_contact(p, const SlidingState<T>&)
 ///        local speeds within the contact: f is taken at `speed`, and `share` of it acts along v_r
 ///   T contact_renewal_rate(p, const V& v), T equivalent_speed(p, const T& theta)

@@ -16,7 +16,7 @@ namespace tribofit {
 namespace hooks {
 
 template <class E, class T>
-concept Adjusts = requires(const E e, const T* p, const Slip& s, LawParameters<T>& l) {
+concept Adjusts = requires(const E e, const T* p, const Slip& s, LawValues<T>& l) {
   e.adjust(p, s, l);
 };
 template <class E, class T>
@@ -75,6 +75,12 @@ concept ActsInStick = requires {
   requires E::acts_in_stick;
 };
 
+/// A law whose friction depends on a reduced speed, on which effects may act.
+template <class L>
+concept ReducesSpeed = requires(const double* q) {
+  L::steepness(q);
+};
+
 }  // namespace hooks
 
 /// Calls visit(effect, parameters of that effect) for every effect of the model, in order.
@@ -85,21 +91,63 @@ void for_each_effect(const FrictionModel& model, const T* p, Visitor&& visit) {
   }
 }
 
-/// Levels of the base law for one slip, after every effect that adjusts them. `mu_s` is what the model says friction
-/// reaches at break-away.
+/// Parameters of the base law for one slip, after every effect that adjusts them.
 template <class T>
-LawParameters<T> law_for(const FrictionModel& model, const T* p, const Slip& slip) {
-  LawParameters<T> law = model.base(p);
+LawValues<T> law_for(const FrictionModel& model, const T* p, const Slip& slip) {
+  LawValues<T> law = model.law_values(p);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Adjusts<E, T>) effect.adjust(q, slip, law);
   });
   return law;
 }
 
+/// Friction that a rigid stick reaches at break-away by the law alone.
+template <class T>
+T law_at_rest(const FrictionModel& model, const LawValues<T>& law) {
+  return std::visit([&]<class L>(const L&) { return L::at_rest(law.q.data()); }, model.law());
+}
+
+namespace detail {
+
+/// Speeds [m/s] become reduced speeds, in place, where the law has one.
+template <class T>
+void reduce_speed(const FrictionModel& model, const LawValues<T>& law, std::span<T> speed) {
+  std::visit(
+      [&]<class L>(const L&) {
+        if constexpr (hooks::ReducesSpeed<L>) {
+          const T steepness = L::steepness(law.q.data());
+          for (T& x : speed) x = steepness * x;
+        }
+      },
+      model.law());
+}
+
+/// Reduced speeds become friction of the law, in place. variance: of v_r within each sample [m^2/s^2], or empty.
+template <class T>
+void apply_law(const FrictionModel& model, const LawValues<T>& law, std::span<const double> variance, std::span<T> x) {
+  std::visit(
+      [&]<class L>(const L&) {
+        const auto q = law.q;  // of its own: nothing written to x can change it
+        if (variance.empty()) {
+          for (T& value : x) value = L::friction(q.data(), value);
+          return;
+        }
+        T scale = T(1.0);
+        if constexpr (hooks::ReducesSpeed<L>) {
+          const T steepness = L::steepness(q.data());
+          scale = steepness * steepness;
+        }
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] = L::mean_friction(q.data(), x[i], T(scale * variance[i]));
+      },
+      model.law());
+}
+
+}  // namespace detail
+
 /// Steady friction f(v) [1] at one instant, >= 0, before any memory.
 /// equivalent_speed: where contacts have an age, the speed at which the base law is taken instead of v [m/s].
 template <class T>
-T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, SlidingState<T> at,
+T steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, SlidingState<T> at,
                   const T* equivalent_speed = nullptr) {
   using std::abs;
   T share = T(1.0);
@@ -110,11 +158,12 @@ T steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>
       at.velocity = at.direction * local.speed;
     }
   });
-  T x = law.decay * (equivalent_speed != nullptr ? *equivalent_speed : T(abs(at.velocity)));
+  T x = equivalent_speed != nullptr ? *equivalent_speed : T(abs(at.velocity));
+  detail::reduce_speed(model, law, std::span<T>(&x, 1));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::TransformsSpeed<E, T>) x = effect.transform_speed(q, x);
   });
-  T mu = law.mu_k + (law.mu_s - law.mu_k) * stribeck_shape(model.law(), x);
+  T mu = std::visit([&]<class L>(const L&) { return L::friction(law.q.data(), x); }, model.law());
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Steadies<E, T>) mu = effect.steady(q, at, mu);
   });
@@ -136,14 +185,14 @@ SlidingState<T> as_read(const FrictionModel& model, const T* p, SlidingState<T> 
   return at;
 }
 
-/// The highest steady friction from rest on [1]: mu_s, or less where a contact never sticks as a whole.
+/// The highest steady friction from rest on [1]: `at_rest`, or less where a contact never sticks as a whole.
 template <class T>
-T peak_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, SlidingState<T> at) {
+T peak_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, const T& at_rest, SlidingState<T> at) {
   T scale = T(0.0);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::AveragesOverContact<E, T>) scale = effect.average_over_contact(q, at).speed;
   });
-  if (!(scalar_part(scale) > 0)) return law.mu_s;
+  if (!(scalar_part(scale) > 0)) return at_rest;
   T peak = T(0.0);
   for (double v = 0.8; v < 40; v *= 1.15) {
     at.velocity = at.direction * v * scale;
@@ -215,7 +264,7 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, c
 /// Steady friction f(v) [1] at every sample of a slip: as above, each effect visited once. Contacts with an age carry
 /// it through the slip.
 template <class T>
-void steady_friction(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip,
+void steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
   const std::size_t n = slip.size();
   bool spreads = false;
@@ -228,7 +277,7 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect, q, slip, velocity, mu);
   });
-  for (std::size_t i = 0; i < n; ++i) mu[i] = law.decay * mu[i];
+  detail::reduce_speed(model, law, mu.first(n));
   bool bent = false;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::TransformsSpeed<E, T>) {
@@ -236,15 +285,7 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
       bent = true;
     }
   });
-  const T drop = law.mu_s - law.mu_k;
-  if (slip.velocity_variance.empty() || bent) {
-    for (std::size_t i = 0; i < n; ++i) mu[i] = law.mu_k + drop * stribeck_shape(model.law(), mu[i]);
-  } else {
-    const T decay_squared = law.decay * law.decay;
-    for (std::size_t i = 0; i < n; ++i) {
-      mu[i] = law.mu_k + drop * stribeck_shape_mean(model.law(), mu[i], T(decay_squared * slip.velocity_variance[i]));
-    }
-  }
+  detail::apply_law(model, law, bent ? std::span<const double>() : slip.velocity_variance, mu.first(n));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Steadies<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.steady(q, slip.at(i, velocity[i]), mu[i]);
@@ -254,15 +295,15 @@ void steady_friction(const FrictionModel& model, const T* p, const LawParameters
 
 namespace detail {
 
-/// |mu| that a rigid stick before `slip` reaches, before anything modulates it: mu_s, or less where the contacts have
-/// an age.
+/// |mu| that a rigid stick before `slip` reaches, before anything modulates it: the law at rest, or at the speed that
+/// stands for the age of the contacts.
 template <class T>
-T friction_at_rest(const FrictionModel& model, const T* p, const LawParameters<T>& law, const Slip& slip) {
-  T level = law.mu_s;
+T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip) {
+  T level = law_at_rest(model, law);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::HasContactAge<E, T>) {
       SlidingState<T> at;
-      at.velocity = T(0.0 * law.mu_s);
+      at.velocity = T(0.0 * p[0]);
       const T speed = effect.equivalent_speed(q, age_at_break_away(effect, q, slip));
       level = steady_friction(model, p, law, at, &speed);
     }
@@ -281,9 +322,8 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   first.time = {&slip.break_away_time, 1};
   SlidingState<T> at = first.at(0, T(0.0 * p[0]));
   at.acceleration = 0;
-  LawParameters<T> law = law_for(model, p, slip);
-  law.mu_s = friction_at_rest(model, p, law, slip);
-  T mu = slip.direction * peak_friction(model, p, law, at);
+  const LawValues<T> law = law_for(model, p, slip);
+  T mu = slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, T>) {
@@ -303,8 +343,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
 
 }  // namespace detail
 
-/// |mu| that the model expects to be read at the break-away which begins `slip` [1]: mu_s after every effect on the
-/// level.
+/// |mu| that the model expects to be read at the break-away which begins `slip` [1], after every effect on the level.
 template <class T>
 T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
   return slip.direction * detail::break_away(model, p, slip, true);
@@ -316,7 +355,7 @@ T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
 /// Cost: linear in samples; one pass per memory.
 template <class T>
 void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) {
-  const LawParameters<T> law = law_for(model, p, slip);
+  const LawValues<T> law = law_for(model, p, slip);
   const std::size_t n = slip.size();
   steady_friction(model, p, law, slip, velocity, mu);
   bool is_signed = false;

@@ -1,25 +1,28 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/friction/law.hpp"
+#include "tribofit/friction/laws/all.hpp"
 
 namespace tribofit {
 
+/// Why `effect` cannot act on `law`; empty where it can.
+std::string obstacle_on(const Law& law, const Effect& effect);
+
 /// A base law with any set of effects: the thing that is simulated, fitted and judged.
 ///
-/// Its parameters are one flat array in SI: mu_s, mu_k, alpha or beta (none for coulomb), then those of each effect in
-/// order.
+/// Its parameters are one flat array in SI: those of the law, then those of each effect in order.
 class FrictionModel {
  public:
   /// Effects are put into the order of the catalogue, those that act in stick and the user's own last.
-  /// Throws InputError when two effects are the same, or when they cannot act together (see acts_with).
-  explicit FrictionModel(BaseLaw law, std::vector<Effect> effects = {});
+  /// Throws InputError when two effects are the same, or when they cannot act together or on this law (see acts_with).
+  explicit FrictionModel(Law law, std::vector<Effect> effects = {});
 
   struct Slot {
     Parameter parameter;
@@ -28,10 +31,11 @@ class FrictionModel {
     std::string full_name() const { return effect.empty() ? parameter.name : effect + "." + parameter.name; }
   };
 
-  BaseLaw law() const { return law_; }
+  const Law& law() const { return law_; }
   std::span<const Effect> effects() const { return effects_; }
   std::span<const Slot> parameters() const { return slots_; }
-  std::size_t base_count() const { return law_ == BaseLaw::coulomb ? 2 : 3; }
+  /// Parameters of the law, which come first.
+  std::size_t base_count() const { return base_count_; }
   /// First parameter of effect i.
   std::size_t offset(std::size_t i) const { return offsets_[i]; }
   /// First parameter of the effect of that key; the number of parameters where there is none.
@@ -40,7 +44,8 @@ class FrictionModel {
   Channels needs() const;
   /// A bristle-like effect is among the effects: the block creeps in stick.
   bool acts_in_stick() const;
-  /// Whether `effect` can be added: of what acts in stick, and of what counts the time at rest, there is one at most.
+  /// Whether `effect` can be added: of what acts in stick, and of what counts the time at rest, there is one at most; a
+  /// law without a reduced speed has none that could be changed.
   bool acts_with(const Effect& effect) const;
   /// Number of memory states (one per effect with a memory).
   std::size_t state_count() const { return state_count_; }
@@ -52,16 +57,20 @@ class FrictionModel {
   std::string name() const;
 
   template <class T>
-  LawParameters<T> base(const T* p) const {
-    return {p[0], p[1], law_ == BaseLaw::coulomb ? T(0.0) : p[2]};
+  LawValues<T> law_values(const T* p) const {
+    LawValues<T> values;
+    for (std::size_t k = 0; k < base_count_; ++k) values.q[k] = p[k];
+    values.scaled = scaled_;
+    return values;
   }
 
  private:
-  BaseLaw law_;
+  Law law_;
   std::vector<Effect> effects_;
   std::vector<Slot> slots_;
   std::vector<std::size_t> offsets_;
-  std::size_t state_count_ = 0;
+  std::size_t base_count_ = 0, state_count_ = 0;
+  std::uint32_t scaled_ = 0;  // bit k: parameter k of the law scales with friction
 };
 
 }  // namespace tribofit

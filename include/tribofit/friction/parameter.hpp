@@ -11,8 +11,10 @@ inline constexpr double kNoNeutralValue = std::numeric_limits<double>::quiet_NaN
 /// What the bounds of a parameter grow with, on machines larger and slower than the tribometers they are stated for.
 enum class BoundScaling {
   never,
-  with_slip_time,   ///< beyond slips of 0.1 s
-  with_slip_length  ///< beyond slips of 5 mm
+  with_slip_time,    ///< beyond slips of 0.1 s
+  with_slip_length,  ///< beyond slips of 5 mm
+  with_speed,        ///< a speed at which a law falls: from 1/1000 to 100 times the fastest slip
+  against_speed      ///< its inverse, the steepness of a law
 };
 
 /// To which data one value of a parameter belongs.

@@ -12,7 +12,7 @@ namespace tribofit {
 /// N mu(v_r), v_r = omega r - x' ([U] Eq 1, [C]).
 struct Machine {
   Rig rig;
-  FrictionModel model{BaseLaw::exponential};
+  FrictionModel model{ExponentialLaw{}};
   std::vector<double> parameters;  ///< SI, in the order of model.parameters()
   double load = 0;                 ///< N [N], > 0
   double radius = 0;               ///< friction radius r [m], > 0

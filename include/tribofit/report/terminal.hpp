@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/laws/all.hpp"
 
 namespace tribofit {
 
@@ -47,6 +48,9 @@ std::string render_rig(const RigIdentification& result, const TerminalOptions& o
 /// After `identify twin`: the laws and the rig in a line each, measured and simulated motion side by side with their
 /// difference in standard errors, where the twin fails, and the next command.
 std::string render_twin(const TwinIdentification& result, const TerminalOptions& options = {});
+
+/// The list of laws: key, statement, equation and parameters.
+std::string render_laws(std::span<const Law> laws, const TerminalOptions& options = {});
 
 /// The catalogue of effects: key and statement, one a line.
 std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options = {});

@@ -20,7 +20,7 @@ struct Sensitivity {
 };
 
 struct SensitivityOptions {
-  /// Empty: stiffness, mass, damping, load, velocity, ratio, decay factor, and the parameters of every effect.
+  /// Empty: stiffness, mass, damping, load, velocity, ratio, and the other parameters of the law and of every effect.
   std::vector<std::string> variables;
   double factor = 2;       ///< swept from 1/factor to factor times the machine's own value
   std::size_t count = 21;  ///< in equal ratios

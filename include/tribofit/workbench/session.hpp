@@ -14,7 +14,7 @@ namespace tribofit {
 
 /// What a user of the workbench has switched on.
 struct WorkbenchChoice {
-  BaseLaw law = BaseLaw::exponential;
+  Law law = ExponentialLaw{};
   std::vector<std::string> effects;   ///< as the command line names them: "viscous", "rate-state:healing"
   std::vector<std::string> formulas;  ///< as --formula takes them
   std::vector<GivenParameter> given;  ///< starts and bounds; the law's models without such a parameter take no notice

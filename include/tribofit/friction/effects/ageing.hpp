@@ -39,9 +39,9 @@ struct Ageing {
   }
 
   template <class T>
-  void adjust(const T* p, const Slip& slip, LawParameters<T>& law) const {
+  void adjust(const T* p, const Slip& slip, LawValues<T>& law) const {
     using std::log;
-    if (slip.stick_time > 0) law.mu_s += p[0] * log(1.0 + slip.stick_time / p[1]);  // NaN: not recorded
+    if (slip.stick_time > 0) law.raise_break_away(p[0] * log(1.0 + slip.stick_time / p[1]));  // NaN: not recorded
   }
 };
 

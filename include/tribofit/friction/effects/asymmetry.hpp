@@ -26,10 +26,8 @@ struct Asymmetry {
   }
 
   template <class T>
-  void adjust(const T* p, const Slip& slip, LawParameters<T>& law) const {
-    if (slip.direction > 0) return;
-    law.mu_s *= p[0];
-    law.mu_k *= p[0];
+  void adjust(const T* p, const Slip& slip, LawValues<T>& law) const {
+    if (slip.direction < 0) law.scale_friction(p[0]);
   }
 };
 
