@@ -1,5 +1,6 @@
 #include "fit_laws.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -45,10 +46,10 @@ void share_floor(std::vector<Fit>& fits, std::size_t best) {
   }
 }
 
-/// Effects may act within a few samples of break-away and re-stick; the bare laws are smooth.
-std::size_t values_per_slip(bool has_effects, FitDetail detail) {
+/// Effects may act within a few samples of break-away and re-stick, and so may some laws; the others are smooth.
+std::size_t values_per_slip(bool all_are_smooth, FitDetail detail) {
   constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
-  if (!has_effects) return kBare;
+  if (all_are_smooth) return kBare;
   return detail == FitDetail::quick ? kQuick : kFull;
 }
 
@@ -57,8 +58,9 @@ std::size_t values_per_slip(bool has_effects, FitDetail detail) {
 void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
   const std::vector<Effect> effects = friction_effects(options.effects);
   const Channels needs = FrictionModel(ExponentialLaw{}, effects).needs();
-  const Observations observations =
-      observe(trace.motion, trace.segmentation, needs, values_per_slip(!effects.empty(), detail));
+  const auto steep = [](const Law& law) { return describe(law).steep_at_rest; };
+  const bool smooth = effects.empty() && std::none_of(options.laws.begin(), options.laws.end(), steep);
+  const Observations observations = observe(trace.motion, trace.segmentation, needs, values_per_slip(smooth, detail));
   if (observations.cycles < 3) {
     trace.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
     return;

@@ -30,7 +30,8 @@ std::array<int, 2> covering(const Law& law, const std::vector<double>& truth) {
     options.seed = seed;
     const FrictionModel model(law);
     const synthetic::Record record = synthetic::make(model, truth, options);
-    const Observations observations = observe(record.motion, record.segmentation, model.needs(), 80);
+    const Observations observations =
+        observe(record.motion, record.segmentation, model.needs(), describe(law).steep_at_rest ? 0 : 80);
     const Fit fit = fit_model(model, record.motion, record.segmentation, observations);
     for (std::size_t k = 0; k < truth.size(); ++k) {
       const FitParameter& p = fit.parameters.at(k);

@@ -57,6 +57,8 @@ struct LawInfo {
   /// The first two parameters are the levels of friction at break-away and at high speed (mu_s, mu_k).
   bool two_levels = false;
   bool constant_in_slip = false;  ///< friction in slip does not depend on speed
+  /// It changes within a few samples of rest, so that it is fitted at full resolution, as effects are.
+  bool steep_at_rest = false;
 
   /// Two levels and at most one more parameter, which the protocol of per-cycle extremes ([D] 3.2) can find one after
   /// another.

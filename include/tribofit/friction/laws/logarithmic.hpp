@@ -22,18 +22,19 @@ struct LogarithmicLaw {
             .source =
                 "J. H. Dieterich, J. Geophys. Res. 84 (1979) 2161, doi:10.1029/JB084iB05p02161; A. Ruina, J. Geophys. "
                 "Res. 88 (1983) 10359, doi:10.1029/JB088iB12p10359",
-            .parameters = {
-                {.name = "mu_0",
-                 .description = "friction at 1 mm/s",
-                 .upper = 5,
-                 .start = 0.4,
-                 .scales_with_friction = true},
-                {.name = "A",
-                 .description = "change of friction for an e-fold of the speed (a - b); negative where friction falls",
-                 .lower = -0.5,
-                 .upper = 0.5,
-                 .start = -0.01,
-                 .scales_with_friction = true}}};
+            .parameters = {{.name = "mu_0",
+                            .description = "friction at 1 mm/s",
+                            .upper = 5,
+                            .start = 0.4,
+                            .scales_with_friction = true},
+                           {.name = "A",
+                            .description =
+                                "change of friction for an e-fold of the speed (a - b); negative where friction falls",
+                            .lower = -0.5,
+                            .upper = 0.5,
+                            .start = -0.01,
+                            .scales_with_friction = true}},
+            .steep_at_rest = true};
   }
   static std::vector<double> start(const FrictionCurve& curve) {
     const FrictionCurve::Line line = curve.line_over([](double v) { return logarithm(v); });
