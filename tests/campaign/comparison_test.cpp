@@ -44,7 +44,7 @@ TEST_F(Comparison, TheTruthIsFoundBesideIt) {
   const Outcome outcome = shop_->identify(batch("--out res --compare table.csv"));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("Beside table.csv"));
-  EXPECT_THAT(outcome.out, HasSubstr("fundamental_amplitude is no parameter"));
+  EXPECT_THAT(outcome.out, HasSubstr("fundamental_amplitude is not a parameter"));
   EXPECT_THAT(outcome.out, HasSubstr("line 3: there are no runs of 12 mm"));
   EXPECT_THAT(outcome.out, HasSubstr("all: exponential in 6 of 6 runs"));
   const auto json = json_in(*shop_ / "res/summary.json");

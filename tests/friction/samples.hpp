@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tribofit/friction/evaluate.hpp"
 #include "tribofit/friction/slip.hpp"
 
 namespace samples {
@@ -45,5 +46,26 @@ struct ExampleSlip {
   ExampleSlip(const ExampleSlip&) = delete;
   ExampleSlip& operator=(const ExampleSlip&) = delete;
 };
+
+/// A slip at constant speed.
+struct Steady {
+  std::vector<double> time, velocity;
+  tribofit::Slip slip;
+  Steady(double speed, double step, std::size_t n) : velocity(n, speed) {
+    for (std::size_t i = 0; i < n; ++i) time.push_back(step * static_cast<double>(i + 1));
+    slip.time = time;
+    slip.velocity = velocity;
+    slip.direction = speed < 0 ? -1 : 1;
+  }
+  Steady(const Steady&) = delete;
+  Steady& operator=(const Steady&) = delete;
+};
+
+/// Friction of a model over a slip [1].
+inline std::vector<double> run(const tribofit::FrictionModel& model, const std::vector<double>& p, const tribofit::Slip& slip) {
+  std::vector<double> mu(slip.size());
+  tribofit::evaluate<double>(model, p.data(), slip, slip.velocity, mu);
+  return mu;
+}
 
 }  // namespace samples

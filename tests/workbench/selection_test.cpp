@@ -90,7 +90,7 @@ TEST(CommandLine, refuses_what_it_cannot_mean) {
   };
   EXPECT_THAT(refused("--start mus=0.5"), HasSubstr("did you mean 'mu_s'"));
   EXPECT_THAT(refused("--start tau=2ms"), HasSubstr("no parameter 'tau'"));
-  EXPECT_THAT(refused("--start alpha=2mm"), HasSubstr("no unit of alpha"));
+  EXPECT_THAT(refused("--start alpha=2mm"), HasSubstr("is not a unit of alpha"));
   EXPECT_THAT(refused("--start alpha"), HasSubstr("NAME=VALUE"));
   EXPECT_THAT(refused("--bounds alpha=0.2..0.1"), HasSubstr("from high to low"));
   EXPECT_THAT(refused("--bounds alpha=0.2"), HasSubstr("FROM..TO"));
