@@ -28,7 +28,9 @@ void add_model_options(const Command& app, Settings& s) {
   const auto fit = [&](const char* name, auto& value, const std::string& help) {
     return app.add_option(name, value, help).group("Law and fit");
   };
-  fit("--law", s.laws, list_of_laws() + " (repeatable; default the first two)").one_of(tribofit::law_keys()).one_value_each();
+  fit("--law", s.laws, list_of_laws() + " (repeatable; default the first two)")
+      .one_of(tribofit::law_keys())
+      .one_value_each();
   fit("--effect", s.effects, "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)")
       .one_value_each();
   fit("--formula", s.formulas,

@@ -11,7 +11,6 @@
 namespace tribofit {
 namespace {
 
-
 /// Whether what a row states fits; what it does not state does.
 bool fits(const Condition& stated, const Condition& own) {
   if (!stated.known()) return true;

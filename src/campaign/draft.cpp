@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "find_runs.hpp"
-#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {

@@ -222,7 +222,8 @@ std::optional<std::size_t> EarlierColumns::error_of(std::size_t value) const {
 }
 
 void EarlierColumns::note_unknown(const EarlierColumn& column) {
-  static const std::vector<std::string> ignored = {"run", "runs", "file", "repeat", "status", "message", "note", "notes"};
+  static const std::vector<std::string> ignored = {"run",    "runs",    "file", "repeat",
+                                                   "status", "message", "note", "notes"};
   if (column.title.empty() || has(ignored, column.title)) return;
   std::vector<std::string> names;
   for (const KnownQuantity& known : known_) names.push_back(known.name);

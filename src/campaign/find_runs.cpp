@@ -11,18 +11,17 @@
 #include <utility>
 
 #include "ingest/csv/encoding.hpp"
-#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
 
 namespace fs = std::filesystem;
-
 
 bool is_trace_name(const fs::path& path) {
   std::string extension = path.extension().string();

@@ -70,7 +70,8 @@ std::string undetermined(const Fit& fit) {
 /// Checks of the data that bear on the values and are not in order.
 std::string open_problems(const Identification& r) {
   constexpr std::array<std::string_view, 5> kBearing = {health_check::kPlateauSpeed, health_check::kSpeedRipple,
-      health_check::kChannelDelay, health_check::kClipping, health_check::kDropOuts};
+                                                        health_check::kChannelDelay, health_check::kClipping,
+                                                        health_check::kDropOuts};
   std::string names;
   for (const HealthItem& item : r.motion.health) {
     const bool bears = std::find(kBearing.begin(), kBearing.end(), item.check) != kBearing.end();

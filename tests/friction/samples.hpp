@@ -62,7 +62,8 @@ struct Steady {
 };
 
 /// Friction of a model over a slip [1].
-inline std::vector<double> run(const tribofit::FrictionModel& model, const std::vector<double>& p, const tribofit::Slip& slip) {
+inline std::vector<double> run(const tribofit::FrictionModel& model, const std::vector<double>& p,
+                               const tribofit::Slip& slip) {
   std::vector<double> mu(slip.size());
   tribofit::evaluate<double>(model, p.data(), slip, slip.velocity, mu);
   return mu;

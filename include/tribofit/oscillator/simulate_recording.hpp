@@ -11,7 +11,8 @@
 namespace tribofit {
 
 /// The drive as it is, where effects of the model say that it is not as stated: the speed of the disc swings with its
-/// angle, or the radius is another (hooks speed_swing and true_radius of friction/effect.hpp). p: parameters of the model in SI.
+/// angle, or the radius is another (hooks speed_swing and true_radius of friction/effect.hpp). p: parameters of the
+/// model in SI.
 Drive true_drive(const Drive& stated, const FrictionModel& model, std::span<const double> p);
 
 /// The sensors with what the model adds to them: gain and high-pass of the vibrometer.
