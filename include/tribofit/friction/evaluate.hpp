@@ -81,12 +81,6 @@ concept ReducesSpeed = requires(const double* q) {
   L::steepness(q);
 };
 
-/// A law that falls from one level to another by a shape of the reduced speed (see TwoLevelLaw).
-template <class L>
-concept HasShape = requires(const double& x) {
-  L::shape(x);
-};
-
 }  // namespace hooks
 
 /// Calls visit(effect, parameters of that effect) for every effect of the model, in order.
@@ -134,21 +128,16 @@ void apply_law(const FrictionModel& model, const LawValues<T>& law, std::span<co
   std::visit(
       [&]<class L>(const L&) {
         const auto q = law.q;  // of its own: nothing written to x can change it
-        T scale = T(1.0);      // of the variance
+        if (variance.empty()) {
+          for (T& value : x) value = L::friction(q.data(), value);
+          return;
+        }
+        T scale = T(1.0);
         if constexpr (hooks::ReducesSpeed<L>) {
-          if (!variance.empty()) scale = L::steepness(q.data()) * L::steepness(q.data());
+          const T steepness = L::steepness(q.data());
+          scale = steepness * steepness;
         }
-        if constexpr (hooks::HasShape<L>) {  // the levels once, not for every sample
-          const T low = q[1], drop = q[0] - q[1];
-          for (std::size_t i = 0; i < x.size(); ++i) {
-            x[i] = low + drop * (variance.empty() ? L::shape(x[i]) : L::mean_shape(x[i], T(scale * variance[i])));
-          }
-        } else {
-          for (std::size_t i = 0; i < x.size(); ++i) {
-            x[i] = variance.empty() ? L::friction(q.data(), x[i])
-                                    : L::mean_friction(q.data(), x[i], T(scale * variance[i]));
-          }
-        }
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] = L::mean_friction(q.data(), x[i], T(scale * variance[i]));
       },
       model.law());
 }
