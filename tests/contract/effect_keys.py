@@ -12,7 +12,8 @@ usage: effect_keys.py REPOSITORY    exit status 1 and one line per offence
 import pathlib
 import re
 import sys
-import tempfile
+
+import contract
 
 EFFECTS = pathlib.Path("include", "tribofit", "friction", "effects")
 KEY = re.compile(r'\bstatic constexpr std::string_view key\s*=\s*"([^"]+)"')
@@ -44,43 +45,22 @@ def offences(repository):
     return found
 
 
-def self_test():
-    header = 'struct Lag {\n  static constexpr std::string_view key = "lag";\n};\n'
-    cases = [  # file, its text, whether it must be refused
-        ("src/fit/a.cpp", 'if (info.key == "lag") return;\n', True),
-        ("tools/a.cpp", 'make_effect("lag:other");\n', True),
-        ("src/study/a.cpp", 'value("lag.tau");\n', True),
-        ("src/fit/a.cpp", "if (info.key == Lag::key) return;\n", False),
-        ("src/fit/a.cpp", '// as in "lag"\nint x;  ///< "lag"\n', False),
-        ("src/fit/a.cpp", 'say("lags behind");\n', False),
-        ("tests/fit/a.cpp", 'make_effect("lag");\n', False),
-    ]
-    wrong = 0
-    for name, text, refused in cases:
-        with tempfile.TemporaryDirectory() as directory:
-            root = pathlib.Path(directory)
-            for file, content in ((EFFECTS / "lag.hpp", header), (name, text)):
-                (root / file).parent.mkdir(parents=True, exist_ok=True)
-                (root / file).write_text(content, encoding="utf-8")
-            if bool(offences(root)) != refused:
-                print(f"{name} with {text!r} should {'' if refused else 'not '}have been refused")
-                wrong += 1
-    with tempfile.TemporaryDirectory() as directory:
-        wrong += not offences(pathlib.Path(directory))
-    print(f"effect keys: {len(cases) + 1 - wrong} of {len(cases) + 1} made-up trees judged rightly")
-    return wrong == 0
+def with_effect(name, text):
+    """A tree of one effect called lag and one more file."""
+    return {EFFECTS / "lag.hpp": 'struct Lag {\n  static constexpr std::string_view key = "lag";\n};\n', name: text}
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        return 0 if self_test() else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = offences(pathlib.Path(arguments[0]))
-    print("\n".join(found) if found else "effect keys: no offences")
-    return 1 if found else 0
+TREES = [  # files, number of offences
+    (with_effect("src/fit/a.cpp", 'if (info.key == "lag") return;\n'), 1),
+    (with_effect("tools/a.cpp", 'make_effect("lag:other");\n'), 1),
+    (with_effect("src/study/a.cpp", 'value("lag.tau");\n'), 1),
+    (with_effect("src/fit/a.cpp", "if (info.key == Lag::key) return;\n"), 0),
+    (with_effect("src/fit/a.cpp", '// as in "lag"\nint x;  ///< "lag"\n'), 0),
+    (with_effect("src/fit/a.cpp", 'say("lags behind");\n'), 0),
+    (with_effect("tests/fit/a.cpp", 'make_effect("lag");\n'), 0),
+    ({}, 1),  # no effect at all
+]
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(contract.run("effect keys", __doc__, offences, TREES))

@@ -11,7 +11,8 @@ usage: layering.py REPOSITORY      exit status 1 and one line per offence when t
 import pathlib
 import re
 import sys
-import tempfile
+
+import contract
 
 # In the order in which data flow. The pipeline is no directory but include/tribofit/pipeline.hpp and src/pipeline.cpp: it
 # calls the rooms above it for one trace; what deals with many traces or with its results lies below it.
@@ -72,54 +73,33 @@ def offences(repository):
     return found
 
 
-def self_test():
-    cases = [  # file, its text, whether it must be refused
-        ("src/report/a.cpp", '#include "tribofit/ingest/trace.hpp"\n#include <vector>\n', False),
-        ("src/fit/a.cpp", '#include <ceres/ceres.h>\n#include "fit/a.hpp"\n', False),
-        ("src/ingest/a.cpp", "#include <libfccp/csv.h>\n", False),
-        ("src/ingest/a.cpp", '// #include "tribofit/report/table.hpp"\n', False),
-        ("src/ingest/a.cpp", '#include "tribofit/fit/fit.hpp"\n', True),
-        ("src/ingest/a.cpp", '  #  include <tribofit/kinematics/motion.hpp>\n', True),
-        ("src/friction/a.cpp", '#include "oscillator/integrator.hpp"\n', True),
-        ("src/report/a.cpp", '#include "tribofit/pipeline.hpp"\n', False),
-        ("src/fit/a.cpp", '#include "tribofit/pipeline.hpp"\n', True),
-        ("src/pipeline.cpp", '#include "tribofit/report/terminal.hpp"\n', True),
-        ("include/tribofit/friction/effects/a.hpp", '#include "tribofit/fit/fit.hpp"\n', True),
-        ("src/friction/a.cpp", '#include <libfccp/csv.h>\n', True),
-        ("src/report/a.cpp", "#include <ceres/jet.h>\n", True),
-        ("src/ingest/a.cpp", '#include "tribofit/statistics/quantiles.hpp"\n', False),
-        ("src/fit/a.cpp", '#include "statistics/linear_algebra.hpp"\n', False),
-        ("src/statistics/a.cpp", '#include "tribofit/ingest/trace.hpp"\n', True),
-        ("include/tribofit/fit/a.hpp", "#include <vector>\n", False),
-        ("include/tribofit/fit/a.hpp", "#include <Eigen/Core>\n", True),
-        ("src/util/a.cpp", "", True),
-    ]
-    wrong = 0
-    for name, text, refused in cases:
-        with tempfile.TemporaryDirectory() as directory:
-            root = pathlib.Path(directory)
-            (root / "include" / "tribofit").mkdir(parents=True)
-            (root / "src").mkdir()
-            path = root / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-            if bool(offences(root)) != refused:
-                print(f"{name} with {text!r} should {'' if refused else 'not '}have been refused")
-                wrong += 1
-    print(f"layering: {len(cases) - wrong} of {len(cases)} made-up trees judged rightly")
-    return wrong == 0
+def with_file(name, text):
+    """A tree of rooms without includes and one more file."""
+    return {"include/tribofit/fit/fit.hpp": "", "src/fit/fit.cpp": "", name: text}
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        return 0 if self_test() else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = offences(pathlib.Path(arguments[0]))
-    print("\n".join(found) if found else "layering: no offences")
-    return 1 if found else 0
+TREES = [  # files, number of offences
+    (with_file("src/report/a.cpp", '#include "tribofit/ingest/trace.hpp"\n#include <vector>\n'), 0),
+    (with_file("src/fit/a.cpp", '#include <ceres/ceres.h>\n#include "fit/a.hpp"\n'), 0),
+    (with_file("src/ingest/a.cpp", "#include <libfccp/csv.h>\n"), 0),
+    (with_file("src/ingest/a.cpp", '// #include "tribofit/report/table.hpp"\n'), 0),
+    (with_file("src/ingest/a.cpp", '#include "tribofit/fit/fit.hpp"\n'), 1),
+    (with_file("src/ingest/a.cpp", '  #  include <tribofit/kinematics/motion.hpp>\n'), 1),
+    (with_file("src/friction/a.cpp", '#include "oscillator/integrator.hpp"\n'), 1),
+    (with_file("src/report/a.cpp", '#include "tribofit/pipeline.hpp"\n'), 0),
+    (with_file("src/fit/a.cpp", '#include "tribofit/pipeline.hpp"\n'), 1),
+    (with_file("src/pipeline.cpp", '#include "tribofit/report/terminal.hpp"\n'), 1),
+    (with_file("include/tribofit/friction/effects/a.hpp", '#include "tribofit/fit/fit.hpp"\n'), 1),
+    (with_file("src/friction/a.cpp", '#include <libfccp/csv.h>\n'), 1),
+    (with_file("src/report/a.cpp", "#include <ceres/jet.h>\n"), 1),
+    (with_file("src/ingest/a.cpp", '#include "tribofit/statistics/quantiles.hpp"\n'), 0),
+    (with_file("src/fit/a.cpp", '#include "statistics/linear_algebra.hpp"\n'), 0),
+    (with_file("src/statistics/a.cpp", '#include "tribofit/ingest/trace.hpp"\n'), 1),
+    (with_file("include/tribofit/fit/a.hpp", "#include <vector>\n"), 0),
+    (with_file("include/tribofit/fit/a.hpp", "#include <Eigen/Core>\n"), 1),
+    (with_file("src/util/a.cpp", ""), 1),
+]
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(contract.run("layering", __doc__, offences, TREES))

@@ -11,7 +11,8 @@ import collections
 import pathlib
 import re
 import sys
-import tempfile
+
+import contract
 
 # Types at namespace level stand at the beginning of a line, as clang-format leaves them.
 DEFINITION = re.compile(r"^(?:struct|class|enum class|enum)\s+(\w+)[^;]*$")
@@ -28,37 +29,17 @@ def offences(repository):
     return [f"{name} is defined at {' and at '.join(where)}" for name, where in places.items() if len(where) > 1]
 
 
-def self_test():
-    cases = [
-        ("struct Recording {\n};\n", "struct Recording {\n};\n", True),
-        ("class Fit : public Base {\n};\n", "enum class Fit {\n};\n", True),
-        ("struct Recording {\n};\n", "struct Recording;\n", False),
-        ("struct Outer {\n  struct Part {\n  };\n};\n", "struct Part {\n};\n", False),
-    ]
-    wrong = 0
-    for first, second, refused in cases:
-        with tempfile.TemporaryDirectory() as directory:
-            root = pathlib.Path(directory)
-            for room, text in (("ingest", first), ("oscillator", second)):
-                (root / "src" / room).mkdir(parents=True)
-                (root / "src" / room / "a.hpp").write_text(text, encoding="utf-8")
-            if bool(offences(root)) != refused:
-                print(f"{first!r} and {second!r} should {'' if refused else 'not '}have been refused")
-                wrong += 1
-    print(f"one definition: {len(cases) - wrong} of {len(cases)} made-up pairs judged rightly")
-    return wrong == 0
+def with_headers(first, second):
+    return {"src/ingest/a.hpp": first, "src/oscillator/a.hpp": second}
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        return 0 if self_test() else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = offences(pathlib.Path(arguments[0]))
-    print("\n".join(found) if found else "one definition: no offences")
-    return 1 if found else 0
+TREES = [  # files, number of offences
+    (with_headers("struct Recording {\n};\n", "struct Recording {\n};\n"), 1),
+    (with_headers("class Fit : public Base {\n};\n", "enum class Fit {\n};\n"), 1),
+    (with_headers("struct Recording {\n};\n", "struct Recording;\n"), 0),
+    (with_headers("struct Outer {\n  struct Part {\n  };\n};\n", "struct Part {\n};\n"), 0),
+]
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(contract.run("one definition", __doc__, offences, TREES))

@@ -10,7 +10,8 @@ usage: sizes.py REPOSITORY    exit status 1 and one line per offence
 import pathlib
 import re
 import sys
-import tempfile
+
+import contract
 
 MOST_LINES_OF_A_FILE = 400
 MOST_LINES_OF_A_FUNCTION = 60
@@ -75,50 +76,27 @@ def offences(repository):
     return found
 
 
-def self_test():
-    def body(count, indent="  "):
-        return "".join(f"{indent}x += {k};\n" for k in range(count))
-
-    cases = [  # file, its text, number of offences
-        ("src/fit/a.cpp", "int f(int x) {\n" + body(58) + "}\n", 0),
-        ("src/fit/a.cpp", "int f(int x) {\n" + body(59) + "}\n", 1),
-        ("src/fit/a.cpp", "std::vector<int> f(int x,\n                   int y) {\n" + body(60) + "}\n", 1),
-        ("src/fit/a.cpp", "namespace a {\n\n" + body(100, "") + "}\n", 0),
-        ("src/fit/a.cpp", "struct A {\n  void f() {\n" + body(60, "    ") + "  }\n};\n", 1),
-        ("src/fit/a.cpp", "class A {\n" + body(100) + "};\n", 0),
-        ("src/fit/a.cpp", "int f(int);\nclass A {\n" + body(100) + "};\n", 0),
-        ("src/fit/a.cpp", "TEST(Room, Case) {\n" + body(60) + "}\n", 1),
-        ("src/report/a.js", "function f(x) {\n" + body(60) + "}\n", 1),
-        ("src/report/a.js", "const f = (x) => {\n" + body(60) + "};\n", 1),
-        ("tests/a.py", "def f(x):\n" + "    x += 1\n" * 60, 1),
-        ("tests/a.py", "def f(x):\n" + "    x += 1\n" * 59 + "\n\ny = 1\n", 0),
-        ("tools/a.cpp", "\n" * 400, 0),
-        ("tools/a.cpp", "\n" * 401, 1),
-    ]
-    wrong = 0
-    for name, text, expected in cases:
-        with tempfile.TemporaryDirectory() as directory:
-            path = pathlib.Path(directory) / name
-            path.parent.mkdir(parents=True)
-            path.write_text(text, encoding="utf-8")
-            found = offences(pathlib.Path(directory))
-            if len(found) != expected:
-                print(f"{name} with {text[:40]!r}: {len(found)} offences instead of {expected}: {found}")
-                wrong += 1
-    print(f"sizes: {len(cases) - wrong} of {len(cases)} made-up files judged rightly")
-    return wrong == 0
+def body(count, indent="  "):
+    return "".join(f"{indent}x += {k};\n" for k in range(count))
 
 
-def main(arguments):
-    if arguments == ["--self-test"]:
-        return 0 if self_test() else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = offences(pathlib.Path(arguments[0]))
-    print("\n".join(found) if found else "sizes: no offences")
-    return 1 if found else 0
+TREES = [  # files, number of offences
+    ({"src/fit/a.cpp": "int f(int x) {\n" + body(58) + "}\n"}, 0),
+    ({"src/fit/a.cpp": "int f(int x) {\n" + body(59) + "}\n"}, 1),
+    ({"src/fit/a.cpp": "std::vector<int> f(int x,\n                   int y) {\n" + body(60) + "}\n"}, 1),
+    ({"src/fit/a.cpp": "namespace a {\n\n" + body(100, "") + "}\n"}, 0),
+    ({"src/fit/a.cpp": "struct A {\n  void f() {\n" + body(60, "    ") + "  }\n};\n"}, 1),
+    ({"src/fit/a.cpp": "class A {\n" + body(100) + "};\n"}, 0),
+    ({"src/fit/a.cpp": "int f(int);\nclass A {\n" + body(100) + "};\n"}, 0),
+    ({"src/fit/a.cpp": "TEST(Room, Case) {\n" + body(60) + "}\n"}, 1),
+    ({"src/report/a.js": "function f(x) {\n" + body(60) + "}\n"}, 1),
+    ({"src/report/a.js": "const f = (x) => {\n" + body(60) + "};\n"}, 1),
+    ({"tests/a.py": "def f(x):\n" + "    x += 1\n" * 60}, 1),
+    ({"tests/a.py": "def f(x):\n" + "    x += 1\n" * 59 + "\n\ny = 1\n"}, 0),
+    ({"tools/a.cpp": "\n" * 400}, 0),
+    ({"tools/a.cpp": "\n" * 401}, 1),
+]
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(contract.run("sizes", __doc__, offences, TREES))
