@@ -133,7 +133,7 @@ void FrictionDynamics::steady_states(const SlidingState<double>& at, std::span<d
       shifted[k] += y[k] == 0 ? 1e-9 : 1e-6 * y[k];
       jacobian.col(k) = (rates_of(shifted) - rate) / (shifted[k] - y[k]);
     }
-    const Eigen::VectorXd step = solve_regular(jacobian, -rate);
+    const Eigen::VectorXd step = least_squares(jacobian, -rate);
     if (!step.allFinite() || i == kMostIterations) {
       throw InputError("the memory of the friction law does not come to rest at a speed of " +
                            std::to_string(1e3 * at.velocity) + " mm/s",

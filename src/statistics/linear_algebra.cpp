@@ -17,10 +17,6 @@ MatrixXd solve_symmetric(const MatrixXd& matrix, const MatrixXd& right) {
   return matrix.ldlt().solve(right);
 }
 
-Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& right) {
-  return matrix.ldlt().solve(right);
-}
-
 MatrixXd inverse_of_symmetric(const MatrixXd& matrix) {
   return solve_symmetric(matrix, MatrixXd::Identity(matrix.rows(), matrix.cols()));
 }
@@ -36,11 +32,7 @@ SymmetricSystem solve_symmetric_system(const MatrixXd& matrix, const VectorXd& r
 }
 
 MatrixXd inverse_of(const MatrixXd& matrix) {
-  return matrix.inverse();
-}
-
-VectorXd solve_regular(const MatrixXd& matrix, const VectorXd& right) {
-  return matrix.partialPivLu().solve(right);
+  return matrix.householderQr().solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
 }
 
 VectorXd least_squares(const MatrixXd& design, const VectorXd& right) {
@@ -68,11 +60,10 @@ MatrixXd solve_lower_factor(const MatrixXd& matrix, const MatrixXd& right) {
   return Eigen::LLT<MatrixXd>(matrix).matrixL().solve(right);
 }
 
-MatrixXd triangular_factor(MatrixXd& matrix) {
+MatrixXd triangular_factor(const MatrixXd& matrix) {
   const Eigen::Index kept = std::min(matrix.rows(), matrix.cols());
-  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(matrix);  // in place
   MatrixXd out = MatrixXd::Zero(matrix.cols(), matrix.cols());
-  out.topRows(kept) = matrix.topRows(kept).triangularView<Eigen::Upper>();
+  out.topRows(kept) = Eigen::HouseholderQR<MatrixXd>(matrix).matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   return out;
 }
 

@@ -19,7 +19,6 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 /// Solution x of A x = b for a symmetric A that is positive or negative semidefinite (LDL^T with pivots); the columns
 /// of `right` are solved for one by one. Cost: n^3.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
-Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& right);
 
 /// Inverse of a symmetric matrix by LDL^T with pivots.
 Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& matrix);
@@ -32,13 +31,11 @@ struct SymmetricSystem {
 };
 SymmetricSystem solve_symmetric_system(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-/// Inverse of a square matrix by LU with partial pivots; it must be regular.
+/// Inverse of a square matrix by QR; it must be regular.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
-/// Solution x of A x = b for a regular square A (LU with partial pivots). Cost: n^3.
-Eigen::VectorXd solve_regular(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-
-/// x that makes |A x - b| least, for a design of full column rank (QR without pivots). Cost: m n^2.
+/// x that makes |A x - b| least, for a design of full column rank (QR without pivots); the solution where A is square.
+/// Cost: m n^2.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& design, const Eigen::VectorXd& right);
 
 /// The same for a design of any rank (QR with column pivots).
@@ -59,8 +56,7 @@ Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& matrix);
 /// L^-1 b for a symmetric positive definite A = L L'.
 Eigen::MatrixXd solve_lower_factor(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
-/// R of the QR of a matrix, n x n, with zero rows below where it has fewer rows than columns: R'R = A'A. The matrix is
-/// overwritten.
-Eigen::MatrixXd triangular_factor(Eigen::MatrixXd& matrix);
+/// R of the QR of a matrix, n x n, with zero rows below where it has fewer rows than columns: R'R = A'A.
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& matrix);
 
 }  // namespace tribofit

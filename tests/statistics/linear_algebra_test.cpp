@@ -56,7 +56,7 @@ TEST(LinearAlgebra, InverseOfSecondDifferences) {
   EXPECT_LT((inverse_of_symmetric(matrix) - inverse).norm(), 1e-13);
   EXPECT_LT((inverse_of(matrix) - inverse).norm(), 1e-13);
   EXPECT_LT((solve_symmetric(matrix, MatrixXd(right)) - inverse * right).norm(), 1e-13);
-  EXPECT_LT((solve_regular(matrix, right) - inverse * right).norm(), 1e-13);
+  EXPECT_LT((least_squares(matrix, right) - inverse * right).norm(), 1e-13);
   const SymmetricSystem system = solve_symmetric_system(matrix, right);
   EXPECT_LT((system.x - inverse * right).norm(), 1e-13);
   EXPECT_LT((system.inverse - inverse).norm(), 1e-13);
