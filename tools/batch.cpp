@@ -71,7 +71,7 @@ std::vector<std::string> without_threads(std::vector<std::string> arguments) {
   return arguments;
 }
 
-/// What tells a file from another; nothing where there is none.
+/// What identifies a file; nothing where there is none.
 std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;

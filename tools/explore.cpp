@@ -119,7 +119,7 @@ void refuse_beside_session(const std::vector<std::string>& arguments) {
                    " (only --port and --threads go with it)");
 }
 
-/// The settings that a saved session was begun with, but for what the server itself is told now.
+/// The settings that a saved session was begun with, but for what is given to the server itself now.
 void take_over(const std::string& text, ExploreSettings& s) {
   const SavedWorkbench saved = saved_workbench(text, s.session);
   ExploreSettings earlier;

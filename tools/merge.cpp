@@ -40,7 +40,7 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
   }
   const CampaignSummary& summary = all.summary;
   for (const std::string& problem : results.problems()) print_error(problem);
-  for (const std::string& complaint : summary.complaints) print_error(complaint);
+  for (const std::string& error : summary.errors) print_error(error);
   if (!s.quiet) {
     print(summary.table);
     print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,

@@ -20,7 +20,7 @@
 namespace tribofit {
 namespace {
 
-/// What tells without reading whether a file was written to.
+/// What shows without reading whether a file was written to.
 struct FileState {
   std::uint64_t bytes = 0;
   timespec changed{};
@@ -120,7 +120,7 @@ class Batch {
       fit_and_keep(k, before, record, end);
       admission_.leave(bytes_[k]);
     }
-    tell(k, end);
+    report_progress(k, end);
   }
 
   RunRecord record_of(const Run& run) const {
@@ -201,15 +201,15 @@ class Batch {
     return result;
   }
 
-  /// A trace so long that it leaves no room for others gets the threads that would be theirs.
+  /// A trace so long that it leaves no memory for others gets the threads that would be theirs.
   int threads_inside(std::uint64_t bytes) const {
     const std::uint64_t beside = std::clamp<std::uint64_t>(options_.bytes_at_once / std::max<std::uint64_t>(bytes, 1),
                                                            1, std::min(threads_, outcome_.ends.size()));
     return static_cast<int>(std::max<std::uint64_t>(1, threads_ / beside));
   }
 
-  void tell(std::size_t k, const RunEnd& end) {
-    const std::lock_guard lock(telling_);
+  void report_progress(std::size_t k, const RunEnd& end) {
+    const std::lock_guard lock(reporting_);
     ++progress_.done;
     progress_.left_bytes -= bytes_[k];
     if (!end.present) progress_.fitted_bytes += bytes_[k];
@@ -228,7 +228,7 @@ class Batch {
   std::vector<std::uint64_t> bytes_;  // of the trace of each end
   BatchOutcome outcome_;
   std::atomic<int> unwritten_in_a_row_ = 0;
-  std::mutex telling_;
+  std::mutex reporting_;
   BatchProgress progress_;
 };
 

@@ -14,7 +14,7 @@
 namespace tribofit {
 namespace {
 
-/// ln(held-out RMSE of `second` over that of `first`), joint protocol; nothing where either is not known.
+/// ln(held-out error of `second` over that of `first`), joint protocol; nothing where either is not known.
 std::optional<double> advantage(const RunResult& run, const std::string& first, const std::string& second) {
   const ResultFit *a = run.fit(first, "joint"), *b = run.fit(second, "joint");
   if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;

@@ -85,8 +85,9 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
   if (needs.stick_time && seen.stick_time_ratio < limits::kLeastStickRatio &&
       seen.longest_stick_ratio < limits::kLeastStickRatio) {
     return seen.median_stick_time > 0
-               ? fmt::format("the stick times are all about {:.2g} s: a longer stick cannot be told from a shorter one",
-                             seen.median_stick_time)
+               ? fmt::format(
+                     "the stick times are all about {:.2g} s: longer and shorter sticks are not distinguishable",
+                     seen.median_stick_time)
                : std::string("too few stick times were recorded");
   }
   if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";

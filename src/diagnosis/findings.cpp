@@ -159,7 +159,7 @@ void describe_place(const FindingInputs& in, std::size_t k, EffectFinding& findi
     const LadderStep& step = in.ladder.steps[s];
     if (contains(step.equivalent, k)) {
       finding.status = EffectStatus::equivalent;
-      finding.reason = fmt::format("these data cannot tell it from {}", in.all[*step.added].info.key);
+      finding.reason = fmt::format("with these data not distinguishable from {}", in.all[*step.added].info.key);
     }
     if (*step.added != k) continue;
     finding.status = EffectStatus::found;

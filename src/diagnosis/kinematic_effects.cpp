@@ -73,7 +73,8 @@ void share_plateau(const Motion& motion, const Instruments& instruments, const E
   const bool known =
       plateau_says(instruments, motion.conditions, motion.corrected_ratio).rules_out(other.plateau_correction);
   finding.status = known ? EffectStatus::unsupported : EffectStatus::equivalent;
-  finding.reason = known ? "the instruments file leaves no room for it" : "these data cannot tell it from " + corrected;
+  finding.reason =
+      known ? "the instruments file leaves no room for it" : "with these data not distinguishable from " + corrected;
 }
 
 /// What was found in the motion and in the load channel, and undone, as effects: those of the motion first.

@@ -40,7 +40,7 @@ bool is_fixed(const FitParameter& parameter);
 struct LawComparison {
   std::size_t first = 0, second = 0;  ///< indices of fits; `first` is the better one
   Comparison comparison;
-  bool clear = false;  ///< no chance, at the 5 % level
+  bool clear = false;  ///< significant at the 5 % level
 };
 
 /// The best fit against each other fit of the same protocol; empty where there is nothing to compare.

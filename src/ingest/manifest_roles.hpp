@@ -16,8 +16,8 @@ Role role_of(const ColumnName& name);
 Quantity quantity_of(Role role);
 
 /// A radius, speed or load [SI] as a cell states it: with a unit of its own ("15mm"), else in that of its column. A
-/// bare load is in N. Throws InputError, without a place, for what is no number, has no unit or a wrong one, and for a
-/// value that cannot be.
+/// bare load is in N. Throws InputError, without a place, for what is not a number, has no unit or a wrong one, and for
+/// a value that cannot be.
 double condition_in_cell(const std::string& text, Role role, const std::string& column, const std::string& unit);
 
 /// Whether the cell is a number without a unit.

@@ -36,7 +36,7 @@ struct RawFact {
 };
 
 /// The value of a fact in SI: its unit stands in the value, else in the name, else it is `bare_unit`. Nothing when the
-/// value is no number of this quantity.
+/// value is not a number of this quantity.
 std::optional<double> value_of(const RawFact& fact, Quantity quantity, std::string_view bare_unit);
 
 /// A stretch of rows which the file itself sets apart (a step of a recipe), with the conditions stated for it.
@@ -59,7 +59,7 @@ struct RawColumn {
   std::string name;             ///< as the file gives it; "#3" where it gives none
   bool named = true;            ///< the file gives the name
   std::string unit;             ///< stated apart from the name, without brackets; empty: none
-  std::string place;            ///< where it stands, if the name does not tell: "block 3", "group Vibrometer"
+  std::string place;            ///< where it stands, if the name does not say: "block 3", "group Vibrometer"
   std::size_t line = 0;         ///< that names it; 0: none does
   std::size_t unit_line = 0;    ///< that states its unit
   std::size_t rows = 0;         ///< which of RawTable::rows

@@ -163,7 +163,7 @@ void for_each_run(const ResultReader& results, WithResult&& with_result, Missing
   }
 }
 
-std::string complaint(const RunRecord& run) {
+std::string error_line(const RunRecord& run) {
   return run.status == RunStatus::failed ? run.file + ": the analysis could not be done: " + run.message : run.message;
 }
 
@@ -237,13 +237,13 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
         add(summary_row(result), result_json(result), run_row(result));
         const bool ok = result.run.status == RunStatus::ok;
         ++(ok ? summary.fitted : summary.failed);
-        if (!ok) summary.complaints.push_back(complaint(result.run));
+        if (!ok) summary.errors.push_back(error_line(result.run));
       },
       [&](const MissingRun& run) {
         add(summary_row(run.name, run.file, "missing"),
             object("name", run.name, "file", run.file, "status", "missing", "message", nullptr), run_row(run));
         ++summary.missing;
-        summary.complaints.push_back(run.file + ": there is no result of it yet");
+        summary.errors.push_back(run.file + ": there is no result of it yet");
       });
   json.write("\n],\n\"problems\": " + line_of(results.problems()));
   if (!comparison.empty()) json.write(",\n\"comparison\": " + comparison);

@@ -97,6 +97,30 @@ std::string slope_unit(const Trend& t) {
   return unit + (per.empty() ? "" : (unit.empty() ? "per " : " per ") + per);
 }
 
+constexpr const char* kOtherParameters = "other parameters of the law";
+
+/// Three cells: mu_s and mu_k where the law has them, and what else it has, by name and with its unit.
+template <class Value>
+void add_law_cells(const std::vector<Value>& parameters, std::string (*text)(const Value&),
+                   std::vector<std::string>& row) {
+  std::string mu_s, mu_k, others;
+  for (const Value& p : parameters) {
+    if (!p.effect.empty()) continue;
+    if (p.name == "mu_s") {
+      mu_s = text(p);
+    } else if (p.name == "mu_k") {
+      mu_k = text(p);
+    } else {
+      others += (others.empty() ? "" : ", ") + p.name + " " + text(p) + (p.unit == "1" ? "" : unit_behind(p.unit));
+    }
+  }
+  row.insert(row.end(), {mu_s, mu_k, others});
+}
+
+std::string fitted_text(const ResultParameter& p) {
+  return with_error(p.value, p.std_error);
+}
+
 }  // namespace
 
 ReportTable comparison_table(const ComparisonReport& report, std::span<const PooledGroup> groups) {
@@ -148,15 +172,13 @@ ReportTable error_table(const Statements& statements, std::span<const PooledGrou
 
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
   ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)");
-  table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k", "alpha, beta [s/mm]"});
+  table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k"}).text({kOtherParameters});
   table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       if (fit.protocol != "joint") continue;
       std::vector<std::string> row = {name_of(group), std::to_string(group.runs.size()), fit.law};
-      for (std::size_t k = 0; k < 3; ++k) {
-        row.push_back(k < fit.parameters.size() ? pooled_text(fit.parameters[k]) : "");
-      }
+      add_law_cells(fit.parameters, pooled_text, row);
       row.push_back(std::to_string(fit.best_in));
       table.rows.push_back(std::move(row));
     }
@@ -203,7 +225,7 @@ ReportTable trends_table(const Trends& trends) {
 ReportTable runs_table(const std::string& friction_unit) {
   ReportTable table;
   table.text({"run", "conditions"}).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
-  table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit), "alpha, beta [s/mm]"});
+  table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit)}).text({kOtherParameters});
   table.numbers({with_unit("held-out error", friction_unit)});
   table.numbers({with_unit("noise floor", friction_unit)}).text({"warnings"}, 4);
   return table;
@@ -216,10 +238,7 @@ std::vector<std::string> run_row(const RunResult& r) {
                                   read ? std::to_string(r.cycles) : "",
                                   read ? with_error(r.frequency.value, r.frequency.std_error) : "",
                                   best != nullptr ? best->law : std::string(to_string(r.run.status))};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const bool known = best != nullptr && k < best->parameters.size() && best->parameters[k].effect.empty();
-    row.push_back(known ? with_error(best->parameters[k].value, best->parameters[k].std_error) : "");
-  }
+  add_law_cells(best != nullptr ? best->parameters : std::vector<ResultParameter>(), fitted_text, row);
   row.push_back(best != nullptr ? significant(best->held_out_rmse, 3) : "");
   row.push_back(best != nullptr ? significant(best->floor_rmse, 3) : "");
   row.push_back(r.run.message.empty() ? std::to_string(r.warnings.size()) : r.run.message);

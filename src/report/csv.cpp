@@ -74,7 +74,7 @@ void write_samples(WholeFile& file, const Identification& result, const std::vec
   Row row(file);
   for (std::size_t i = 0; i < motion.size(); ++i) {
     const double v = motion.relative_velocity[i];
-    // Before the first and after the last cycle only the speed tells.
+    // Before the first and after the last cycle only the speed shows it.
     const bool outside = member.cycle[i] == Membership::none;
     const bool slip = outside ? std::abs(v) > result.segmentation.slip_threshold : slips[i];
     row << motion.time[i] << v / kMillimetre << motion.friction[i] << (model.empty() ? std::nan("") : model[i])

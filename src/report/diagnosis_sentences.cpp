@@ -96,7 +96,7 @@ class Sentences {
                        [&](const EffectFinding& e) { return e.status == status; });
   }
 
-  /// How the error stands to the floor: "at the noise floor (0.0030)".
+  /// How the error stands to the noise floor: "at the noise floor (0.0030)".
   std::string floor_clause() const {
     switch (against_floor(last(), d_.floor_rmse)) {
       case FloorComparison::unknown:
@@ -123,9 +123,8 @@ class Sentences {
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (found_effects(d_).empty()) {
-      return fmt::format(
-          "Something is missing that no effect of the catalogue explains: the held-out error of the {} is {}, {}. {}",
-          law_text(d_), level(last()), floor_clause(), rest);
+      return fmt::format("No effect of the catalogue explains what remains: the held-out error of the {} is {}, {}. {}",
+                         law_text(d_), level(last()), floor_clause(), rest);
     }
     return fmt::format("{} But that is not all: {}, and no effect explains the rest. {}", found_sentence(result_),
                        fall(), rest);

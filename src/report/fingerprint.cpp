@@ -41,7 +41,7 @@ std::string with_unit(const FingerprintAxis& axis) {
   return axis.unit.empty() ? axis.label : axis.label + " [" + axis.unit + "]";
 }
 
-/// Ends of an axis to three digits, of one that hardly moves to as many as tell them apart.
+/// Ends of an axis to three digits, of one that hardly moves to as many as distinguish them.
 std::string end_of(double value, const PlotRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   if (std::abs(value) < 1e-3 * (range.high - range.low)) return "0";

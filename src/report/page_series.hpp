@@ -12,7 +12,7 @@
 
 namespace tribofit {
 
-/// Digits of what is drawn: finer than any screen; times need more, so that 20 us can be told apart after an hour.
+/// Digits of what is drawn: finer than any screen; times need more, so that 20 us are distinguishable after an hour.
 inline constexpr int kDigits = 5, kTimeDigits = 9;
 
 /// A number with no more digits than are drawn, so that a page stays small; null for what is not known.

@@ -146,7 +146,7 @@ std::string twin_verdict(const TwinIdentification& result) {
     const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
                       " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
-                      "floor, so something is missing that comes and goes between them.",
+                      "floor, so an effect is not covered that comes and goes between them.",
                       fit.error.held_out_rmse / fit.floor.rmse);
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";

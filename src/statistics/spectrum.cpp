@@ -76,7 +76,7 @@ std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strong
   return strongest;
 }
 
-// Strongest line above three bins: below, a drift cannot be told from a line.
+// Strongest line above three bins: below, a drift is not distinguishable from a line.
 Line strongest_line(std::span<const double> signal, double step) {
   const Spectrum spectrum = amplitude_spectrum(signal, step);
   constexpr std::size_t first = 3;

@@ -91,7 +91,7 @@ class Search {
       while (out_.highest < kMost * own && (!is_stable(out_.highest) || sticks(out_.highest))) out_.highest *= kStep;
     }
     if (!(out_.lowest > 0 && out_.highest > out_.lowest && std::isfinite(out_.highest))) {
-      throw InputError("the range of speeds is none", "give a lowest speed above zero and a highest above it");
+      throw InputError("the speed range is empty", "give a lowest speed above zero and a highest above it");
     }
   }
 

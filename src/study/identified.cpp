@@ -10,7 +10,7 @@
 namespace tribofit {
 namespace {
 
-/// Correlation of break-away from cycle to cycle, of what is scatter in it; 0 where too few cycles tell.
+/// Correlation of break-away from cycle to cycle, of what is scatter in it; 0 where there are too few cycles.
 double wander_of(const Segmentation& segmentation, double scatter) {
   constexpr double kMost = 0.9;
   std::vector<double> levels;

@@ -308,7 +308,7 @@ bool keeps_sticking(const Machine& machine, double sharpness) {
   const bool bare = machine.model.effects().empty();
   constexpr double kCycles = 4, kStill = 1e-9;
   const double most = std::max(kCycles * cycle, (bare ? 2000 : 500) * period);
-  // The first slip tells of most machines.
+  // The first slip shows it for most machines.
   double duration = bare ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {
     const SimulatedMotion motion = motion_of(machine, {.duration = duration, .rate = 0}, sharpness);

@@ -204,8 +204,7 @@ struct CutOut {
 };
 
 TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
-  // SimulatedRecording in a simulated record and cut out of it, a slip must read as the fit evaluates it. Noise is
-  // 0.003.
+  // Hidden in a simulated record and cut out of it, a slip must read as the fit evaluates it. Noise is 0.003.
   const PublishedTest test = published_test(0.015, ExponentialLaw{});
   const Drive drive = {.speed = constant_speed(test.speed),
                        .radius = test.radius,

@@ -71,7 +71,7 @@ struct Case {
   double colour = 0;  ///< AR(1) coefficient of the noise
   double scatter = 0, wander = 0;
   std::uint64_t seed = 0;
-  std::string partner;  ///< look-alikes: the one that it is to be told from
+  std::string partner;  ///< look-alikes: the one to distinguish it from
 };
 
 /// How many cases of each kind.
@@ -164,9 +164,9 @@ struct Outcome {
   Naming naming = Naming::missed;
   std::size_t group_size = 0;             ///< of the largest group that holds a hidden effect
   bool right = false;                     ///< what the kind of the case asks for
-  double first = 0, last = 0, floor = 0;  ///< held-out RMSE of the base law and of the last rung; see Simulated [1]
+  double first = 0, last = 0, floor = 0;  ///< held-out error of the base law and of the last rung; see Simulated [1]
   std::vector<Recovered> parameters;      ///< main parameters of hidden effects that were added
-  std::vector<std::string> partners;      ///< that the experiment is to tell it from; empty: none was made
+  std::vector<std::string> partners;      ///< that the experiment is to distinguish it from; empty: none was made
   std::vector<Name> after;                ///< names after the experiment
   bool split = false;                     ///< it is named apart from all of them then
   double seconds = 0;                     ///< of one processor, for the diagnosis alone

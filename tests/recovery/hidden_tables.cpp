@@ -208,7 +208,7 @@ std::string experiments_table(const Outcomes& tried) {
     ++n;
     split += o->split ? 1u : 0u;
   }
-  std::string text = "| hidden | to be told from | n | told |\n|---|---|--:|--:|\n";
+  std::string text = "| hidden | to distinguish from | n | distinguished |\n|---|---|--:|--:|\n";
   for (const auto& [group, counts] : groups) {
     fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} |\n", group.first, group.second, counts.first,
                    counts.second);
@@ -320,7 +320,7 @@ std::string summary(const std::vector<Outcome>& all) {
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
   share("next experiment, simulated, splits its group", tried, [](const Outcome* o) { return o->split; });
-  share("pairs that look alike told apart by the experiment of the catalogue", of_kind(all, Kind::look_alike),
+  share("pairs that look alike distinguished by the experiment of the catalogue", of_kind(all, Kind::look_alike),
         is_right);
   double seconds = 0, slowest = 0;
   std::size_t failures = 0;

@@ -27,7 +27,7 @@ Law other(Law law) {
   return law == Law(ExponentialLaw{}) ? Law(FractionalLaw{}) : Law(ExponentialLaw{});
 }
 
-/// The eight twins: each law at each radius. Prints value, error and the published protocol's bias beside it.
+/// The eight twins: each law at each radius. Prints value, error and the bias of per-cycle extremes beside it.
 TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
   std::printf("%-12s %-7s %-22s %-22s %-26s  %s\n", "law", "radius", "mu_s (joint, publ.)", "mu_k (joint, publ.)",
               "decay (joint, publ.)", "held-out p");
@@ -83,7 +83,7 @@ TEST(Effects, ComeBackFromTheRigTheyWereSimulatedOn) {
     const Fit bare = fitted(FrictionModel(ExponentialLaw{}));
     const Fit fit = fitted(FrictionModel(ExponentialLaw{}, options.effects));
     const FitParameter& p = fit.parameters[3 + h.main];
-    std::printf("%-10s %s = %.4g (%.4g..%.4g), truth %.4g; held-out RMSE %.5f -> %.5f, floor %.5f\n", h.key,
+    std::printf("%-10s %s = %.4g (%.4g..%.4g), truth %.4g; held-out error %.5f -> %.5f, noise floor %.5f\n", h.key,
                 p.parameter.name.c_str(), p.value / p.parameter.si, p.lower95 / p.parameter.si,
                 p.upper95 / p.parameter.si, h.parameters[h.main] / p.parameter.si, bare.error.held_out_rmse,
                 fit.error.held_out_rmse, twin.floor_rmse);

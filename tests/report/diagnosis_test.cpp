@@ -187,7 +187,7 @@ TEST(DiagnosisPage, EveryVerdictSaysNoMoreThanIsKnown) {
   DiagnosedTraces nothing = unexplained();
   nothing.diagnosis.ladder.pop_back();
   nothing.diagnosis.effects.erase(nothing.diagnosis.effects.begin());
-  EXPECT_THAT(prose(nothing), HasSubstr("Something is missing that no effect of the catalogue explains"));
+  EXPECT_THAT(prose(nothing), HasSubstr("No effect of the catalogue explains what remains"));
   EXPECT_THAT(prose(too_short()), AllOf(HasSubstr("7 cycles are too few, 20 would be enough"), Not(HasSubstr("RMSE")),
                                         HasSubstr("identify --radius 15mm runs/r15.csv")));
 }

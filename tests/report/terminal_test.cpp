@@ -114,7 +114,7 @@ TEST(Terminal, TheVerdictFollowsTheErrorAboveTheFloor) {
   result.fits[0].error.held_out_rmse = 0.0075;
   EXPECT_THAT(rendered(result), HasSubstr("does not carry over"));
   result.fits[0].error.rmse = 0.0074;
-  EXPECT_THAT(rendered(result), HasSubstr("something small is missing"));
+  EXPECT_THAT(rendered(result), HasSubstr("it lacks a small effect"));
   result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0020;
   EXPECT_THAT(rendered(result), HasSubstr("is overestimated here"));
   result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0075;

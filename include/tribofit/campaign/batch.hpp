@@ -18,7 +18,7 @@ struct Shard {
 
 struct BatchOptions {
   IdentifyOptions identify;  ///< `read` and `threads` of it are not used
-  /// The options as typed: what tells apart results of the same trace under the same conditions.
+  /// The options as typed: what distinguishes results of the same trace under the same conditions.
   std::vector<std::string> arguments;
   std::vector<std::string> companions;  ///< files that are read besides the traces; their content counts, too
   std::string results;                  ///< folder of the results
@@ -71,7 +71,7 @@ std::string options_hash(const BatchOptions& options);
 std::string settings_hash(const Run& run, const std::string& hash_of_options);
 
 /// Analyses every run of the shard that has no result of the same key yet. Traces run side by side, as many as there
-/// are threads and as bytes_at_once allows; one that does not leave room for others has more threads for itself.
+/// are threads and as bytes_at_once allows; one that does not leave memory for others has more threads for itself.
 /// A run that cannot be read, or whose trace changes under the reader, is a result with a reason; the others go on.
 /// Any number of batches may work on one folder at once. Cost: linear in bytes of traces.
 BatchOutcome run_batch(const Campaign& campaign, const BatchOptions& options, const BatchHooks& hooks);

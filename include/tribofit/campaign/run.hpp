@@ -14,7 +14,7 @@ namespace tribofit {
 struct Run {
   TraceInput trace;                          ///< with the conditions of the command line over those of the manifest
   std::vector<std::string> notes, warnings;  ///< how it was found; where what is known contradicts itself
-  ManifestRow known;                         ///< as stated in manifest and command line, for telling repeats
+  ManifestRow known;                         ///< as stated in manifest and command line, for recognising repeats
   std::string name;                          ///< of its result: the file without extension, unique in the campaign
   std::string file;                          ///< relative to the folder of the campaign, or as named
   std::string problem;                       ///< why it cannot be read; empty: nothing is known against it

@@ -47,7 +47,7 @@ struct SharedFit {
 /// Joint fit of the runs of a campaign, one for each law, from the joint fits of the single runs and their covariances.
 ///
 /// Run i states y_i = (s_i, f_i) with covariance V_i. For the common parameters s_i = level + u_i + e_i with u_i the
-/// scatter between runs; a free parameter has no such prior, so the runs' marginal for s_i alone tells what is common
+/// scatter between runs; a free parameter has no such prior, so the runs' marginal for s_i alone gives what is common
 /// (generalised least squares with the free parameters profiled out), level by level as in pool(). Then
 /// f_i = y_f + V_fs V_ss^-1 (s^_i - y_s), with s^_i the best prediction of the run's own value. This is the two-stage
 /// form of a mixed model (L. B. Sheiner, S. L. Beal; M. Davidian, D. M. Giltinan, Nonlinear Models for Repeated

@@ -25,7 +25,7 @@ struct ErrorStatement {
 struct LawPreference {
   std::string better, other;
   std::size_t runs = 0, better_in = 0;
-  double ratio = 1;  ///< held-out RMSE of the other over that of the better one, geometric mean over runs
+  double ratio = 1;  ///< held-out error of the other over that of the better one, geometric mean over runs
   /// Two-sided t test of the mean logarithm of these ratios against the scatter of repeats, a run each; the advantage
   /// may differ between the conditions. NaN with one run.
   double p_value = 1;

@@ -39,7 +39,7 @@ struct Trends {
 /// runs.
 Trends find_trends(std::span<const RunResult> runs);
 
-/// Trends that are no chance at the 5 % level (corrected), without those over a condition that goes exactly with one
+/// Trends that are significant at the 5 % level (corrected), without those over a condition that goes exactly with one
 /// before it, as a warning says.
 std::vector<Trend> significant_trends(const Trends& trends);
 

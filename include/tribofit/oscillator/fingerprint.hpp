@@ -21,7 +21,7 @@ struct FingerprintCloud {
 };
 
 /// Where the absence of an effect shows: a simulated record of the published 15 mm test, without noise, seen over the
-/// variable that tells the effect from others.
+/// variable that distinguishes the effect from others.
 struct Fingerprint {
   FingerprintAxis x, y;
   std::vector<FingerprintCloud> clouds;  ///< one or two

@@ -42,9 +42,9 @@ struct Recording {
 Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
                  const Sensors& sensors = {});
 
-/// What the true law leaves over slip [1]: root mean square of noise and break-away scatter, the floor that no law can
-/// beat. The law sees the true velocity plus its noise; instruments that distort a channel are not counted.
-/// 0 where there is no slip sample.
+/// What the true law leaves over slip [1]: root mean square of noise and break-away scatter, the noise floor that no
+/// law can beat. The law sees the true velocity plus its noise; instruments that distort a channel are not counted. 0
+/// where there is no slip sample.
 double floor_rmse(const SimulatedMotion& motion, const Recording& recording, const FrictionModel& model,
                   std::span<const double> p);
 

@@ -27,7 +27,7 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
 /// What `identify runs/` and `identify merge` write and say of a campaign.
 struct CampaignSummary {
   std::size_t fitted = 0, failed = 0, missing = 0;  ///< runs
-  std::vector<std::string> complaints;              ///< a line for each run that is failed or missing
+  std::vector<std::string> errors;                  ///< a line for each run that is failed or missing
   std::string table;                                ///< a row a run for people, the first ones where there are many
 };
 

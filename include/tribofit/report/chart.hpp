@@ -8,12 +8,12 @@
 
 namespace tribofit {
 
-/// A picture as data: what it shows, in the units people read, and how its parts are told apart. It is drawn by the
+/// A picture as data: what it shows, in the units people read, and what distinguishes its parts. It is drawn by the
 /// page (page/chart.js, with Plotly) and by write_pictures(), from the same numbers and the same styles.
 ///
 /// Texts may hold subscripts and superscripts as "v_{r}" and "s^{2}"; names of lines, categories and files are taken as
-/// they are. Colours are those of Okabe and Ito, told apart by people who do not see colours alike; as a colour alone
-/// never tells anything, each line has a dash or a symbol of its own as well.
+/// they are. Colours are those of Okabe and Ito, distinguishable for people who do not see colours alike; as a colour
+/// alone never carries a meaning, each line has a dash or a symbol of its own as well.
 
 enum class Colour { black, blue, red, green, purple, grey };
 enum class Dash { solid, dashed, dotted, dash_dotted, long_dashed };

@@ -31,7 +31,7 @@ Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing = {
 /// Units stand in a column "unit", those of conditions in the names of their columns. Throws InputError.
 void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled);
 
-/// The same for people: repeats as mean and interval, what is shared, trends that are no chance, what goes together.
+/// The same for people: repeats as mean and interval, what is shared, significant trends, what goes together.
 std::string pooled_table(const Pooled& pooled, const TerminalOptions& options = {});
 
 /// A campaign beside published or earlier values.

@@ -27,15 +27,15 @@ struct TerminalOptions {
 };
 
 /// What a person reads after a run: trace and conditions, health, stick-slip, one table of parameters per fit with
-/// their uncertainty, both protocols side by side, errors against the floor, the comparison of the laws, one sentence
-/// on how good it is, and the next useful command with the user's own options.
+/// their uncertainty, both protocols side by side, errors against the noise floor, the comparison of the laws, one
+/// sentence on how good it is, and the next useful command with the user's own options.
 ///
 /// Units as people read them: mm/s, s/mm, ms, rpm, mm. Plain ASCII apart from what the file itself brings.
 std::string render_terminal(const Identification& result, const TerminalOptions& options = {});
 
 /// After a diagnosis, in this order: what was diagnosed; the ladder of held-out errors as it falls, with bars against
 /// the noise floor; where the base law fails; the verdict in one sentence; the effects found with their parameters;
-/// what is not distinguishable with these data and the experiment that would tell; what they cannot show at all; how
+/// what is not distinguishable with these data and the discriminating experiment; what they cannot show at all; how
 /// the finding did on runs that took no part; a closed form of what no effect explains; the next command.
 ///
 /// No line but a word longer than the width is wider than options.width (at least 40 columns).

@@ -25,8 +25,8 @@ struct BlockMotion {
 /// `count` cycles in a row that are whole, as near to the middle of the record as they come; empty where there are
 /// none.
 ///
-/// The displacement is the integral of v_b. Where it begins and how it drifts a velocity cannot tell: at the first and
-/// the last break-away it is set to where the spring balances friction, compliance times the break-away level.
+/// The displacement is the integral of v_b. A velocity does not show where it begins and how it drifts: at the first
+/// and the last break-away it is set to where the spring balances friction, compliance times the break-away level.
 /// compliance: N/k, displacement of the spring for a unit of friction [m]; 0: it begins at 0 and ends there.
 BlockMotion block_motion(const Motion& motion, const Segmentation& segmentation, double compliance,
                          std::size_t count = 3);

@@ -18,7 +18,7 @@ struct CriticalSpeed {
   double stick_returns = std::numeric_limits<double>::quiet_NaN();
   /// The range that was searched.
   double lowest = 0, highest = 0;
-  /// Nothing sticks in the range (as far as 60 speeds in it tell), or something still does at the highest.
+  /// Nothing sticks in the range (as far as 60 speeds in it show), or something still does at the highest.
   bool below_range = false, above_range = false;
   bool stable_at_highest = false;  ///< steady sliding at the highest speed
 };
@@ -36,8 +36,8 @@ struct CriticalSpeedOptions {
 /// nothing sticks there (Stribeck exponents above 1, memories: slow sliding is stable too), from the highest speed that
 /// sticks of 60 in equal ratios. The speed of the machine itself does not matter but for the default range. The way
 /// down is taken to end where sliding loses its stability, or below, where vibrations of all sizes grow until they
-/// stick. Cost: about 20 ms; with effects up to seconds. Throws InputError for a machine that cannot be, or a range
-/// that is none.
+/// stick. Cost: about 20 ms; with effects up to seconds. Throws InputError for a machine that cannot be, or an empty
+/// range.
 CriticalSpeed critical_speed(const Machine& machine, const CriticalSpeedOptions& options = {});
 
 }  // namespace tribofit

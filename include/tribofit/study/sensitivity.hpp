@@ -28,7 +28,7 @@ struct SensitivityOptions {
   int threads = 0;
 };
 
-/// Sweeps of every variable. Throws as settle() does, and for a variable that is none.
+/// Sweeps of every variable. Throws as settle() does, and for an unknown variable.
 std::vector<Sensitivity> study_sensitivity(const Machine& machine, const SensitivityOptions& options = {});
 
 /// Indices of `all` by the size of the elasticity of a measure (an index in measures()), the largest first; those

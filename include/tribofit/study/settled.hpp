@@ -70,7 +70,7 @@ Settled settle(const Machine& machine, const SettleOptions& options = {});
 std::optional<BlockStart> start_of(const Machine& machine, StartFrom start);
 
 /// Whether a machine that begins in stick goes on sticking. A slip of two and a half natural periods in which the block
-/// swings less and less, or creeps to steady sliding, is none that ends: where a law without memory does not return to
+/// swings less and less, or creeps to steady sliding, does not end: where a law without memory does not return to
 /// the speed of the disc in its first swing, it never does. With effects the cycles must not shrink any more, else they
 /// are the end of a start at the speed of the disc. Cost: a few of its cycles.
 bool keeps_sticking(const Machine& machine, double sharpness = 0);

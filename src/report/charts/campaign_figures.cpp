@@ -67,7 +67,7 @@ class MeansChart {
   Chart chart_;
 };
 
-/// Law and protocol of every line of levels; the published protocol has the same levels whatever the law.
+/// Law and protocol of every line of levels; per-cycle extremes give the same levels whatever the law.
 std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
   std::vector<std::pair<std::string, std::string>> kinds;
   for (const PooledGroup& group : groups) {
@@ -87,7 +87,7 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
   const auto add_kinds = [&](auto value) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const auto& [law, protocol] = kinds[k];
-      chart.add(protocol == "published" ? "published protocol" : law + " law", k, [&](std::size_t g) {
+      chart.add(protocol == "published" ? "per-cycle extremes" : law + " law", k, [&](std::size_t g) {
         const PooledGroup::OfFit* fit = fit_of(of.groups()[g], law, protocol);
         return fit == nullptr ? Maybe{} : value(of.groups()[g], *fit);
       });
@@ -107,25 +107,25 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
   return chart.chart(560);
 }
 
-/// What the laws have besides levels (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
-Chart decay_chart(const DrawnCampaign& of, const OverConditions& over) {
-  MeansChart chart(of, over, "table4-decay", "Decay factors of the laws");
-  std::vector<std::string> drawn;
+/// What the laws have besides mu_s and mu_k (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
+Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over) {
+  MeansChart chart(of, over, "table4-decay", "Other parameters of the laws");
+  std::vector<std::pair<std::string, std::string>> drawn;  // law and name
   for (const PooledGroup& group : of.groups()) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& v : fit.parameters) {
         const bool is_level = v.name == "mu_s" || v.name == "mu_k",
-                   known = std::count(drawn.begin(), drawn.end(), v.name) > 0;
+                   known = std::count(drawn.begin(), drawn.end(), std::pair(fit.law, v.name)) > 0;
         if (is_level || known || !v.effect.empty()) continue;
-        drawn.push_back(v.name);
+        drawn.emplace_back(fit.law, v.name);
         const auto value_by = [&](const char* protocol) {
           return [&, protocol](std::size_t g) {
             const PooledGroup::OfFit* own = fit_of(of.groups()[g], fit.law, protocol);
             return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, v.name));
           };
         };
-        chart.panel(v.name, v.unit).add("joint fit", 0, value_by("joint"));
-        chart.add("published protocol", 1, value_by("published")).earlier(v.name);
+        chart.panel(fmt::format("{}, {} law", v.name, fit.law), v.unit).add("joint fit", 0, value_by("joint"));
+        chart.add("per-cycle extremes", 1, value_by("published")).earlier(v.name);
       }
     }
   }
@@ -179,7 +179,7 @@ Chart spectrum_chart(const DrawnCampaign& of) {
                           });
 }
 
-/// Over v_r in bins of a run, a line a fit; those of the published protocol are switched off at first.
+/// Over v_r in bins of a run, a line a fit; those of the per-cycle extremes are switched off at first.
 template <class Value>
 void add_fits(const RunFigures& f, bool with_symbols, Value value, Chart& chart) {
   chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
@@ -187,7 +187,7 @@ void add_fits(const RunFigures& f, bool with_symbols, Value value, Chart& chart)
   std::size_t k = 1;
   for (const ErrorCurve& curve : f.errors) {
     const bool published = curve.protocol == "published";
-    ChartLine line{.name = curve.law + (published ? ", published protocol" : ""),
+    ChartLine line{.name = curve.law + (published ? ", per-cycle extremes" : ""),
                    .stroke = with_symbols ? marked(k) : stroke_of(k),
                    .shown = !published};
     line.stroke.size = 4;
@@ -258,7 +258,7 @@ ReportSection motion_figures(const DrawnCampaign& of) {
                          {.quantity = "mu", .unit = of.friction_unit()}, &RunFigures::friction),
             section);
   add_drawn(levels_chart(of, over), section);
-  add_drawn(decay_chart(of, over), section);
+  add_drawn(other_parameters_chart(of, over), section);
   return section;
 }
 

@@ -16,7 +16,7 @@ namespace {
 /// Axis of errors.
 ChartAxis error_axis(const DiagnosedTraces& result) {
   const bool force = !result.traces.empty() && friction_unit(result.traces.front().motion) == "N";
-  return {"held-out RMSE", force ? "N" : "1"};
+  return {"held-out error", force ? "N" : "1"};
 }
 
 std::vector<std::string> rung_names(const Diagnosis& d) {

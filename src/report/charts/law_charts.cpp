@@ -57,7 +57,7 @@ ChartLine band_line(std::string name, const CycleBand& band, Stroke stroke) {
   return {std::move(name), band.at, band.middle, stroke, band.low, band.high};
 }
 
-/// What residuals are measured in: the floor, or what they are themselves where none is known.
+/// What residuals are measured in: the noise floor, or what they are themselves where none is known.
 double unit_of(const Fit& fit) {
   if (fit.floor.rmse > 0) return fit.floor.rmse;
   return fit.error.rmse > 0 ? fit.error.rmse : 1;

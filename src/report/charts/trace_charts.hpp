@@ -37,7 +37,8 @@ Chart record_chart(const DrawnTrace& drawn);
 /// Friction levels, peak velocities and durations of each cycle, and the spectrum of v_r.
 std::vector<Chart> measure_charts(const DrawnTrace& drawn);
 
-/// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the floor.
+/// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the noise
+/// floor.
 std::vector<Chart> law_charts(const DrawnTrace& drawn);
 /// Relative errors ([D] Eq 5) over speed and time, and the map of residuals over cycle and phase of the slip.
 std::vector<Chart> error_charts(const DrawnTrace& drawn);

@@ -19,7 +19,7 @@ bool finite(const Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
 }
 
-/// Runs of points k of [0, count) for which point(k) is finite, without those that cannot be told apart on paper.
+/// Runs of points k of [0, count) for which point(k) is finite, without those that are not distinguishable on paper.
 template <class PointAt>
 std::vector<Path> thinned_runs(std::size_t count, PointAt point) {
   std::vector<Path> runs;

@@ -8,7 +8,7 @@
 namespace tribofit {
 
 /// Indices of the points to draw of a line without gaps, so that it stays within `tolerance` [mm] of all of them: what
-/// cannot be told apart on paper is left out, and no peak is lost. Cost: n log n.
+/// is not distinguishable on paper is left out, and no peak is lost. Cost: n log n.
 std::vector<std::size_t> thinned_line(const std::vector<Point>& points, double tolerance);
 
 /// The same of points that are not joined: one of those within a square of side `cell` [mm].
