@@ -24,9 +24,9 @@
 #include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
-#include "tribofit/report/whole_file.hpp"
 
 using namespace tribofit;
 

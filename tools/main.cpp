@@ -5,8 +5,8 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "console.hpp"
 #include "tribofit/campaign/names.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/manifest.hpp"
 #include "tribofit/report/terminal.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/study.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 using namespace tribofit;

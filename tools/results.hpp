@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "settings.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/report/pictures.hpp"
 #include "tribofit/report/report.hpp"
-#include "tribofit/report/whole_file.hpp"
 
 #include <optional>
 

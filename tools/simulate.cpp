@@ -17,6 +17,7 @@
 #include "console.hpp"
 #include "machine_options.hpp"
 #include "simulated_drive.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -25,7 +26,6 @@
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 
@@ -210,7 +210,7 @@ Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
                     {"restick_s", std::isnan(slip.restick_time) ? Json() : Json(slip.restick_time)},
                     {"stick_s", slip.stick_time},
                     {"direction", slip.direction},
-                    {"mu_s", plan.machine.parameters[0] + slip.mu_s_offset},
+                    {"mu_s", friction_at_rest(plan.machine.model.law(), plan.machine.parameters) + slip.mu_s_offset},
                     {"break_away_friction", slip.break_away_friction}});
   }
   return list;

@@ -15,11 +15,11 @@
 #include "options.hpp"
 #include "results.hpp"
 #include "studied_machine.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/report/study.hpp"
-#include "tribofit/report/whole_file.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

@@ -9,10 +9,10 @@
 #include "analysis_options.hpp"
 #include "console.hpp"
 #include "results.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/figures.hpp"
 #include "tribofit/report/pooled.hpp"
-#include "tribofit/report/whole_file.hpp"
 
 using namespace tribofit;
 

@@ -11,7 +11,7 @@
 #include "campaign_tables.hpp"
 #include "condition_cells.hpp"
 #include "terminal_text.hpp"
-#include "tribofit/report/whole_file.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

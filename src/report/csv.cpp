@@ -9,13 +9,13 @@
 #include <span>
 #include <utility>
 
+#include "campaign/whole_folder.hpp"
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
-#include "tribofit/report/whole_file.hpp"
-#include "whole_folder.hpp"
 
 namespace tribofit {
 namespace {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "campaign/whole_folder.hpp"
 #include "condition_cells.hpp"
 #include "tribofit/campaign/group_values.hpp"
-#include "whole_folder.hpp"
 
 namespace tribofit {
 namespace {

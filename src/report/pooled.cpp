@@ -7,7 +7,7 @@
 #include "csv_text.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
-#include "tribofit/report/whole_file.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -145,14 +145,6 @@ Json error_json(const ErrorStatement& e, const PooledGroup& group) {
 }
 
 }  // namespace
-
-Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing) {
-  Pooled out;
-  out.groups = pool_repeats(runs);
-  if (!sharing.common.empty()) out.shared = fit_shared(runs, sharing);
-  out.trends = find_trends(runs);
-  return out;
-}
 
 void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled) {
   const std::filesystem::path in(folder);

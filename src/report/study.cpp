@@ -104,9 +104,8 @@ std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity
   return text.take();
 }
 
-std::string render_map(const StudiedMachine& of, const MapRequest& request,
-                       const std::vector<std::vector<MapCell>>& rows, const MeasureInfo& measure,
-                       const TerminalOptions& options) {
+std::string render_map(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+                       const MeasureInfo& measure, const TerminalOptions& options) {
   const auto& all = measures();
   const auto k = static_cast<std::size_t>(
       std::find_if(all.begin(), all.end(), [&](const MeasureInfo& m) { return m.name == measure.name; }) - all.begin());
@@ -124,12 +123,9 @@ std::string render_map(const StudiedMachine& of, const MapRequest& request,
       row.push_back(cell.regime == Regime::sliding ? "slides" : significant(cell.values[k] / measure.si, 3));
     }
   }
-  std::size_t unsettled = 0, cells = 0;
-  for (const auto& row : rows) {
-    cells += row.size();
-    unsettled += static_cast<std::size_t>(
-        std::count_if(row.begin(), row.end(), [](const MapCell& c) { return c.regime == Regime::not_settled; }));
-  }
+  const std::size_t unsettled = count_of(rows, Regime::not_settled);
+  std::size_t cells = 0;
+  for (const auto& row : rows) cells += row.size();
   TerminalText text(options);
   add_machine(of, text);
   add_table(table, text);

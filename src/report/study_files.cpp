@@ -3,11 +3,11 @@
 #include <charconv>
 #include <limits>
 
+#include "campaign/whole_folder.hpp"
 #include "csv_text.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/report/study.hpp"
-#include "whole_folder.hpp"
 
 namespace tribofit {
 namespace {
@@ -98,7 +98,7 @@ std::optional<MapCell> map_cell_from(const std::string& line) {
   MapCell cell;
   std::size_t comma = line.find(',');
   bool named = false;
-  for (const Regime r : {Regime::stick_slip, Regime::vibration, Regime::sliding, Regime::not_settled}) {
+  for (const Regime r : kRegimes) {
     if (line.substr(0, comma) != to_string(r)) continue;
     cell.regime = r;
     named = true;
@@ -182,7 +182,7 @@ std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>&
   return study_text(of, "sensitivity", object("variables", list_of(study, variable), "ranked", order), options);
 }
 
-std::string map_json(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
+std::string map_json(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
                      const JsonOptions& options) {
   const auto axis = [](const MapAxis& a) {
     return object("name", a.variable.name, "unit", a.variable.unit, "values",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <string>
 
@@ -32,6 +33,26 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
                        "let the axis begin and end where there is a machine");
     }
   }
+}
+
+/// Blocks of an axis: the k-th begins at this value, the last ends at the end.
+std::vector<std::size_t> blocks_of(std::size_t count, std::size_t most) {
+  const std::size_t blocks = std::min(count, most);
+  std::vector<std::size_t> begins;
+  for (std::size_t k = 0; k <= blocks; ++k) begins.push_back(k * count / blocks);
+  return begins;
+}
+
+std::vector<double> middles(const std::vector<double>& values, const std::vector<std::size_t>& begins) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
+    out.push_back(0.5 * (values[begins[k]] + values[begins[k + 1] - 1]));
+  }
+  return out;
+}
+
+double value_in(const MapCell& cell, std::size_t measure) {
+  return measure < cell.values.size() ? cell.values[measure] : std::nan("");
 }
 
 }  // namespace
@@ -68,8 +89,7 @@ void compute_map(const MapRequest& request, const std::vector<bool>& done, int t
   });
 }
 
-std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request,
-                                                          const std::vector<std::vector<MapCell>>& rows,
+std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request, const MapRows& rows,
                                                           std::size_t every) {
   std::vector<std::pair<double, double>> edge;
   const auto sticks = [](const MapCell& cell) { return cell.regime == Regime::stick_slip; };
@@ -86,6 +106,47 @@ std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& requ
     }
   }
   return edge;
+}
+
+CoarseMap coarse_map(const MapRequest& request, const MapRows& rows, std::size_t measure, std::size_t most) {
+  const std::vector<std::size_t> across = blocks_of(request.x.values.size(), most),
+                                 down = blocks_of(request.y.values.size(), most);
+  CoarseMap map{middles(request.x.values, across), middles(request.y.values, down), {}};
+  map.z.assign(map.y.size(), std::vector<double>(map.x.size(), std::nan("")));
+  for (std::size_t b = 0; b < map.y.size(); ++b) {
+    for (std::size_t j = down[b]; j < std::min(down[b + 1], rows.size()); ++j) {
+      for (std::size_t a = 0; a < map.x.size(); ++a) {
+        double& largest = map.z[b][a];
+        for (std::size_t i = across[a]; i < std::min(across[a + 1], rows[j].size()); ++i) {
+          const double value = value_in(rows[j][i], measure);
+          if (std::isfinite(value) && !(value <= largest)) largest = value;
+        }
+      }
+    }
+  }
+  return map;
+}
+
+std::optional<MapExtreme> extreme_of(const MapRequest& request, const MapRows& rows, std::size_t measure,
+                                     bool largest) {
+  std::optional<MapExtreme> best;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    for (std::size_t i = 0; i < rows[j].size(); ++i) {
+      const double value = value_in(rows[j][i], measure);
+      if (!std::isfinite(value) || (best && (largest ? value <= best->value : value >= best->value))) continue;
+      best = {value, request.x.values[i], request.y.values[j]};
+    }
+  }
+  return best;
+}
+
+std::size_t count_of(const MapRows& rows, Regime regime) {
+  std::size_t count = 0;
+  for (const std::vector<MapCell>& row : rows) {
+    count += static_cast<std::size_t>(
+        std::count_if(row.begin(), row.end(), [&](const MapCell& c) { return c.regime == regime; }));
+  }
+  return count;
 }
 
 }  // namespace tribofit

@@ -2,26 +2,11 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
-#include "tribofit/campaign/compare.hpp"
-#include "tribofit/campaign/pool.hpp"
-#include "tribofit/campaign/sharing.hpp"
-#include "tribofit/campaign/statements.hpp"
-#include "tribofit/campaign/trends.hpp"
+#include "tribofit/campaign/pooled.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
-
-/// What the runs of a campaign say together.
-struct Pooled {
-  std::vector<PooledGroup> groups;
-  std::vector<SharedFit> shared;
-  Trends trends;
-};
-
-/// Pools the runs. Throws InputError for a sharing that the runs do not allow.
-Pooled pool_campaign(std::span<const RunResult> runs, const Sharing& sharing = {});
 
 /// Writes into the folder of the results, each file whole or not at all:
 /// - pooled.csv: a row for every group of repeats, law, protocol and parameter, and for every measure (law empty)
@@ -33,12 +18,6 @@ void write_pooled(const std::string& folder, std::span<const RunResult> runs, co
 
 /// The same for people: repeats as mean and interval, what is shared, significant trends, what goes together.
 std::string pooled_table(const Pooled& pooled, const TerminalOptions& options = {});
-
-/// A campaign beside published or earlier values.
-struct ComparisonReport {
-  EarlierComparison values;
-  Statements statements;
-};
 
 /// comparison.csv: a row for each pair of an earlier value and one of ours, with their conditions and units.
 std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups);

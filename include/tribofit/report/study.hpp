@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,20 +9,10 @@
 #include "tribofit/study/map.hpp"
 #include "tribofit/study/response.hpp"
 #include "tribofit/study/sensitivity.hpp"
+#include "tribofit/study/studied_machine.hpp"
 #include "tribofit/study/sweep.hpp"
 
 namespace tribofit {
-
-/// What is studied, and where it comes from ("given values", "identified from trace.csv").
-struct StudiedMachine {
-  Machine machine;
-  MachineCovariance covariance;
-  std::string source;
-  std::vector<std::string> notes;
-  double sharpness = 0;  ///< of the smoothed law [s/m]; 0: the event-located law
-  /// From which it was identified, to be drawn beside what is simulated; null: from none.
-  std::shared_ptr<const Identification> record = {};
-};
 
 /// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.
 std::string render_study(const StudiedMachine& of, const SpeedStudy& study, const TerminalOptions& options = {});
@@ -33,9 +22,8 @@ std::string render_study(const StudiedMachine& of, const Response& study, const 
 std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity>& study,
                          const TerminalOptions& options = {});
 /// A map as rows of values of one measure, thinned to what a terminal shows. rows: as computed, y rising.
-std::string render_map(const StudiedMachine& of, const MapRequest& request,
-                       const std::vector<std::vector<MapCell>>& rows, const MeasureInfo& measure,
-                       const TerminalOptions& options = {});
+std::string render_map(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+                       const MeasureInfo& measure, const TerminalOptions& options = {});
 
 /// {"tool", "study": {"kind", "machine", "parameters", ...}}; units are in the names. What is not known is null.
 std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const JsonOptions& options = {});
@@ -43,7 +31,7 @@ std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& st
 std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options = {});
 std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>& study,
                        const JsonOptions& options = {});
-std::string map_json(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
+std::string map_json(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
                      const JsonOptions& options = {});
 
 /// Reports of studies, options.arguments behind the kind. Speed: each measure over speed, up and down, with the
@@ -55,7 +43,7 @@ Report report_of(const StudiedMachine& of, const SpeedStudy& study, const Report
 Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, const ReportOptions& options = {});
 Report report_of(const StudiedMachine& of, const Response& study, const ReportOptions& options = {});
 Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study, const ReportOptions& options = {});
-Report report_of(const StudiedMachine& of, const MapRequest& request, const std::vector<std::vector<MapCell>>& rows,
+Report report_of(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
                  const ReportOptions& options = {});
 
 /// Tables of a study in a folder, made where it is not there: speed.csv; phase_1.csv ... with the start and cycle_1.csv

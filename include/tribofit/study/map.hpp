@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ struct MapRequest {
   SettleOptions settle = {};
 };
 
+/// The cells of a map, a row for each value of y.
+using MapRows = std::vector<std::vector<MapCell>>;
+
 /// Throws InputError where axes are empty, the same, or hold values with which there is no machine: found before any
 /// cell is computed, with the value that cannot be.
 void check_map(const MapRequest& request);
@@ -42,8 +46,23 @@ void compute_map(const MapRequest& request, const std::vector<bool>& done, int t
                  const std::function<bool(std::size_t row, const std::vector<MapCell>& cells)>& on_row);
 
 /// Where stick-slip begins or ends [SI, x then y], halfway between the cells along every `every`-th row and column.
-std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request,
-                                                          const std::vector<std::vector<MapCell>>& rows,
+std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& request, const MapRows& rows,
                                                           std::size_t every = 1);
+
+/// A measure over at most `most` x `most` blocks of cells: the largest value of each, NaN where it holds none [SI].
+struct CoarseMap {
+  std::vector<double> x, y;            ///< middles of the blocks
+  std::vector<std::vector<double>> z;  ///< a row for each y
+};
+CoarseMap coarse_map(const MapRequest& request, const MapRows& rows, std::size_t measure, std::size_t most);
+
+/// The least or the largest value of a measure and where it is [SI]; nothing where no cell has one.
+struct MapExtreme {
+  double value = 0, x = 0, y = 0;
+};
+std::optional<MapExtreme> extreme_of(const MapRequest& request, const MapRows& rows, std::size_t measure, bool largest);
+
+/// Cells in that regime.
+std::size_t count_of(const MapRows& rows, Regime regime);
 
 }  // namespace tribofit

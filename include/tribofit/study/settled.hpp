@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -19,6 +20,7 @@ enum class Regime {
   sliding,      ///< steady sliding: vibration dies out
   not_settled,  ///< none of these within the time given
 };
+inline constexpr std::array kRegimes = {Regime::stick_slip, Regime::vibration, Regime::sliding, Regime::not_settled};
 std::string_view to_string(Regime regime);
 
 /// Settled motion and its measures, those of [C] among them. NaN where the regime has no such thing.

@@ -34,7 +34,7 @@ class MeansChart {
   MeansChart(const DrawnCampaign& of, const OverConditions& over, std::string id, std::string title)
       : of_(of), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
     chart_.note = "Means over repeats; bars: one standard error.";
-    chart_.x = over.axis();
+    chart_.x = axis_over(over);
     chart_.panels.clear();
   }
   /// What add() draws from now on stands in a panel of its own.

@@ -8,6 +8,7 @@
 
 #include "styles.hpp"
 #include "tribofit/campaign/group_values.hpp"
+#include "tribofit/campaign/over_conditions.hpp"
 #include "tribofit/report/campaign.hpp"
 
 namespace tribofit {
@@ -31,26 +32,8 @@ struct DrawnCampaign {
 DrawnCampaign drawn_campaign(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
                              const std::optional<ComparisonReport>& comparison);
 
-/// What groups are drawn over: the condition that takes most values, else their number.
-class OverConditions {
- public:
-  explicit OverConditions(std::span<const PooledGroup> groups);
-
-  const ChartAxis& axis() const { return axis_; }
-  /// Groups of one line, by rising abscissa, and what they have in common ("50 N").
-  struct Series {
-    std::string name;
-    std::vector<std::size_t> groups;
-    std::vector<double> x;
-  };
-  const std::vector<Series>& series() const { return series_; }
-  double x_of(std::size_t group) const { return x_[group]; }
-
- private:
-  ChartAxis axis_;
-  std::vector<Series> series_;
-  std::vector<double> x_;
-};
+/// The abscissa of charts over the conditions.
+ChartAxis axis_over(const OverConditions& over);
 
 /// Adds a line of a value with its error for each series; value: of a group, nothing where there is none.
 void add_over_conditions(const OverConditions& over, const std::string& name, const Stroke& stroke, std::size_t panel,

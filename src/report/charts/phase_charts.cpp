@@ -93,7 +93,7 @@ Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::
 
 std::string regimes_sentence(const std::vector<Portrait>& study) {
   std::string text;
-  for (const Regime regime : {Regime::stick_slip, Regime::vibration, Regime::sliding, Regime::not_settled}) {
+  for (const Regime regime : kRegimes) {
     std::vector<double> at;
     for (const Portrait& p : study) {
       if (p.settled.regime == regime) at.push_back(p.velocity / kMillimetre);
@@ -110,8 +110,7 @@ std::string regimes_sentence(const std::vector<Portrait>& study) {
     }
     text += " mm/s";
   }
-  if (!text.empty() && text[0] >= 'a') text[0] = static_cast<char>(text[0] - 32);
-  return text + ".";
+  return capitalised(text) + ".";
 }
 
 }  // namespace

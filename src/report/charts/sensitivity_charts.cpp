@@ -66,8 +66,7 @@ Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study
     lead += fmt::format("{}{} answers most to {} ({} % for 1 %)", lead.empty() ? "" : "; ", measures()[k].name,
                         study[order.front()].variable.name, elasticity_text(study[order.front()].elasticities[k]));
   }
-  if (!lead.empty()) lead[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(lead[0])));
-  lead += lead.empty() ? "At this machine no measure has an elasticity." : ".";
+  lead = lead.empty() ? "At this machine no measure has an elasticity." : capitalised(lead) + ".";
   Report report = study_report(of, "sensitivity", "Which number matters", std::move(lead), options);
   ReportSection bars{"elasticities", "Ranked elasticities", {}}, sweeps{"sweeps", "Each measure over each number", {}};
   for (std::size_t k = 0; k < measures().size(); ++k) {

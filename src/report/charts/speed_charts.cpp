@@ -58,13 +58,8 @@ void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t
 
 /// What the record says at its own speed; nothing where it does not.
 void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
-  if (!of.record) return;
-  const Segmentation& s = of.record->segmentation;
-  const Estimate* value = measure.name == "frequency"    ? &s.frequency
-                          : measure.name == "stick-time" ? &s.stick_time
-                          : measure.name == "peak-speed" ? &s.amplitude
-                                                         : nullptr;
-  if (value == nullptr || !std::isfinite(value->value)) return;
+  const Estimate* value = measured_value(of, measure);
+  if (value == nullptr) return;
   ChartLine line{.name = "measured", .stroke = dots(Colour::black, Symbol::cross, 9), .bars = true, .panel = panel};
   line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si, 1.96 * value->std_error / measure.si);
   chart.lines.push_back(std::move(line));

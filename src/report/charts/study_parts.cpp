@@ -15,25 +15,6 @@
 namespace tribofit {
 namespace {
 
-/// Standard error of a variable of an identified machine [SI]; NaN where none is known.
-double std_error_of(const StudiedMachine& of, const std::string& variable) {
-  const auto from = [](const std::vector<double>& covariance, std::size_t k) {
-    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
-    const bool known = k < n && covariance[k * n + k] > 0;
-    return known ? std::sqrt(covariance[k * n + k]) : std::nan("");
-  };
-  constexpr const char* kRig[] = {"mass", "damping", "stiffness"};
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (variable == kRig[k]) return from(of.covariance.rig, k);
-  }
-  const auto& slots = of.machine.model.parameters();
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    const std::string name = (slots[k].effect.empty() ? "" : slots[k].effect + ".") + slots[k].parameter.name;
-    if (variable == name) return from(of.covariance.friction, k);
-  }
-  return std::nan("");
-}
-
 ReportTable machine_table(const StudiedMachine& of) {
   ReportTable table("Numbers of the machine");
   table.text({"number"}).numbers({"value", "std error"}).text({"unit", "meaning"});

@@ -5,10 +5,10 @@
 #include <variant>
 #include <vector>
 
+#include "campaign/whole_folder.hpp"
 #include "report/pictures/canvas.hpp"
 #include "report/pictures/draw.hpp"
 #include "report/pictures/layout.hpp"
-#include "report/whole_folder.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/whole_file.hpp"
 
 namespace tribofit {
 

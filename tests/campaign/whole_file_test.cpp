@@ -1,4 +1,4 @@
-#include "tribofit/report/whole_file.hpp"
+#include "tribofit/campaign/whole_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

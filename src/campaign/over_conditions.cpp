@@ -1,0 +1,77 @@
+#include "tribofit/campaign/over_conditions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tribofit/campaign/compare.hpp"
+#include "tribofit/ingest/units.hpp"
+
+namespace tribofit {
+namespace {
+
+struct NumericCondition {
+  Condition Conditions::*which;
+  const char* quantity;
+  const char* unit;
+  double si;
+};
+constexpr std::array kNumeric = {NumericCondition{&Conditions::radius, "friction radius", "mm", kMillimetre},
+                                 NumericCondition{&Conditions::speed, "speed", "rpm", kRpm},
+                                 NumericCondition{&Conditions::load, "load", "N", 1}};
+
+/// Values of a condition that differ by more than what a reading off a plateau does.
+std::size_t count_of_values(std::span<const PooledGroup> groups, Condition Conditions::*which) {
+  constexpr double kSame = 0.02;
+  std::vector<double> values;
+  for (const PooledGroup& group : groups) {
+    const double value = (group.conditions.*which).value;
+    if (!std::isfinite(value)) return 0;
+    values.push_back(value);
+  }
+  std::sort(values.begin(), values.end());
+  std::size_t count = values.empty() ? 0 : 1;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    count += static_cast<std::size_t>(values[k] > (1 + kSame) * values[k - 1]);
+  return count;
+}
+
+/// The conditions of a group without one; nor those that were read off the record.
+std::string without(const PooledGroup& group, Condition Conditions::*which) {
+  Conditions rest = group.conditions;
+  rest.*which = {};
+  if (rest.speed.source == "plateau") rest.speed = {};
+  const bool any = rest.radius.known() || rest.speed.known() || rest.load.known() || !group.others.empty();
+  return any ? conditions_text(rest, group.others) : "";
+}
+
+}  // namespace
+
+OverConditions::OverConditions(std::span<const PooledGroup> groups) {
+  std::size_t most = 1;
+  const NumericCondition* chosen = nullptr;
+  for (const NumericCondition& condition : kNumeric) {
+    const std::size_t count = count_of_values(groups, condition.which);
+    if (count > most) most = count, chosen = &condition;
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    x_.push_back(chosen != nullptr ? (groups[g].conditions.*(chosen->which)).value / chosen->si
+                                   : static_cast<double>(g));
+    const std::string name = chosen != nullptr ? without(groups[g], chosen->which) : "";
+    auto found = std::find_if(series_.begin(), series_.end(), [&](const Series& s) { return s.name == name; });
+    if (found == series_.end()) found = series_.insert(series_.end(), {name, {}, {}});
+    found->groups.push_back(g);
+  }
+  for (Series& one : series_) {
+    std::stable_sort(one.groups.begin(), one.groups.end(), [&](std::size_t a, std::size_t b) { return x_[a] < x_[b]; });
+    for (const std::size_t g : one.groups) one.x.push_back(x_[g]);
+  }
+  if (chosen != nullptr) {
+    quantity_ = chosen->quantity;
+    unit_ = chosen->unit;
+    return;
+  }
+  for (const PooledGroup& group : groups) names_.push_back(conditions_text(group.conditions, group.others));
+}
+
+}  // namespace tribofit

@@ -1,0 +1,38 @@
+#include "tribofit/study/studied_machine.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "tribofit/fit/identification.hpp"
+
+namespace tribofit {
+
+double std_error_of(const StudiedMachine& of, std::string_view variable) {
+  const auto from = [](const std::vector<double>& covariance, std::size_t k) {
+    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+    const bool known = k < n && covariance[k * n + k] > 0;
+    return known ? std::sqrt(covariance[k * n + k]) : std::nan("");
+  };
+  constexpr std::array<std::string_view, 3> kRig = {"mass", "damping", "stiffness"};
+  for (std::size_t k = 0; k < kRig.size(); ++k) {
+    if (variable == kRig[k]) return from(of.covariance.rig, k);
+  }
+  const auto& slots = of.machine.model.parameters();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const std::string name = (slots[k].effect.empty() ? "" : slots[k].effect + ".") + slots[k].parameter.name;
+    if (variable == name) return from(of.covariance.friction, k);
+  }
+  return std::nan("");
+}
+
+const Estimate* measured_value(const StudiedMachine& of, const MeasureInfo& measure) {
+  if (!of.record) return nullptr;
+  const Segmentation& s = of.record->segmentation;
+  const Estimate* value = measure.name == "frequency"    ? &s.frequency
+                          : measure.name == "stick-time" ? &s.stick_time
+                          : measure.name == "peak-speed" ? &s.amplitude
+                                                         : nullptr;
+  return value != nullptr && std::isfinite(value->value) ? value : nullptr;
+}
+
+}  // namespace tribofit
