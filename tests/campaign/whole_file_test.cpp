@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "folder.hpp"
+#include "report/folder.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "diagnosis/conclusions.hpp"
 #include "report/charts/styles.hpp"
 #include "report/diagnosis_sentences.hpp"
 #include "report/numbers.hpp"
@@ -34,16 +35,16 @@ Chart ladder_chart(const DiagnosedTraces& result) {
   chart.x.names = rung_names(d);
   chart.panels[0].axis = error_axis(result);
   chart.panels[0].axis.from_zero = true;
-  const auto above = [&](const Rung& rung) { return std::pow(rung.held_out_rmse, 2) - std::pow(d.floor_rmse, 2); };
   ChartLine line{"held-out error", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
   line.bars = true;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
     const auto x = static_cast<double>(k);
     line.add(x, rung.held_out_rmse, rung.held_out_std_error);
-    const double first = above(d.ladder.front());
-    if (k == 0 || !(first > 0)) continue;
-    chart.labels.push_back({x, rung.held_out_rmse, share_text(std::min(1.0, 1 - above(rung) / first)) + " gone"});
+    const double removed = k == 0 ? std::nan("") : removed_at(d, k);
+    if (std::isfinite(removed)) {
+      chart.labels.push_back({x, rung.held_out_rmse, share_text(removed) + " gone"});
+    }
   }
   chart.lines.push_back(std::move(line));
   chart.marks.push_back({d.floor_rmse, false, Dash::dashed, "noise floor " + significant(d.floor_rmse, 3)});
