@@ -15,18 +15,6 @@ namespace {
 
 constexpr std::size_t kDrawnTraces = 8;
 
-/// Each status as people read it; JSON has its own words.
-std::string_view status_text(EffectStatus status) {
-  switch (status) {
-    case EffectStatus::found:
-      return "found";
-    case EffectStatus::unsupported:
-      return "not supported by the data";
-    default:
-      return to_string(status);
-  }
-}
-
 ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
   table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});

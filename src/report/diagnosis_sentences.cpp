@@ -170,6 +170,17 @@ std::string final_model_command(const DiagnosedTraces& result, const TerminalOpt
 
 }  // namespace
 
+std::string_view status_text(EffectStatus status) {
+  switch (status) {
+    case EffectStatus::found:
+      return "found";
+    case EffectStatus::unsupported:
+      return "not supported by the data";
+    default:
+      return to_string(status);
+  }
+}
+
 std::string level_unit(const DiagnosedTraces& result) {
   return result.traces.empty() ? "" : unit_behind(friction_unit(result.traces.front().motion));
 }

@@ -139,6 +139,11 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
   return text;
 }
 
+std::string with_subscript(const std::string& name) {
+  const std::size_t at = name.find('_');
+  return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
+}
+
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
   return text;

@@ -75,6 +75,9 @@ std::string unit_behind(const std::string& unit);
 /// "a", "a and b", "a, b and c".
 std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
 
+/// "mu_s" as markup: "mu_{s}".
+std::string with_subscript(const std::string& name);
+
 /// "Most"; the rest of the text as it is.
 std::string capitalised(std::string text);
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "campaign_parts.hpp"
+#include "report/numbers.hpp"
 #include "report/study_sentences.hpp"
 
 namespace tribofit {
@@ -34,7 +35,7 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
       }
       if (!line.x.empty()) chart.lines.push_back(std::move(line));
     }
-    if (!name.empty()) chart.panels.push_back({.axis = {.quantity = name, .unit = unit}});
+    if (!name.empty()) chart.panels.push_back({.axis = {.quantity = with_subscript(name), .unit = unit}});
   }
   chart.height = 110 + 130 * static_cast<int>(chart.panels.size());
   return chart;

@@ -54,7 +54,7 @@ class MeansChart {
     add_earlier(of_, over_, name, chart_.panels.size() - 1, chart_);
     return *this;
   }
-  Chart chart(int height, const char* note = "") const {
+  Chart chart(int height, const std::string& note = "") const {
     Chart out = chart_;
     out.height = height;
     out.note += note;
@@ -124,12 +124,15 @@ Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over
             return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, v.name));
           };
         };
-        chart.panel(fmt::format("{}, {} law", v.name, fit.law), v.unit).add("joint fit", 0, value_by("joint"));
+        chart.panel(with_subscript(v.name), v.unit).add("joint fit", 0, value_by("joint"));
         chart.add("per-cycle extremes", 1, value_by("published")).earlier(v.name);
       }
     }
   }
-  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())));
+  std::string note = " From top to bottom: ";
+  for (const auto& [law, name] : drawn)
+    note += (&law == &drawn.front().first ? "" : ", ") + name + " of the " + law + " law";
+  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())), note + ".");
 }
 
 /// A chart with a panel for each of the groups shown.

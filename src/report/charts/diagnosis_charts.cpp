@@ -109,7 +109,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     std::stable_sort(own.begin(), own.end(), [](const EffectFinding* a, const EffectFinding* b) {
       return a->held_out_rmse < b->held_out_rmse;
     });
-    ChartLine line{std::string(to_string(status)), {}, {}, stroke};
+    ChartLine line{std::string(status_text(status)), {}, {}, stroke};
     line.bars = true;
     for (const EffectFinding* finding : own) {
       line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);

@@ -121,15 +121,24 @@ void CairoCanvas::write(const Words& words) {
   cairo_translate(cairo_, across(words.at.x), down(words.at.y));
   if (words.upright) cairo_rotate(cairo_, -std::acos(0.0));
   cairo_translate(cairo_, -width * static_cast<double>(words.anchor) / 2, kHalfOfCapital * words.points);
-  use({});
-  cairo_move_to(cairo_, 0, 0);
-  for (const TextPiece& piece : pieces) {
-    const double rise = piece.level * kScriptRise * words.points;
-    set_size(piece);
-    cairo_rel_move_to(cairo_, 0, -rise);
-    cairo_show_text(cairo_, piece.text.c_str());
-    cairo_rel_move_to(cairo_, 0, rise);
+  const auto show = [&](void (*text)(cairo_t*, const char*)) {
+    cairo_move_to(cairo_, 0, 0);
+    for (const TextPiece& piece : pieces) {
+      const double rise = piece.level * kScriptRise * words.points;
+      set_size(piece);
+      cairo_rel_move_to(cairo_, 0, -rise);
+      text(cairo_, piece.text.c_str());
+      cairo_rel_move_to(cairo_, 0, rise);
+    }
+  };
+  if (words.halo) {
+    show(cairo_text_path);
+    use({"#ffffff"});
+    cairo_set_line_width(cairo_, kHalo);
+    cairo_stroke(cairo_);
   }
+  use({});
+  show(cairo_show_text);
   cairo_new_path(cairo_);
   cairo_restore(cairo_);
 }

@@ -29,6 +29,8 @@ struct Pen {
   std::vector<double> dashes = {};  ///< [pt]
 };
 
+inline constexpr double kHalo = 2;  ///< width of the pen behind letters that have one [pt]
+
 enum class Anchor { left, centre, right };
 
 struct Words {
@@ -38,6 +40,7 @@ struct Words {
   double points = kTextPoints;
   bool upright = false;  ///< read from below
   bool markup = true;    ///< "v_{r}" has a subscript
+  bool halo = false;     ///< white around the letters, over what is drawn there
 };
 
 class Canvas {

@@ -85,7 +85,7 @@ void Drawing::draw_axes(const PanelFrame& f) {
 
 /// The words of level marks stand above them.
 void Drawing::draw_marks(const PanelFrame& f, std::size_t panel) {
-  constexpr double kLine = 3, kHalf = 1.6, kBeside = 0.8;
+  constexpr double kHalf = 1.6;
   const double left = f.area.left, right = left + f.area.width, bottom = f.area.bottom, top = bottom + f.area.height;
   for (const ChartMark& mark : chart_.marks) {
     const Pen pen{kMark, 0.6, pen_of({.dash = mark.dash}).dashes};
@@ -98,35 +98,18 @@ void Drawing::draw_marks(const PanelFrame& f, std::size_t panel) {
     const double y = f.up(mark.at);
     line({left, y}, {right, y}, pen);
     if (mark.text.empty()) continue;
-    canvas_.write(
-        {mark.text, {left + kBeside, y + (top - y < kLine ? -kHalf : kHalf)}, Anchor::left, kSmallTextPoints});
+    canvas_.write({.text = mark.text,
+                   .at = {left + kBesideMark, y + (top - y < kMarkLine ? -kHalf : kHalf)},
+                   .points = kSmallTextPoints,
+                   .halo = true});
   }
 }
 
-/// Words at upright marks stand in rows at the top, so that none lies upon another.
 void Drawing::draw_upright_words(const PanelFrame& f) {
-  constexpr double kLine = 3, kHalf = 1.6, kBeside = 0.8;
-  std::vector<const ChartMark*> upright;
-  for (const ChartMark& mark : chart_.marks) {
-    const double part = f.x.part(mark.at);
-    if (mark.upright && !mark.text.empty() && part >= 0 && part <= 1) upright.push_back(&mark);
-  }
-  const auto place = [&](std::size_t k) { return f.x.part(upright[k]->at) * f.area.width; };
-  std::sort(upright.begin(), upright.end(),
-            [&](const ChartMark* a, const ChartMark* b) { return f.x.part(a->at) < f.x.part(b->at); });
-  std::vector<double> taken;  // right ends of the words in each row
-  for (std::size_t k = 0; k < upright.size(); ++k) {
-    const double width = width_of(upright[k]->text, kSmallTextPoints), x = place(k);
-    // To the right where no other line stands in the way, else to the left where that is free.
-    const double next = k + 1 < upright.size() ? place(k + 1) : f.area.width, before = k > 0 ? place(k - 1) : 0;
-    const double ends = x + kBeside + width, begins = x - kBeside - width;
-    const double from = ends > f.area.width || (ends > next && begins >= before) ? begins : x + kBeside;
-    std::size_t row = 0;
-    while (row < taken.size() && taken[row] > from) ++row;
-    if (row == taken.size()) taken.push_back(0);
-    taken[row] = from + width + 1;
-    const double y = f.area.bottom + f.area.height - kHalf - kLine * static_cast<double>(row);
-    canvas_.write({upright[k]->text, {f.area.left + from, y}, Anchor::left, kSmallTextPoints});
+  for (const UprightWords& words : layout_.upright_words) {
+    const double y = f.area.bottom + f.area.height - kMarkLine * (static_cast<double>(words.row) + 0.5);
+    canvas_.write(
+        {.text = words.mark->text, .at = {f.area.left + words.from, y}, .points = kSmallTextPoints, .halo = true});
   }
 }
 
@@ -139,7 +122,11 @@ void Drawing::draw_labels(const PanelFrame& f, std::size_t panel) {
     const double half = std::min(width_of(label.text, kSmallTextPoints), f.area.width) / 2;
     const double middle = std::clamp(at.x, f.area.left + half, f.area.left + f.area.width - half);
     const bool below = f.area.bottom + f.area.height - at.y < kAbove + 1.5;
-    canvas_.write({label.text, {middle, at.y + (below ? -kAbove : kAbove)}, Anchor::centre, kSmallTextPoints});
+    canvas_.write({.text = label.text,
+                   .at = {middle, at.y + (below ? -kAbove : kAbove)},
+                   .anchor = Anchor::centre,
+                   .points = kSmallTextPoints,
+                   .halo = true});
   }
 }
 

@@ -173,6 +173,7 @@ void add_colours(const Chart& chart, PictureLayout& layout, double height) {
 void place_across(const Chart& chart, PictureLayout& layout, const std::vector<double>& heights) {
   double tics = 0;
   std::size_t lines = 0;
+  layout.titles.clear();
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
     shorten_names(layout.y[k], 0.42 * kPictureWidth);
     tics = std::max(tics, widest(layout.y[k]));
@@ -194,6 +195,45 @@ void place_across(const Chart& chart, PictureLayout& layout, const std::vector<d
     area.left = left;
     area.width = right - left;
   }
+}
+
+/// Words at upright marks stand in rows at the top, so that none lies upon another.
+std::vector<UprightWords> place_upright_words(const Chart& chart, const Scale& x, double panel_width) {
+  std::vector<UprightWords> words;
+  for (const ChartMark& mark : chart.marks) {
+    const double part = x.part(mark.at);
+    if (mark.upright && !mark.text.empty() && part >= 0 && part <= 1) words.push_back({&mark, part * panel_width, 0});
+  }
+  std::sort(words.begin(), words.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
+  std::vector<double> taken;  // right ends of the words in each row
+  double before = 0;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const double at = words[k].from, width = width_of(words[k].mark->text, kSmallTextPoints);
+    // To the right where no other line stands in the way, else to the left where that is free.
+    const double next = k + 1 < words.size() ? words[k + 1].from : panel_width;
+    const double ends = at + kBesideMark + width, begins = at - kBesideMark - width;
+    const double from = ends > panel_width || (ends > next && begins >= before) ? begins : at + kBesideMark;
+    std::size_t& row = words[k].row;
+    while (row < taken.size() && taken[row] > from) ++row;
+    if (row == taken.size()) taken.push_back(0);
+    taken[row] = from + width + 1;
+    words[k].from = from;
+    before = at;
+  }
+  return words;
+}
+
+/// The first panel has room for the words at upright marks above its data.
+ChartAxis with_room_for_words(const ChartAxis& axis, const Scale& scale, const PictureLayout& layout, double height) {
+  constexpr double kMostRoom = 0.4;
+  ChartAxis wider = axis;
+  std::size_t rows = 0;
+  for (const UprightWords& words : layout.upright_words) rows = std::max(rows, words.row + 1);
+  if (rows == 0 || scale.named || scale.falling || std::isfinite(axis.high)) return wider;
+  const double factor = 1 / (1 - std::min(kMostRoom, static_cast<double>(rows) * kMarkLine / height));
+  wider.high = scale.logarithmic ? scale.low * std::pow(scale.high / scale.low, factor)
+                                 : scale.low + factor * (scale.high - scale.low);
+  return wider;
 }
 
 /// Number of tics that have room beside each other.
@@ -265,18 +305,24 @@ PictureLayout layout_of(const Chart& chart) {
   const std::vector<double> heights = heights_of(chart);
   layout.panels.resize(heights.size());
   layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart), 5);
-  for (std::size_t k = 0; k < heights.size(); ++k) {
-    const double margin = chart.map ? 0 : 0.05;
+  const auto scale_up = [&](std::size_t k, const ChartAxis& axis) {
     const int most = std::max(3, static_cast<int>(heights[k] / 6));
-    layout.y.push_back(scale_of(chart.panels[k].axis, extent_of_panel(chart, k, layout.x), margin, most));
-  }
+    return scale_of(axis, extent_of_panel(chart, k, layout.x), chart.map ? 0 : 0.05, most);
+  };
+  for (std::size_t k = 0; k < heights.size(); ++k) layout.y.push_back(scale_up(k, chart.panels[k].axis));
   if (chart.map) add_colours(chart, layout, heights.front());
   layout.keys = keys_of(chart);
   place_across(chart, layout, heights);
-  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart),
-                      tics_across(chart, layout.panels.front().width));
+  const double width = layout.panels.front().width;
+  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart), tics_across(chart, width));
   const double names = place_names(layout);
   keep_last_tic_inside(layout);
+  layout.upright_words = place_upright_words(chart, layout.x, layout.panels.front().width);
+  if (!layout.upright_words.empty()) {
+    layout.y[0] = scale_up(0, with_room_for_words(chart.panels[0].axis, layout.y[0], layout, heights[0]));
+    place_across(chart, layout, heights);
+    keep_last_tic_inside(layout);
+  }
   place_upwards(layout, heights, place(layout.keys), names);
   return layout;
 }

@@ -27,6 +27,16 @@ struct Key {
 };
 inline constexpr double kKeySample = 6, kKeyGap = 1;
 
+/// Words beside marks: height of a line of them, and how far they keep from their mark.
+inline constexpr double kMarkLine = 3, kBesideMark = 0.8;
+
+/// Words at an upright mark: where they begin, from the left edge of the panel, and in which row from the top.
+struct UprightWords {
+  const ChartMark* mark;
+  double from;
+  std::size_t row;
+};
+
 /// A title along an axis: one line, or two where it is too long.
 using TitleLines = std::vector<std::string>;
 
@@ -38,7 +48,8 @@ struct PictureLayout {
   std::vector<TitleLines> titles;
   double title_x = 0;  ///< middle of the first line of the titles of the panels
   double x_title_y = 0;
-  bool upright_names = false;  ///< those of the abscissa stand on end
+  bool upright_names = false;               ///< those of the abscissa stand on end
+  std::vector<UprightWords> upright_words;  ///< in the first panel
   std::vector<Key> keys;
   Scale colours;  ///< of the map
   Area colour_box;

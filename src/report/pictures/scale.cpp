@@ -44,9 +44,13 @@ double step_for(double width, int most) {
 }
 
 void add_even_tics(Scale& scale, int most) {
-  const double step = step_for(scale.high - scale.low, most);
+  constexpr int kMore = 3;  // one tic alone shows no scale
   const double largest = std::max(std::abs(scale.low), std::abs(scale.high));
-  const double first = std::ceil(scale.low / step - 1e-6), last = std::floor(scale.high / step + 1e-6);
+  double step = 0, first = 0, last = 0;
+  for (const int up_to = most + kMore; most <= up_to && last - first < 1; ++most) {
+    step = step_for(scale.high - scale.low, most);
+    first = std::ceil(scale.low / step - 1e-6), last = std::floor(scale.high / step + 1e-6);
+  }
   for (int k = 0; k <= most && first + k <= last; ++k) {
     scale.tics.push_back({(first + k) * step, tic_text((first + k) * step, step, largest)});
   }

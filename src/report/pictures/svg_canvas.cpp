@@ -109,8 +109,15 @@ void SvgCanvas::write(const Words& words) {
   const std::string place =
       words.upright ? fmt::format("transform=\"translate({},{}) rotate(-90)\"", number(x + lower), number(y))
                     : fmt::format("x=\"{}\" y=\"{}\"", number(x), number(y + lower));
-  say("<text {} font-size=\"{}\" text-anchor=\"{}\">{}</text>", place, number(words.points),
-      kAnchors[static_cast<int>(words.anchor)], text);
+  const auto say_text = [&](const std::string& style) {
+    say("<text {} font-size=\"{}\" text-anchor=\"{}\"{}>{}</text>", place, number(words.points),
+        kAnchors[static_cast<int>(words.anchor)], style, text);
+  };
+  if (words.halo) {
+    say_text(fmt::format(R"( fill="#fff" stroke="#fff" stroke-width="{}" stroke-linejoin="round" aria-hidden="true")",
+                         kHalo));
+  }
+  say_text("");
 }
 
 }  // namespace
