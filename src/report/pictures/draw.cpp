@@ -22,6 +22,7 @@ class Drawing {
   void draw_ground(const PanelFrame& f);
   void draw_axes(const PanelFrame& f);
   void draw_marks(const PanelFrame& f, std::size_t panel);
+  std::size_t points_in(const Area& area, const PanelFrame& f, std::size_t panel) const;
   void draw_upright_words(const PanelFrame& f);
   void draw_labels(const PanelFrame& f, std::size_t panel);
   void draw_numbers();
@@ -83,9 +84,23 @@ void Drawing::draw_axes(const PanelFrame& f) {
   canvas_.stroke(lines, {});
 }
 
-/// The words of level marks stand above them.
+/// Points of the lines of a panel within an area.
+std::size_t Drawing::points_in(const Area& area, const PanelFrame& f, std::size_t panel) const {
+  std::size_t count = 0;
+  for (const ChartLine& one : chart_.lines) {
+    if (!one.shown || one.panel != panel) continue;
+    for (std::size_t k = 0; k < std::min(one.x.size(), one.y.size()); ++k) {
+      const Point at = f.at(one.x[k], one.y[k]);
+      count += static_cast<std::size_t>(at.x >= area.left && at.x <= area.left + area.width && at.y >= area.bottom &&
+                                        at.y <= area.bottom + area.height);
+    }
+  }
+  return count;
+}
+
+/// The words of level marks stand above them, at the end where they hide less.
 void Drawing::draw_marks(const PanelFrame& f, std::size_t panel) {
-  constexpr double kHalf = 1.6;
+  constexpr double kHalf = 1.6, kReach = 1;  // half a line of text, half a large symbol
   const double left = f.area.left, right = left + f.area.width, bottom = f.area.bottom, top = bottom + f.area.height;
   for (const ChartMark& mark : chart_.marks) {
     const Pen pen{kMark, 0.6, pen_of({.dash = mark.dash}).dashes};
@@ -98,8 +113,14 @@ void Drawing::draw_marks(const PanelFrame& f, std::size_t panel) {
     const double y = f.up(mark.at);
     line({left, y}, {right, y}, pen);
     if (mark.text.empty()) continue;
+    const double width = width_of(mark.text, kSmallTextPoints);
+    const double low = top - y < kMarkLine ? y - 2 * kHalf : y;
+    const double first = left + kBesideMark, last = right - kBesideMark - width;
+    const auto hidden = [&](double from) {
+      return points_in({from - kReach, low - kReach, width + 2 * kReach, 2 * (kHalf + kReach)}, f, panel);
+    };
     canvas_.write({.text = mark.text,
-                   .at = {left + kBesideMark, y + (top - y < kMarkLine ? -kHalf : kHalf)},
+                   .at = {hidden(first) > hidden(last) ? last : first, low + kHalf},
                    .points = kSmallTextPoints,
                    .halo = true});
   }
