@@ -94,6 +94,7 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   if (out.rungs.empty()) return out;
   for (const TraceInput& input : more.confirm)
     out.diagnosis.confirmations.push_back(diagnosis::confirm(prepared(input).trace, out.rungs));
+  diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);
   return out;
 }
 

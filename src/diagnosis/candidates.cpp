@@ -25,8 +25,22 @@ struct Excitation {
   double longest_stick_ratio = 1;  ///< third longest over the median
   double median_stick_time = 0;
   bool breaks_away = false;
-  bool force_known = false;  ///< the load is known or friction is a force
+  bool speed_changes = false;  ///< within a record, by more than its noise
+  bool force_known = false;    ///< the load is known or friction is a force
 };
+
+/// v_r moves within the record by more than its noise. It is compared over values, which may be means of samples.
+bool speed_changes(const Record& record, const Observations& observations, std::size_t index) {
+  std::vector<double> speeds;
+  for (const auto& slip : observations.slips) {
+    if (slip.record != index) continue;
+    for (std::size_t i = slip.begin; i < slip.end; ++i) speeds.push_back(std::abs(observations.velocity[i]));
+  }
+  if (speeds.empty()) return false;
+  const double spread = quantile(speeds, 0.95) - quantile(speeds, 0.05);
+  return spread > limits::kSpeedSigmas * record.motion->velocity_noise &&
+         spread > limits::kLeastSpeedSpread * median(std::move(speeds));
+}
 
 Excitation excitation_of(std::span<const Record> records, const Observations& observations) {
   Excitation out;
@@ -38,6 +52,10 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
     if (std::isfinite(slip.stick_time) && slip.stick_time > 0) sticks.push_back(slip.stick_time);
   }
   out.both_directions = forth && back;
+  out.speed_changes = out.breaks_away;
+  for (std::size_t r = 0; r < records.size() && !out.speed_changes; ++r) {
+    out.speed_changes = speed_changes(records[r], observations, r);
+  }
   if (sticks.size() >= limits::kFewestSticks) {
     out.median_stick_time = median(sticks);
     out.stick_time_ratio = quantile(sticks, 0.95) / quantile(sticks, 0.05);
@@ -91,23 +109,20 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
                : std::string("too few stick times were recorded");
   }
   if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";
+  if (info.excitation.changing_speed && !seen.speed_changes) {
+    return "v_r does not change within a record: nothing excites a memory";
+  }
   const std::string& purpose = info.excitation.break_away;
   if (!purpose.empty() && !seen.breaks_away) return "there is no break-away " + purpose;
   return {};
 }
 
-double scale_of(const Parameter& parameter, const Observations& observations) {
-  return parameter.si * (parameter.scales_with_friction || parameter.bounds_scale_with_force
-                             ? std::max(1.0, observations.largest_friction)
-                             : 1.0);
-}
-
-/// Values over the bounds from which a search begins, in SI.
-std::vector<double> grid_of(const Parameter& parameter, double lower, double upper, const Observations& observations) {
+/// Values over the bounds from which a search begins, in SI. parameter: see on_scale_of().
+std::vector<double> grid_of(const Parameter& parameter, double lower, double upper) {
   if (parameter.start_grid_points < 2) {
     const double neutral = std::isnan(parameter.neutral) ? parameter.start : parameter.neutral;
     const bool inside = neutral > parameter.lower && neutral < parameter.upper;
-    return {std::clamp((inside ? neutral : parameter.start) * scale_of(parameter, observations), lower, upper)};
+    return {std::clamp((inside ? neutral : parameter.start) * parameter.si, lower, upper)};
   }
   std::vector<double> values;
   const auto n = static_cast<double>(parameter.start_grid_points);
@@ -175,8 +190,8 @@ struct ParameterStarts {
   double places = 1;
 };
 
-ParameterStarts starts_at_line(const Parameter& parameter, const SpectralLine& line) {
-  return {{line.frequency > 0 ? line.frequency : parameter.start}, line.places};
+ParameterStarts starts_at_lines(const Parameter& parameter, const SpectralLines& lines) {
+  return {lines.frequencies.empty() ? std::vector<double>{parameter.start} : lines.frequencies, lines.places};
 }
 
 /// bounds: in SI; longest: the end of the longest record [s].
@@ -185,17 +200,18 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
                                     std::span<const double> residual) {
   switch (parameter.search) {
     case ParameterSearch::steady_line:
-      return starts_at_line(parameter, strongest_line(first, observations, residual, parameter.lower, parameter.upper));
+      return starts_at_lines(parameter,
+                             strongest_lines(first, observations, residual, parameter.lower, parameter.upper));
     case ParameterSearch::ringing_line:
-      return starts_at_line(parameter, strongest_ringing(observations, residual,
-                                                         std::max(parameter.lower, lowest_ringing(observations))));
+      return starts_at_lines(parameter, strongest_ringing(observations, residual,
+                                                          std::max(parameter.lower, lowest_ringing(observations))));
     case ParameterSearch::moment_of_change:
       return {change_points(observations, residual), static_cast<double>(observations.slips.size())};
     case ParameterSearch::grid:
       break;
   }
   if (parameter.within_record) bounds.upper = std::min(bounds.upper, std::max(2 * longest, bounds.lower * 1.5));
-  return {grid_of(parameter, bounds.lower, bounds.upper, observations)};
+  return {grid_of(parameter, bounds.lower, bounds.upper)};
 }
 
 }  // namespace
@@ -240,8 +256,9 @@ Starts starts_of(const Candidate& candidate, std::span<const Record> records, co
   for (const Record& record : records) last = std::max(last, record.motion->time.back());
   const auto& parameters = candidate.info.parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const ParameterStarts own = starts_of_parameter(parameters[k], {bounds.lower[first + k], bounds.upper[first + k]},
-                                                    last, records[0], observations, residual);
+    const ParameterStarts own = starts_of_parameter(on_scale_of(parameters[k], observations),
+                                                    {bounds.lower[first + k], bounds.upper[first + k]}, last,
+                                                    records[0], observations, residual);
     std::vector<std::vector<double>> all;
     for (const auto& start : out.values) {
       for (const double value : own.values) {

@@ -6,6 +6,7 @@
 
 #include "base_law.hpp"
 #include "findings.hpp"
+#include "fit/fit_laws.hpp"
 #include "limits.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -106,7 +107,9 @@ Ladder reported_of(const DiagnosisContext& context, const std::vector<Law>& laws
   return std::move(ladders[reported_ladder(context, ladders)]);
 }
 
-/// Fits every rung as `identify` does. A rung that cannot be fitted at full resolution ends the ladder below it.
+/// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
+/// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that
+/// held-out errors at full resolution do not bear out, ends the ladder below it.
 std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, const FitOptions& options,
                            Ladder& ladder) {
   std::vector<Fit> fits(ladder.steps.size());
@@ -114,11 +117,23 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
     const Trial& trial = ladder.steps[k].trial;
     FitOptions warm = options;
     warm.start = trial.p;
+    if (k == 0 || k + 1 == ladder.steps.size()) {
+      const Observations own = observations_for(trial.model, context.records);
+      fits[k] = fit_model(trial.model, context.records, own, instruments, warm);
+      return;
+    }
     fits[k] = fit_model(trial.model, context.records, context.fine.observations, instruments, warm);
   });
-  const auto failed = std::find_if(fits.begin() + 1, fits.end(), [](const Fit& rung) {
-    return rung.parameters.empty() || !(rung.error.held_out_rmse > 0);
+  const auto failed = std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& rung) {
+    const Fit& below = *(&rung - 1);
+    return rung.parameters.empty() || !(rung.error.held_out_rmse < below.error.held_out_rmse);
   });
+  if (failed != fits.end() && failed - fits.begin() > 1) {  // the new last rung
+    Fit& last = *(failed - 1);
+    FitOptions warm = options;
+    warm.start = last.values();
+    last = fit_model(last.model, context.records, observations_for(last.model, context.records), instruments, warm);
+  }
   ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
   fits.erase(failed, fits.end());
   return fits;
@@ -159,10 +174,24 @@ std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& a
   return rungs;
 }
 
+/// Effects that may explain what remains, and are not proven to.
+std::string possible_effects(const Diagnosis& diagnosis) {
+  std::string keys;
+  for (const EffectFinding& finding : diagnosis.effects) {
+    if (finding.status == EffectStatus::possible) keys += (keys.empty() ? "" : ", ") + finding.key;
+  }
+  return keys;
+}
+
 /// Far above the floor, an error that goes with no variable of these data is not explained either.
 void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
   const bool added = fits.size() > 1;
   diagnosis.verdict = structured ? Verdict::unexplained : added ? Verdict::effect_found : Verdict::sufficient;
+  if (const std::string possible = possible_effects(diagnosis); !possible.empty()) {
+    diagnosis.verdict = Verdict::unexplained;
+    diagnosis.messages.push_back(possible + " may explain what remains; these data do not prove it");
+    return;
+  }
   const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
   const double left_over = fits.back().error.held_out_rmse / diagnosis.floor_rmse;
   if (structured || !(left_over > far)) return;
@@ -183,6 +212,8 @@ std::string_view to_string(Verdict verdict) {
       return "effect-found";
     case Verdict::unexplained:
       return "unexplained";
+    case Verdict::unconfirmed:
+      return "unconfirmed";
     case Verdict::not_enough_data:
       break;
   }
@@ -195,6 +226,8 @@ std::string_view to_string(EffectStatus status) {
       return "missing";
     case EffectStatus::equivalent:
       return "equivalent";
+    case EffectStatus::possible:
+      return "possible";
     case EffectStatus::superseded:
       return "superseded";
     case EffectStatus::unsupported:

@@ -1,5 +1,7 @@
 #include "diagnose_traces.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -173,6 +175,19 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
   }
   for (PreparedTrace& prepared : traces) out.traces.push_back(std::move(prepared.trace));
   return out;
+}
+
+void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis) {
+  constexpr double kChance = 0.05;  // one run that bears a finding out fails by chance once in twenty
+  if (diagnosis.verdict != Verdict::effect_found) return;
+  for (const Confirmation& run : confirmations) {
+    if (!std::isfinite(run.final_rmse) || (run.final_rmse < run.base_rmse && run.p_value < kChance)) continue;
+    diagnosis.verdict = Verdict::unconfirmed;
+    diagnosis.messages.push_back(
+        fmt::format("{} does not bear out what was found: there the error goes from {:.4g} to "
+                    "{:.4g} (p = {:.2g})",
+                    run.path, run.base_rmse, run.final_rmse, run.p_value));
+  }
 }
 
 Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs) {

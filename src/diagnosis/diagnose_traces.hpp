@@ -38,4 +38,8 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
 /// The last rung against the base law on a trace that was held back, every parameter frozen.
 Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs);
 
+/// A confirmation that fails vetoes what was found: on a run that was held back the last rung is no better than the
+/// base law, or no better than chance would have it.
+void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis);
+
 }  // namespace tribofit::diagnosis

@@ -142,12 +142,27 @@ void describe_last_trial(const FindingInputs& in, const LastJudged& last, Effect
   finding.error_reduction = reduction(in, before, squared);
 }
 
+/// It would take away much of what is left above the noise, and what stands against it is chance alone.
+bool is_possible(const FindingInputs& in, const LastJudged& last) {
+  if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
+  const CandidateResult& judged = *last.judged;
+  const double excess = in.ladder.top().held_out_squares - in.context.noise_squares();
+  return judged.plausible && judged.p_value < limits::kChanceOfPossible && judged.size > limits::kLeastPossible &&
+         judged.fall > limits::kPossiblePart * excess;
+}
+
 /// Status and reason of a candidate that may not be on the ladder.
 void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last, EffectFinding& finding) {
   finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::unsupported;
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
                    : last.judged != nullptr ? why_not(*last.judged, in.all[k])
                                             : "it promises no fall of the error";
+  if (finding.status == EffectStatus::unsupported && is_possible(in, last)) {
+    finding.status = EffectStatus::possible;
+    finding.reason =
+        fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to tell: {}",
+                    last.judged->p_value, in.all[k].info.experiment);
+  }
   if (!contains(in.ladder.withdrawn, k)) return;
   finding.status = EffectStatus::unsupported;
   finding.reason = "more remains over its variable than it explains: its name would be wrong";

@@ -4,17 +4,19 @@
 #include <cmath>
 #include <utility>
 
+#include "fit/starts.hpp"
 #include "spectral_lines.hpp"
+#include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
 
 namespace {
 
 /// The data draw a parameter that is on its bound beyond it: a tenth of its range inside, the others following, the
-/// squares are larger than chance would make them.
-bool is_drawn_beyond(const Trial& trial, std::size_t k, double least_squares) {
-  const Parameter& q = trial.model.parameters()[k].parameter;
+/// squares are larger than chance would make them. q: the parameter on the scale of the record.
+bool is_drawn_beyond(const Trial& trial, std::size_t k, const Parameter& q, double least_squares) {
   const double range = (q.upper - q.lower) * q.si, middle = 0.5 * (q.upper + q.lower) * q.si;
   Linearised inside = trial.linear;
   const double before = sum(squares_after(inside, gauss_newton_step(inside)));
@@ -31,11 +33,11 @@ bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Can
   const std::size_t offset = trial.model.offset_of(info.key);
   if (candidate.allowed && !candidate.allowed->holds(trial.p[offset])) return false;
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
-    const Parameter& q = info.parameters[k];
+    const Parameter q = on_scale_of(info.parameters[k], context.fine.observations);
     const bool decisive = k == 0 || q.decisive;
     const bool away =
         k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > limits::kAwayFromNone * (q.upper - q.lower) * q.si;
-    const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, noise);
+    const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, q, noise);
     if (decisive && trial.at_bound[offset + k] && !flat) return false;
     const bool too_slow =
         q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(context.fine.observations);
@@ -61,19 +63,32 @@ Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, 
   return out;
 }
 
-/// Whether an effect of the stick time explains what otherwise is scatter of break-away from cycle to cycle.
+/// That the held-out losses of the cycles fall by chance: their differences, cycle by cycle, with a long-run variance.
+/// A second effect that is missing too makes what is left look correlated, which the F test counts against every
+/// candidate; what both models leave alike is not in the differences.
+double paired_p_value(const Trial& poorer, const Trial& richer) {
+  if (poorer.held_out.size() != richer.held_out.size()) return 1;
+  std::vector<double> falls(richer.held_out.size());
+  for (std::size_t c = 0; c < falls.size(); ++c) falls[c] = poorer.held_out[c] - richer.held_out[c];
+  const Estimate fall = mean_with_error(falls);
+  if (!(fall.value > 0) || !(fall.std_error > 0)) return 1;
+  return 0.5 * t_p_value(fall.value / fall.std_error, fall.degrees_of_freedom);
+}
+
+/// The same for an effect of the stick time, which explains what otherwise is scatter of break-away from cycle to
+/// cycle.
 ///
 /// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
 /// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
 /// Here the squares themselves are compared, with the correlation between cycles as it is.
-bool passes_by_level(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info, double tests,
-                     const Limits& least, double floor) {
+double level_p_value(const Level& level, const Trial& poorer, const Trial& trial, const EffectInfo& info,
+                     double floor) {
   const double fall = poorer.plain_minimum - trial.plain_minimum;
-  if (poorer.plain_held_out - trial.plain_held_out <= limits::kLeastSizeOfLevel * floor) return false;
+  if (poorer.plain_held_out - trial.plain_held_out <= limits::kLeastSizeOfLevel * floor) return 1;
   const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
   const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
-  return 2 * tests * fall_p_value(fall, added.free, noise, added.design_effect, freedom) < least.p_value;
+  return fall_p_value(fall, added.free, noise, added.design_effect, freedom);
 }
 
 }  // namespace
@@ -93,25 +108,25 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const auto cycles = static_cast<double>(trial.held_out.size());
   const bool few = out.design_effect > limits::kCorrelated && !info.needs_full_resolution;
   const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
-  out.p_value = std::min(
-      1.0, tests * fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom));
+  const double of_squares = fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom);
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = context.floor_squares(trial.whitening);
   out.size = std::max(out.fall / context.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
   out.plausible = is_plausible(context, trial, candidate, noise * out.design_effect);
-  // A second effect that is missing too makes what is left look correlated; a fall as large as this one, on blocks of
-  // cycles that were held out, needs no such test.
-  const double above = poorer.held_out_squares - context.noise_squares();
-  // Not in records that never stick: their few steps of speed go with time.
+  // Where few sticks were recorded, what goes with the stick time goes with time.
   const auto& slips = level.observations.slips;
   const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
-  const bool sticks = breaks >= limits::kBreakAwaysOfStickSlip;
-  const bool obvious = !info.needs_full_resolution && sticks &&
-                       out.fall > least.obvious_size * context.noise_squares() && out.fall > least.obvious_part * above;
-  const bool seen = out.fall > 0 && (out.p_value < least.p_value || obvious);
-  out.by_level = out.plausible && !seen && sticks && info.needs.stick_time &&
-                 passes_by_level(level, poorer, trial, info, tests, least, floor);
-  out.passes = out.plausible && out.size > least.least_size && (seen || out.by_level);
+  const bool has_level = info.needs.stick_time && breaks >= limits::kBreakAwaysOfStickSlip;
+  // A line is one among many frequencies: its cycles are no evidence beside that of its own frequency.
+  const double of_pairs = info.needs_full_resolution ? 1 : paired_p_value(poorer, trial);
+  const double of_level = has_level ? level_p_value(level, poorer, trial, info, floor) : 1;
+  const double views = 1 + (info.needs_full_resolution ? 0 : 1) + (has_level ? 1 : 0);
+  const double of_cycles = std::min(of_squares, of_pairs);
+  out.p_value = std::min(1.0, views * tests * std::min(of_cycles, of_level));
+  out.by_level = of_level < of_cycles && !(out.fall > 0 && views * tests * of_cycles < least.p_value);
+  const bool lower = trial.plain_held_out < poorer.plain_held_out && (out.fall > 0 || out.by_level);
+  out.passes = out.plausible && lower && out.size > least.least_size && out.p_value < least.p_value;
+  out.by_level = out.by_level && out.passes;
   return out;
 }
 

@@ -6,10 +6,8 @@ namespace tribofit::diagnosis {
 
 /// What must be passed for a name.
 struct Limits {
-  double p_value = 0.01;      ///< goal: at most 1 % of false alarms, corrected for the number of candidates
-  double least_size = 0.02;   ///< of the squares that sensor noise leaves: less does not show on any plot
-  double obvious_size = 0.5;  ///< a fall beyond this many times those squares,
-  double obvious_part = 0.3;  ///< and beyond this part of all that is above them, is not made by chance
+  double p_value = 0.01;     ///< goal: at most 1 % of false alarms, corrected for the number of candidates
+  double least_size = 0.02;  ///< of the squares that sensor noise leaves: less does not show on any plot
 };
 
 /// Every threshold of the diagnosis, each with its reason. A larger value finds less and errs less, unless it says
@@ -33,6 +31,9 @@ inline constexpr double kLeastKnown = 0.1;
 // What excites an effect.
 inline constexpr double kLeastLoadSpread = 0.03;      ///< of the load: a load that was meant to be constant varies less
 inline constexpr double kLeastTemperatureSpread = 2;  ///< [K]: k_T within its bounds then moves mu by the noise
+/// Within a record, over its noise and over its median: what changes less excites no memory. Noise alone spreads
+/// by 3.3.
+inline constexpr double kSpeedSigmas = 10, kLeastSpeedSpread = 0.02;
 inline constexpr double kLeastStickRatio = 2.5;  ///< of stick times: its logarithm then spans what scatter does not
 inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
 
@@ -79,6 +80,11 @@ inline constexpr double kHopelessPart = 0.35;
 inline constexpr double kStraight = 0.5;  ///< of a rise still to come at the fastest slip: a straight line, not a law
 /// Of all that v_r shows in stick beyond its noise a law of creep must explain most.
 inline constexpr double kCreepPart = 0.5;
+
+// What is possible, though not proven.
+inline constexpr double kChanceOfPossible = 0.05;  ///< p-value: one record in twenty would else be called unfinished
+inline constexpr double kPossiblePart = 0.3;       ///< of what is above the noise: less does not change the picture
+inline constexpr double kLeastPossible = 0.1;      ///< of the squares of the noise: less shows on no plot
 
 // What remains.
 inline constexpr double kChance = 0.01;             ///< p-value below which structure is not chance

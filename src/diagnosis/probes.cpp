@@ -318,22 +318,25 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
 std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial& fine,
                                     std::span<const double> residual) {
   const Observations& o = context.fine.observations;
-  const SpectralLine line = strongest_line(context.records[0], o, residual, 2, 0.4 * observation_rate(o));
-  if (!(line.frequency > 0)) return std::nullopt;
+  constexpr double kPeriods = 15;  // a line as slow as that is structure over time
+  const SpectralLines lines =
+      strongest_lines(context.records[0], o, residual, 1 / (kPeriods * o.scales.slip_time), 0.4 * observation_rate(o));
+  if (lines.frequencies.empty()) return std::nullopt;
+  const double frequency = lines.frequencies.front();
   Probe probe;
   probe.variable = "frequency";
-  probe.period = 1 / line.frequency;
-  const auto columns = [&o, &line](std::size_t k) {
+  probe.period = 1 / frequency;
+  const auto columns = [&o, frequency](std::size_t k) {
     const auto& range = o.slips[k];
     const auto n = static_cast<Eigen::Index>(range.end - range.begin);
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + (range.from_stick ? 1 : 0), 2);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double phase = (2 * std::numbers::pi) * line.frequency * o.time[range.begin + static_cast<std::size_t>(i)];
+      const double phase = (2 * std::numbers::pi) * frequency * o.time[range.begin + static_cast<std::size_t>(i)];
       out.row(i) << std::cos(phase), std::sin(phase);
     }
     return out;
   };
-  judge_probe(context, context.fine, fine, columns, line.places, probe);
+  judge_probe(context, context.fine, fine, columns, lines.places, probe);
   return probe;
 }
 

@@ -103,17 +103,38 @@ double noise_without_line(const Record& record, double noise) {
   return std::sqrt(std::max(noise * noise - line, 0.05 * noise * noise));
 }
 
-SpectralLine strongest_line(const Record& record, const Observations& observations, std::span<const double> residual,
-                            double lowest, double highest) {
-  SpectralLine line;
+namespace {
+
+/// Takes the highest peaks of a spectrum between two frequencies, each with its neighbourhood. A line that is there in
+/// slip alone, or in stick alone, has side lines at the frequency of stick-slip, and what a law leaves of every slip is
+/// made of them.
+std::vector<double> take_peaks(Spectrum spectrum, double lowest, double highest) {
+  constexpr std::size_t kMost = 5, kNeighbours = 4;
+  std::vector<double> peaks;
+  while (peaks.size() < kMost) {
+    const double peak = peak_frequency(spectrum, lowest, highest);
+    if (!(peak > 0)) break;
+    peaks.push_back(peak);
+    const auto bin = static_cast<std::size_t>(std::lround(peak / spectrum.bin_width));
+    const std::size_t end = std::min(spectrum.amplitude.size(), bin + kNeighbours + 1);
+    for (std::size_t k = bin - std::min(bin, kNeighbours); k < end; ++k) spectrum.amplitude[k] = 0;
+  }
+  return peaks;
+}
+
+}  // namespace
+
+SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
+                              double lowest, double highest) {
+  SpectralLines lines;
   const Motion& motion = *record.motion;
   const double rate = observation_rate(observations);
-  if (!(rate > 0) || observations.slips.empty()) return line;
+  if (!(rate > 0) || observations.slips.empty()) return lines;
   highest = std::min(highest, 0.4 * rate);
   constexpr double kMostSamples = 1 << 18;
   const double length = std::min(motion.duration(), kMostSamples / rate);
   const auto n = static_cast<std::size_t>(length * rate);
-  if (n < 64 || highest <= lowest) return line;
+  if (n < 64 || highest <= lowest) return lines;
   std::vector<double> series(n, 0.0);
   for (const auto& slip : observations.slips) {
     if (slip.record != 0) continue;
@@ -123,24 +144,24 @@ SpectralLine strongest_line(const Record& record, const Observations& observatio
     }
   }
   for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, rate, series);
-  const double coarse = peak_frequency(amplitude_spectrum(series, 1 / rate), lowest, highest);
-  if (!(coarse > 0)) return line;
   // The whole record resolves more finely than the stretch that was transformed.
   const double width = 1.5 / length, fine = 0.1 / motion.duration();
-  double best = -1;
-  for (double f = coarse - width; f <= coarse + width; f += fine) {
-    const double s = strength(observations, residual, f);
-    if (s > best) {
-      best = s;
-      line.frequency = f;
+  std::vector<std::pair<double, double>> found;  // strength and frequency
+  for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
+    std::pair<double, double> best = {-1, coarse};
+    for (double f = coarse - width; f <= coarse + width; f += fine) {
+      best = std::max(best, {strength(observations, residual, f), f});
     }
+    found.push_back(best);
   }
-  line.places = std::max(1.0, (highest - lowest) * motion.duration());
-  return line;
+  std::sort(found.rbegin(), found.rend());
+  for (const auto& [strength, frequency] : found) lines.frequencies.push_back(frequency);
+  lines.places = std::max(1.0, (highest - lowest) * motion.duration());
+  return lines;
 }
 
-SpectralLine strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
-  SpectralLine line;
+SpectralLines strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {
+  SpectralLines line;
   const double rate = observation_rate(observations);
   if (!(rate > 0)) return line;
   const auto n = static_cast<std::size_t>(0.6 * median_slip_time(observations) * rate);
@@ -165,7 +186,8 @@ SpectralLine strongest_ringing(const Observations& observations, std::span<const
     for (std::size_t k = begin; k < end; ++k) mean += total[k] / static_cast<double>(end - begin);
     fast[i] = total[i] - mean;
   }
-  line.frequency = peak_frequency(amplitude_spectrum(fast, 1 / rate), lowest, 0.45 * rate);
+  const double peak = peak_frequency(amplitude_spectrum(fast, 1 / rate), lowest, 0.45 * rate);
+  if (peak > 0) line.frequencies.push_back(peak);
   line.places = static_cast<double>(n) / 2;
   return line;
 }

@@ -10,6 +10,7 @@
 #include "errors.hpp"
 #include "estimate.hpp"
 #include "influence.hpp"
+#include "limits.hpp"
 #include "messages.hpp"
 #include "parameter_errors.hpp"
 #include "profile.hpp"
@@ -19,8 +20,6 @@
 namespace tribofit {
 
 namespace {
-
-constexpr std::size_t kFewestCycles = 3;
 
 /// Means over the records, in squares.
 Floor mean_floor(std::span<const Record> records) {

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "limits.hpp"
 #include "requested_effects.hpp"
+#include "slip_ranges.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -47,27 +49,36 @@ void share_floor(std::vector<Fit>& fits, std::size_t best) {
 }
 
 /// Effects may act within a few samples of break-away and re-stick, and so may some laws; the others are smooth.
-std::size_t values_per_slip(bool all_are_smooth, FitDetail detail) {
+std::size_t values_per_slip(const FrictionModel& model, FitDetail detail) {
   constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
-  if (all_are_smooth) return kBare;
+  if (model.effects().empty() && !describe(model.law()).steep_at_rest) return kBare;
   return detail == FitDetail::quick ? kQuick : kFull;
 }
 
 }  // namespace
 
+Observations observations_for(const FrictionModel& model, std::span<const Record> records, FitDetail detail) {
+  std::vector<Observations> parts;
+  for (const Record& record : records) {
+    parts.push_back(observe(*record.motion, *record.segmentation, model.needs(), values_per_slip(model, detail)));
+    if (!model.acts_in_stick()) continue;
+    const double noise = estimate_floor(*record.motion, *record.segmentation).noise;
+    add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
+  }
+  return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
+}
+
 void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
   const std::vector<Effect> effects = friction_effects(options.effects);
-  const Channels needs = FrictionModel(ExponentialLaw{}, effects).needs();
-  const auto steep = [](const Law& law) { return describe(law).steep_at_rest; };
-  const bool smooth = effects.empty() && std::none_of(options.laws.begin(), options.laws.end(), steep);
-  const Observations observations = observe(trace.motion, trace.segmentation, needs, values_per_slip(smooth, detail));
-  if (observations.cycles < 3) {
+  if (slip_ranges(trace.motion, trace.segmentation).size() < kFewestCycles) {
     trace.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
     return;
   }
+  const Record record = {&trace.motion, &trace.segmentation};
   const auto fits = planned_fits(options, effects);
   trace.fits.resize(fits.size());
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
+    const Observations observations = observations_for(fits[k].first, {&record, 1}, detail);
     trace.fits[k] =
         fit_model(fits[k].first, trace.motion, trace.segmentation, observations, options.instruments, fits[k].second);
   });

@@ -60,26 +60,38 @@ double mean_about(const std::vector<double>& x, std::size_t i, std::size_t half)
   return sum / static_cast<double>(end - begin);
 }
 
-/// Keeps the velocity of each stick from where creep stands out of the noise, 10 ms before break-away at most, and
-/// friction there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a memory that
-/// turns with the sign of v_r it would pass for motion, so the velocity is averaged over a millisecond.
+/// A slip that does not begin in stick goes on from the one before it (a reversal, the next piece of a record that
+/// never sticks): its memory starts in steady state that many values earlier. What was measured is not told to it.
+void go_on_from(const Observations::SlipObservation& before, Observations::SlipObservation& slip, Observations& out) {
+  constexpr std::size_t kValues = 20;  // a memory of the slip's own time has decayed over them
+  slip.lead_begin = out.lead_time.size();
+  for (std::size_t i = before.end - std::min(kValues, before.end - before.begin); i < before.end; ++i) {
+    out.lead_time.push_back(out.time[i]);
+    out.lead_velocity.push_back(out.velocity[i]);
+  }
+  slip.lead_end = out.lead_time.size();
+}
+
+/// Keeps the velocity of each stick from where creep stands out of the noise, a third of a slip time before break-away
+/// at most, and friction there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a
+/// memory that turns with the sign of v_r it would pass for motion, so the velocity is averaged.
 void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
-  constexpr double kLead = 10e-3, kMean = 1e-3;  // [s]
-  const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kMean / motion.step));
+  const double lead = 0.3 * out.scales.slip_time, mean = 0.03 * out.scales.slip_time;
+  const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * mean / motion.step));
   const std::size_t every = std::max<std::size_t>(1, half / 2);
   // Three standard deviations of the mean, twice over for noise that is coloured.
   const double noise = 6 * motion.velocity_noise / std::sqrt(2.0 * static_cast<double>(half) + 1);
   for (auto slip = out.slips.begin(); slip != out.slips.end(); ++slip) {
     const Cycle& cycle = segmentation.cycles[slip->segment];
-    if (!slip->from_stick) {  // a record or a reversal begins it: all that is known is friction there
-      slip->lead_begin = out.lead_time.size();
-      slip->lead_end = slip->lead_begin + 1;
-      slip->lead_friction = mean_about(motion.friction, slip->samples.begin, half / 2);
-      out.lead_time.push_back(motion.time[slip->samples.begin]);
-      out.lead_velocity.push_back(motion.relative_velocity[slip->samples.begin]);
+    slip->lead_friction = std::numeric_limits<double>::quiet_NaN();
+    if (!slip->from_stick) {
+      const bool first_of_record = slip == out.slips.begin();
+      if (!first_of_record && std::prev(slip)->samples.end + 2 >= slip->samples.begin) {
+        go_on_from(*std::prev(slip), *slip, out);
+      }
       continue;
     }
-    const auto longest = static_cast<std::size_t>(kLead / motion.step);
+    const auto longest = static_cast<std::size_t>(lead / motion.step);
     std::size_t first = slip->samples.begin;
     const std::size_t earliest = first - std::min(longest, cycle.stick.size() / 2);
     while (first > earliest && std::abs(mean_about(motion.relative_velocity, first - 1, half)) > noise) --first;
@@ -167,6 +179,49 @@ void set_extent(Observations& out) {
   }
 }
 
+/// Scales of several records: medians over the slips of all of them, the longest record.
+RecordScales scales_of(std::span<const Observations> records) {
+  std::vector<double> times, lengths, sticks, accelerations;
+  double duration = 0, distance = 0, force = 0;
+  const bool any_stick = std::any_of(records.begin(), records.end(), [](const Observations& record) {
+    return std::any_of(record.slips.begin(), record.slips.end(), [](const auto& slip) { return slip.from_stick; });
+  });
+  for (const Observations& record : records) {
+    double slid = 0;
+    for (const auto& slip : record.slips) {
+      if (slip.end - slip.begin < 2) continue;
+      const double time = record.time[slip.end - 1] - record.time[slip.begin];
+      double speed = 0, weight = 0;
+      for (std::size_t i = slip.begin; i < slip.end; ++i) {
+        speed += record.weight[i] * std::abs(record.velocity[i]);
+        weight += record.weight[i];
+      }
+      slid += time * speed / weight;
+      if (any_stick && !slip.from_stick) continue;
+      times.push_back(time);
+      lengths.push_back(time * speed / weight);
+      if (std::isfinite(slip.stick_time) && slip.stick_time > 0) sticks.push_back(slip.stick_time);
+    }
+    for (const double a : record.acceleration) accelerations.push_back(std::abs(a));
+    if (record.size() > 0) duration = std::max(duration, record.time.back() - record.time.front());
+    distance = std::max(distance, slid);
+    force = std::max(force, record.largest_friction * record.mean_load);
+  }
+  RecordScales out;
+  const auto take = [](double& scale, double value) {
+    if (value > 0 && std::isfinite(value)) scale = value;
+  };
+  if (!times.empty()) {
+    take(out.slip_time, median(std::move(times)));
+    take(out.slip_length, median(std::move(lengths)));
+    take(out.stick_time, sticks.empty() ? out.slip_time : median(std::move(sticks)));
+  }
+  take(out.duration, duration);
+  take(out.distance, distance);
+  if (!accelerations.empty()) take(out.mass, force / quantile(std::move(accelerations), 0.95));
+  return out;
+}
+
 }  // namespace
 
 Slip Observations::slip(const SlipObservation& range) const {
@@ -191,9 +246,10 @@ Slip Observations::slip(const SlipObservation& range) const {
 }
 
 std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples) {
-  // The same stretch of time at any rate leaves about the same noise; a longer one would flatten what turns quickly.
-  constexpr double kStretch = 0.5e-3;  // [s]
-  const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(kStretch / motion.step), 2.0, 10.0));
+  // The same part of a slip at any rate leaves about the same noise; a longer one would flatten what turns quickly.
+  constexpr double kPart = 0.015;
+  const double stretch = kPart * static_cast<double>(samples.size());
+  const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, 10.0));
   const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
   const std::size_t length = samples.end - begin;
   std::vector<double> acceleration(samples.size(), 0.0);
@@ -230,7 +286,9 @@ std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t
 }
 
 Observations join(std::vector<Observations> records) {
+  const RecordScales scales = scales_of(records);
   Observations out = std::move(records.at(0));
+  out.scales = scales;
   double values = static_cast<double>(out.size());
   for (std::size_t r = 1; r < records.size(); ++r) {
     Observations& next = records[r];
@@ -303,9 +361,10 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
   if (out.samples_per_value > 1) add_velocity_variance(motion, reduce, out);
-  if (needs.lead) add_leads(motion, segmentation, out);
   add_channels(motion, needs, reduce, out);
   set_extent(out);
+  out.scales = scales_of({&out, 1});
+  if (needs.lead) add_leads(motion, segmentation, out);
   return out;
 }
 

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "limits.hpp"
+
 namespace tribofit {
 
 namespace {
-constexpr std::size_t kFewestCycles = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 

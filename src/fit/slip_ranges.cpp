@@ -14,17 +14,20 @@ namespace {
 constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show a curve
 constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
 
-/// Mean friction over two milliseconds of the stick after a slip; NaN where no stick follows.
+/// Mean friction over the beginning of the stick after a slip; NaN where no stick follows.
 double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
-  constexpr double kGap = 0.5e-3, kMean = 2e-3;  // [s]
+  // Of the slip: what rings after re-stick is over after the first, and the spring has raised friction little over the
+  // second.
+  constexpr double kGap = 0.015, kMean = 0.06;
   const Cycle& cycle = segmentation.cycles[segment];
   if (!cycle.slip_complete) return std::numeric_limits<double>::quiet_NaN();
   // The stick after the last slip belongs to no cycle: it has no slip.
   const bool last = segment + 1 >= segmentation.cycles.size();
   const SampleRange stick = last ? SampleRange{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
-  const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap / motion.step);
-  const std::size_t end =
-      std::min(stick.end, begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean / motion.step)));
+  const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap * static_cast<double>(cycle.slip.size()));
+  const std::size_t end = std::min(
+      stick.end,
+      begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean * static_cast<double>(cycle.slip.size()))));
   if (stick.begin < cycle.slip.end || begin + 2 > end) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += motion.friction[i];

@@ -57,44 +57,63 @@ bool sets_steepness(const Parameter& parameter) {
   return parameter.bound_scaling == BoundScaling::with_speed || parameter.bound_scaling == BoundScaling::against_speed;
 }
 
-/// How far the slips of these data exceed those of a tribometer; pieces of a record that never sticks say nothing.
-double growth_of(BoundScaling grows, const Observations& observations) {
-  constexpr double kSlipTime = 0.1, kSlipLength = 5e-3;  // [s], [m]
-  if (grows != BoundScaling::with_slip_time && grows != BoundScaling::with_slip_length) return 1;
-  std::vector<double> sizes;
-  for (const auto& slip : observations.slips) {
-    if (!slip.from_stick || slip.end - slip.begin < 2) continue;
-    const double time = observations.time[slip.end - 1] - observations.time[slip.begin];
-    double speed = 0, weight = 0;
-    for (std::size_t i = slip.begin; i < slip.end; ++i) {
-      speed += observations.weight[i] * std::abs(observations.velocity[i]);
-      weight += observations.weight[i];
-    }
-    sizes.push_back(grows == BoundScaling::with_slip_time ? time / kSlipTime : time * speed / weight / kSlipLength);
+/// The scale of this record over the one for which the catalogue states its bounds.
+double growth_of(BoundScaling scaling, const RecordScales& here) {
+  const RecordScales stated;
+  const double slip_time = here.slip_time / stated.slip_time, slip_length = here.slip_length / stated.slip_length;
+  switch (scaling) {
+    case BoundScaling::with_slip_time:
+      return slip_time;
+    case BoundScaling::against_slip_time:
+      return 1 / slip_time;
+    case BoundScaling::with_stick_time:
+      return here.stick_time / stated.stick_time;
+    case BoundScaling::with_slip_length:
+      return slip_length;
+    case BoundScaling::against_slip_length:
+      return 1 / slip_length;
+    case BoundScaling::against_slip_speed:
+      return slip_time / slip_length;
+    case BoundScaling::with_duration:
+      return here.duration / stated.duration;
+    case BoundScaling::against_duration:
+      return stated.duration / here.duration;
+    case BoundScaling::with_distance:
+      return here.distance / stated.distance;
+    case BoundScaling::with_mass:
+      return here.mass / stated.mass;
+    case BoundScaling::never:
+    case BoundScaling::with_speed:
+    case BoundScaling::against_speed:
+      break;
   }
-  return sizes.empty() ? 1 : std::max(1.0, median(std::move(sizes)));
+  return 1;
 }
 
 }  // namespace
 
-Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
+Parameter on_scale_of(Parameter parameter, const Observations& observations) {
+  if (sets_steepness(parameter)) {
+    // Beyond these the law is a constant or a jump over all speeds that were recorded.
+    const double fastest = std::max(observations.fastest, 1e-12);
+    const auto [lower, upper] = as_parameter(parameter.bound_scaling, {0.01 / fastest, 1000 / fastest});
+    parameter.lower = lower / parameter.si;
+    parameter.upper = upper / parameter.si;
+    return parameter;
+  }
   // A coefficient is of the order of one, a force is of the order of what was recorded.
-  const double scale = std::max(1.0, observations.largest_friction);
+  const double force = parameter.scales_with_friction ? std::max(1.0, observations.largest_friction) : 1.0;
+  const double factor = force * growth_of(parameter.bound_scaling, observations.scales);
+  for (double* value : {&parameter.lower, &parameter.upper, &parameter.start, &parameter.neutral}) *value *= factor;
+  return parameter;
+}
+
+Bounds bounds_of(const FrictionModel& model, const Observations& observations) {
   Bounds bounds;
   for (const auto& slot : model.parameters()) {
-    const Parameter& q = slot.parameter;
-    if (sets_steepness(q)) {
-      // Beyond these the law is a constant or a jump over all speeds that were recorded.
-      const double fastest = std::max(observations.fastest, 1e-12);
-      const auto [lower, upper] = as_parameter(q.bound_scaling, {0.01 / fastest, 1000 / fastest});
-      bounds.lower.push_back(lower);
-      bounds.upper.push_back(upper);
-      continue;
-    }
-    const double unit = q.si * (q.scales_with_friction || q.bounds_scale_with_force ? scale : 1.0);
-    const double grown = growth_of(q.bound_scaling, observations);
-    bounds.lower.push_back(q.lower * unit * (q.lower < 0 ? grown : 1.0));
-    bounds.upper.push_back(q.upper * unit * grown);
+    const Parameter q = on_scale_of(slot.parameter, observations);
+    bounds.lower.push_back(q.lower * q.si);
+    bounds.upper.push_back(q.upper * q.si);
   }
   return bounds;
 }
@@ -122,9 +141,9 @@ void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& 
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations,
                                     const Bounds& bounds) {
   std::vector<double> p;
-  const double scale = std::max(1.0, observations.largest_friction);
   for (const auto& slot : model.parameters()) {
-    p.push_back(slot.parameter.start * slot.parameter.si * (slot.parameter.scales_with_friction ? scale : 1.0));
+    const Parameter q = on_scale_of(slot.parameter, observations);
+    p.push_back(q.start * q.si);
   }
   const FrictionCurve curve = curve_of(observations);
   const std::vector<double> of_law = std::visit([&](const auto& law) { return law.start(curve); }, model.law());
@@ -139,11 +158,9 @@ std::vector<std::vector<double>> make_starts(const FrictionModel& model, const O
   if (!model.effects().empty()) {
     // The bare law, with effects that hardly act: a richer model must not end above the poorer one.
     std::vector<double> p = starts[0];
-    const double scale = std::max(1.0, observations.largest_friction);
     for (std::size_t k = model.base_count(); k < p.size(); ++k) {
-      const Parameter& q = model.parameters()[k].parameter;
-      const double neutral = std::isnan(q.neutral) ? q.start : q.neutral;
-      p[k] = std::clamp(neutral * q.si * (q.scales_with_friction ? scale : 1.0), bounds.lower[k], bounds.upper[k]);
+      const Parameter q = on_scale_of(model.parameters()[k].parameter, observations);
+      p[k] = std::clamp((std::isnan(q.neutral) ? q.start : q.neutral) * q.si, bounds.lower[k], bounds.upper[k]);
     }
     starts.push_back(p);
   }

@@ -8,6 +8,10 @@
 
 namespace tribofit {
 
+/// A parameter with bounds, start and neutral value on the scale of the record: levels of friction and what scales
+/// with them where friction is a force, and what its BoundScaling says.
+Parameter on_scale_of(Parameter parameter, const Observations& observations);
+
 /// Bounds of every parameter in SI. Levels of friction, and what scales with them, grow with the data where friction is
 /// a force; the steepness of a law with the speeds that were recorded.
 struct Bounds {

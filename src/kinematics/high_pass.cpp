@@ -56,10 +56,10 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& 
   estimate.first_half = a.value;
   estimate.second_half = b.value;
   const double sag = (2 * std::numbers::pi) * all.value * median(std::move(lengths));
-  const bool clear = all.value > kSignificance * all.std_error && sag > kLeastSag;
+  const bool clear = all.value > kSignificance * all.std_error && sag > kLeastSag && sag < kLargestSag;
   const bool same = std::abs(a.value - b.value) < 0.2 * all.value + 3 * std::hypot(a.std_error, b.std_error) &&
                     a.value > 0.5 * all.value && b.value > 0.5 * all.value;
-  estimate.significant = clear && same && all.value > kLowestCorner && all.value < kHighestCorner;
+  estimate.significant = clear && same;
   estimate.creeping = clear && !same;
   return estimate;
 }

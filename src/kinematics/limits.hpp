@@ -22,10 +22,9 @@ inline constexpr double kSettled = 0.02;
 
 // ---- high-pass of the vibrometer
 
-/// Corners that are looked for [Hz]: below, the sag over a stick is lost in what creep does; above, no plateau is left.
-inline constexpr double kLowestCorner = 0.01, kHighestCorner = 3;
-/// Fall of a plateau over its duration below which a high-pass does not matter, over the level.
-inline constexpr double kLeastSag = 0.01;
+/// Fall of a plateau over its duration, 2 pi f_c t, over the level: below the first a high-pass does not matter and is
+/// lost in what creep does; above the second no plateau is left.
+inline constexpr double kLeastSag = 0.01, kLargestSag = 3;
 
 /// Standard errors by which a high-pass or a ripple must be there. What is undone changes every sample, and levels of
 /// plateaus wander more than their scatter shows.

@@ -73,6 +73,9 @@ class Sentences {
                            fall());
       case Verdict::unexplained:
         return unexplained();
+      case Verdict::unconfirmed:
+        return fmt::format("{} A run that was held back does not bear it out, so it is not confirmed.",
+                           found_sentence(result_));
       case Verdict::not_enough_data:
         break;
     }
@@ -122,6 +125,10 @@ class Sentences {
 
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
+    if (any(EffectStatus::possible)) {
+      return fmt::format("{} What remains may be explained, but these data do not prove it: {}.",
+                         found_effects(d_).empty() ? "No effect is proven." : found_sentence(result_), fall());
+    }
     if (found_effects(d_).empty()) {
       return fmt::format("No effect of the catalogue explains what remains: the held-out error of the {} is {}, {}. {}",
                          law_text(d_), level(last()), floor_clause(), rest);

@@ -31,21 +31,23 @@ struct DiagnosisCancelled : std::exception {
 enum class Verdict {
   sufficient,       ///< these data ask for no effect more
   effect_found,     ///< effects were added and what remains is noise
-  unexplained,      ///< structure remains that no effect explains
+  unexplained,      ///< structure remains that no effect explains, or that one may explain but is not proven to
+  unconfirmed,      ///< effects were added, and a run that was held back does not bear them out
   not_enough_data,  ///< too few cycles to hold any out
 };
-/// "sufficient", "effect-found", "unexplained", "not-enough-data".
+/// "sufficient", "effect-found", "unexplained", "unconfirmed", "not-enough-data".
 std::string_view to_string(Verdict verdict);
 
 /// What became of one effect of the catalogue.
 enum class EffectStatus {
   found,        ///< it was added to the model
   equivalent,   ///< it fits as well as one that was added; these data cannot distinguish them
+  possible,     ///< it would take away much of what remains, and these data do not prove it
   superseded,   ///< it would help alone, but not beside what was added
   unsupported,  ///< the data do not ask for it
   untestable,   ///< the data cannot show it; `reason` says why
 };
-/// The words of the JSON: "missing" (for found), "equivalent", "superseded", "unsupported", "untestable".
+/// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable".
 std::string_view to_string(EffectStatus status);
 
 /// A share of the error above the floor that goes with one variable.
@@ -86,13 +88,17 @@ struct Confirmation {
 
 /// Where a law fails, which effects it needs, and whether it is then enough.
 ///
-/// Method: every effect of the catalogue that the data can excite is added to the model, fitted within its plausible
-/// bounds and judged by the squares it leaves on held-out contiguous blocks of cycles, with the scatter of break-away
-/// as a random effect (likelihood). It counts when the fall is not chance (F test whose noise is that between cycles,
-/// corrected for the number of candidates and of places looked at), is at least 2 % of what sensor noise leaves, and no
-/// decisive parameter sits on a bound. The best one is added, with those that do as well as its group, until none is
-/// left; effects that became redundant are dropped; both base laws climb a ladder of their own and the better or
-/// shorter one is reported. Free functions of each variable say where the error is, before and after.
+/// The rule of evidence. Every effect of the catalogue that the data can excite is added to the model, fitted within
+/// bounds on the scale of the record, and judged by the squares it leaves on held-out contiguous blocks of cycles, with
+/// the scatter of break-away as a random effect (likelihood); where nothing sticks, forty stretches of the record are
+/// the cycles. It is named when both held-out errors fall, that of the likelihood and that of plain squares, when the
+/// fall is at least 2 % of what sensor noise leaves, when no decisive parameter sits on a bound, and when p < 0.01. The
+/// p-value is the smallest of up to three, times their number, times the number of candidates and of places looked at
+/// (Bonferroni): of the fall of the squares (F test whose noise is that between cycles), of the held-out losses cycle
+/// by cycle (paired, with a long-run variance; not for spectral lines), and for what goes with the stick time of the
+/// levels of break-away. It is the one that is reported. The best one is added, with those that do as well as its
+/// group, until none is left; effects that became redundant are dropped; both base laws climb a ladder of their own and
+/// the better or shorter one is reported. Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};

@@ -13,6 +13,18 @@
 
 namespace tribofit {
 
+/// The scales of a motion, in which bounds and windows are stated: medians over the slips that begin in stick, or over
+/// the pieces of a record that never sticks. The values given here are those of the rig of [D] (a pad on a disc,
+/// 15 mm, 4 rpm, 50 N), for which the catalogue states its bounds.
+struct RecordScales {
+  double slip_time = 1.0 / 30;   ///< [s]
+  double slip_length = 1.25e-3;  ///< [m]
+  double stick_time = 0.15;      ///< [s]; a slip time of this record where no stick is known
+  double duration = 40;          ///< of the longest record [s]
+  double distance = 0.25;        ///< slid in the longest record [m]
+  double mass = 4;               ///< largest friction force over the acceleration that one value in twenty exceeds [kg]
+};
+
 /// The samples over which an error is taken: those of every slip, and one break-away per cycle.
 ///
 /// This is the definition for the whole library: rigid-stick laws are judged over the slip samples plus one break-away
@@ -64,6 +76,7 @@ struct Observations {
   double fastest = 0;           ///< largest |v_r| [m/s]
   double slowest = 0;           ///< least |v_r| [m/s]; 0 where a slip begins in stick
   double largest_friction = 0;  ///< largest |mu|, the scale for bounds where friction is a force
+  RecordScales scales;
 
   std::size_t size() const { return time.size(); }
   /// A slip as friction/ takes it.

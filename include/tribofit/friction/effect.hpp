@@ -86,6 +86,7 @@ struct Excitation {
   double revolutions = 0;          ///< of the disc
   bool stated_plateau = false;     ///< speed and radius are stated, so that the plateau can be compared with omega r
   bool stated_disc_speed = false;  ///< the speed of the disc is stated, and not recorded
+  bool changing_speed = false;     ///< break-away, a reversal, or a sliding speed that changes by more than its noise
   /// Break-away, and what it is needed for, as the end of "there is no break-away ..."; empty: not needed.
   std::string break_away = {};
 };

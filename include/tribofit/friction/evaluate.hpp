@@ -241,7 +241,7 @@ void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, c
       at.direction = slip.lead_velocity[i] < 0 ? -1 : 1;
       const Relaxation<T> now = effect.relaxation(q, at, steady_at(at));
       if (i == 0) {
-        phi = T(slip.lead_friction + 0.0 * velocity[0]);
+        phi = std::isfinite(slip.lead_friction) ? T(slip.lead_friction + 0.0 * velocity[0]) : now.target;
         previous = slip.lead_time[0];
         before = now;
       }

@@ -8,13 +8,23 @@ namespace tribofit {
 /// For parameters that are never neutral by themselves.
 inline constexpr double kNoNeutralValue = std::numeric_limits<double>::quiet_NaN();
 
-/// What the bounds of a parameter grow with, on machines larger and slower than the tribometers they are stated for.
+/// What the bounds, the start and the neutral value of a parameter are proportional to. They are stated for the rig of
+/// [D] (RecordScales); the same motion on a slower, faster, larger or heavier rig has them in proportion, so that what
+/// can be found does not depend on the rig.
 enum class BoundScaling {
-  never,
-  with_slip_time,    ///< beyond slips of 0.1 s
-  with_slip_length,  ///< beyond slips of 5 mm
-  with_speed,        ///< a speed at which a law falls: from 1/1000 to 100 times the fastest slip
-  against_speed      ///< its inverse, the steepness of a law
+  never,                ///< a pure number, or a length, temperature or mass that the motion does not set
+  with_slip_time,       ///< a time within a slip
+  against_slip_time,    ///< a frequency
+  with_stick_time,      ///< a time over which contacts age
+  with_slip_length,     ///< a distance over which contacts are renewed
+  against_slip_length,  ///< a stiffness
+  against_slip_speed,   ///< friction per speed
+  with_duration,        ///< a time within the record
+  against_duration,     ///< a rate of change over the record
+  with_distance,        ///< a distance within all that was slid
+  with_mass,            ///< the mass whose inertia is as large as friction
+  with_speed,           ///< a speed at which a law falls: from 1/1000 to 100 times the fastest slip
+  against_speed         ///< its inverse, the steepness of a law
 };
 
 /// To which data one value of a parameter belongs.
@@ -42,8 +52,7 @@ struct Parameter {
   double start = 0;              ///< where a search begins when the data say nothing better
   /// Where the effect says nothing, or as little as its bounds allow; NaN: at `start`.
   double neutral = kNoNeutralValue;
-  bool scales_with_friction = false;     ///< it has newtons in its unit where friction is a force
-  bool bounds_scale_with_force = false;  ///< its bounds grow with the force where friction is one, its unit does not
+  bool scales_with_friction = false;  ///< it has newtons in its unit where friction is a force
   BoundScaling bound_scaling = BoundScaling::never;
   ParameterScope scope = ParameterScope::all_records;
   ParameterSearch search = ParameterSearch::grid;

@@ -81,9 +81,10 @@ struct StatusStyle {
   EffectStatus status;
   Stroke stroke;
 };
-constexpr std::array<StatusStyle, 4> kStatuses = {
+constexpr std::array<StatusStyle, 5> kStatuses = {
     StatusStyle{EffectStatus::found, dots(Colour::red, Symbol::circle, 10)},
     StatusStyle{EffectStatus::equivalent, dots(Colour::purple, Symbol::diamond, 10)},
+    StatusStyle{EffectStatus::possible, dots(Colour::blue, Symbol::triangle_up, 9)},
     StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
     StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};
 

@@ -30,6 +30,7 @@ struct Ageing {
                         .upper = 10,
                         .start = 0.1,
                         .neutral = 0.1,
+                        .bound_scaling = BoundScaling::with_stick_time,
                         .start_grid_points = 3,
                         .within_record = true}},
         .needs = {.stick_time = true},

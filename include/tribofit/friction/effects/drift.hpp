@@ -24,7 +24,8 @@ struct Drift {
                             .description = "relative change of friction in unit time",
                             .unit = "1/s",
                             .lower = -0.005,
-                            .upper = 0.005}},
+                            .upper = 0.005,
+                            .bound_scaling = BoundScaling::against_duration}},
             .sketch = {.view = SketchView::time, .values = {0.003}}};
   }
 

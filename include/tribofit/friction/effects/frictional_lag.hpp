@@ -30,6 +30,7 @@ struct FrictionalLag {
                             .neutral = 0.1,
                             .bound_scaling = BoundScaling::with_slip_time,
                             .start_grid_points = 3}},
+            .excitation = {.changing_speed = true},
             .sketch = {.view = SketchView::loop, .values = {2}},
             .pairs = {looks_like<ChannelDelay>(ChannelDelay::tap_the_block),
                       looks_like<ForceBandwidth>(ForceBandwidth::tap_the_block),

@@ -25,6 +25,7 @@ struct Heating {
                         .lower = 3,
                         .upper = 600,
                         .start = 20,
+                        .bound_scaling = BoundScaling::with_duration,
                         .start_grid_points = 5,
                         .within_record = true,
                         .decisive = true}},

@@ -29,6 +29,7 @@ struct Interference {
                             .lower = 2,
                             .upper = 10000,
                             .start = 50,
+                            .bound_scaling = BoundScaling::against_slip_time,
                             .search = ParameterSearch::steady_line,
                             .decisive = true},
                            {.name = "phase",

@@ -39,6 +39,7 @@ struct RateState {
                             .upper = 0.02,
                             .neutral = 0,
                             .scales_with_friction = true}},
+            .excitation = {.changing_speed = true},
             .sketch = {.view = SketchView::loop, .values = {100, 0}},
             .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps),
                       looks_like<ChannelDelay>(ChannelDelay::tap_the_block),

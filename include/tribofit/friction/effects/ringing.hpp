@@ -29,6 +29,7 @@ struct Ringing {
                             .lower = 30,
                             .upper = 2000,
                             .start = 200,
+                            .bound_scaling = BoundScaling::against_slip_time,
                             .search = ParameterSearch::ringing_line,
                             .decisive = true},
                            {.name = "zeta",

@@ -24,6 +24,7 @@ struct RunIn {
                             .lower = 10,
                             .upper = 1e5,
                             .start = 300,
+                            .bound_scaling = BoundScaling::with_distance,
                             .start_grid_points = 6,
                             .decisive = true}},
             .needs = {.distance = true},

@@ -27,7 +27,7 @@ struct SensorInertia {
                         .upper = 3,
                         .start = 0.05,
                         .neutral = 0,
-                        .bounds_scale_with_force = true}},
+                        .bound_scaling = BoundScaling::with_mass}},
         .needs = {.acceleration = true, .force = true},
         .group = EffectGroup::measurement,
         .declared_by = InstrumentValue::force_mass_below,

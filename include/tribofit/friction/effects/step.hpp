@@ -28,6 +28,7 @@ struct StepChange {
                             .lower = 0,
                             .upper = 1e4,
                             .start = 10,
+                            .bound_scaling = BoundScaling::with_duration,
                             .scope = ParameterScope::record,
                             .search = ParameterSearch::moment_of_change,
                             .decisive = true}},

@@ -22,7 +22,8 @@ struct Viscous {
                             .lower = -0.0005,
                             .upper = 0.002,
                             .neutral = 0,
-                            .scales_with_friction = true}},
+                            .scales_with_friction = true,
+                            .bound_scaling = BoundScaling::against_slip_speed}},
             .sketch = {.view = SketchView::curve, .values = {0.001}},
             .pairs = {looks_like<StribeckExponent>("run at four times the disc speed, or reach slips faster than "
                                                    "3/alpha: viscous friction keeps rising there")}};
