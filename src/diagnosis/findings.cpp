@@ -8,6 +8,7 @@
 #include <numbers>
 #include <span>
 
+#include "fit/starts.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
@@ -57,13 +58,13 @@ std::string why_not(const CandidateResult& judged, const Candidate& candidate) {
 }
 
 /// Parameters of a trial as the report shows them, without intervals.
-std::vector<FitParameter> parameters_of(const Trial& trial, const std::string& key) {
+std::vector<FitParameter> parameters_of(const Trial& trial, const Observations& observations, const std::string& key) {
   std::vector<FitParameter> out;
   for (std::size_t k = 0; k < trial.p.size(); ++k) {
     const auto& slot = trial.model.parameters()[k];
     if (slot.effect != key) continue;
     FitParameter parameter;
-    parameter.parameter = slot.parameter;
+    parameter.parameter = on_scale_of(slot.parameter, observations);
     parameter.effect = key;
     parameter.value = trial.p[k];
     parameter.std_error = parameter.lower95 = parameter.upper95 = kNaN;
@@ -138,7 +139,7 @@ void describe_last_trial(const FindingInputs& in, const LastJudged& last, Effect
   finding.held_out_rmse = std::sqrt(squared);
   finding.held_out_std_error = std_error_of_rmse(trial.plain_cycles, in.context.fine.samples, finding.held_out_rmse);
   finding.p_value = last.judged->p_value;
-  finding.parameters = parameters_of(trial, finding.key);
+  finding.parameters = parameters_of(trial, in.context.fine.observations, finding.key);
   finding.error_reduction = reduction(in, before, squared);
 }
 

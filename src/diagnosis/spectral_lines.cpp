@@ -109,7 +109,7 @@ namespace {
 /// slip alone, or in stick alone, has side lines at the frequency of stick-slip, and what a law leaves of every slip is
 /// made of them.
 std::vector<double> take_peaks(Spectrum spectrum, double lowest, double highest) {
-  constexpr std::size_t kMost = 5, kNeighbours = 4;
+  constexpr std::size_t kMost = 3, kNeighbours = 4;
   std::vector<double> peaks;
   while (peaks.size() < kMost) {
     const double peak = peak_frequency(spectrum, lowest, highest);

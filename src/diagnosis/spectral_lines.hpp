@@ -14,10 +14,10 @@ struct SpectralLines {
   double places = 1;
 };
 
-/// The strongest lines, five at most, of fixed frequency over the whole record, slip and stick: in slip in what a model
-/// leaves, in stick about a parabola through each stick. Its phase runs on from one to the next, and its frequency is
-/// found more finely than the record resolves, between `lowest` and `highest` [Hz]. residual: one value for each of the
-/// observations, signed. Only the first record is looked at.
+/// The strongest lines, three at most, of fixed frequency over the whole record, slip and stick: in slip in what a
+/// model leaves, in stick about a parabola through each stick. Its phase runs on from one to the next, and its
+/// frequency is found more finely than the record resolves, between `lowest` and `highest` [Hz]. residual: one value
+/// for each of the observations, signed. Only the first record is looked at.
 SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
                               double lowest, double highest);
 

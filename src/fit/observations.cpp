@@ -182,7 +182,7 @@ void set_extent(Observations& out) {
 /// Scales of several records: medians over the slips of all of them, the longest record.
 RecordScales scales_of(std::span<const Observations> records) {
   std::vector<double> times, lengths, sticks, accelerations;
-  double duration = 0, distance = 0, force = 0;
+  double duration = 0, distance = 0, top_speed = 0, force = 0;
   const bool any_stick = std::any_of(records.begin(), records.end(), [](const Observations& record) {
     return std::any_of(record.slips.begin(), record.slips.end(), [](const auto& slip) { return slip.from_stick; });
   });
@@ -205,6 +205,7 @@ RecordScales scales_of(std::span<const Observations> records) {
     for (const double a : record.acceleration) accelerations.push_back(std::abs(a));
     if (record.size() > 0) duration = std::max(duration, record.time.back() - record.time.front());
     distance = std::max(distance, slid);
+    top_speed = std::max(top_speed, record.fastest);
     force = std::max(force, record.largest_friction * record.mean_load);
   }
   RecordScales out;
@@ -218,6 +219,7 @@ RecordScales scales_of(std::span<const Observations> records) {
   }
   take(out.duration, duration);
   take(out.distance, distance);
+  take(out.top_speed, top_speed);
   if (!accelerations.empty()) take(out.mass, force / quantile(std::move(accelerations), 0.95));
   return out;
 }

@@ -72,8 +72,8 @@ double growth_of(BoundScaling scaling, const RecordScales& here) {
       return slip_length;
     case BoundScaling::against_slip_length:
       return 1 / slip_length;
-    case BoundScaling::against_slip_speed:
-      return slip_time / slip_length;
+    case BoundScaling::against_top_speed:
+      return stated.top_speed / here.top_speed;
     case BoundScaling::with_duration:
       return here.duration / stated.duration;
     case BoundScaling::against_duration:

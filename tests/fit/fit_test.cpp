@@ -188,9 +188,9 @@ TEST(Fit, SaysWhatTheDataDoNotSay) {
   // A viscous term beyond its plausible bound ends there.
   const FrictionModel viscous(ExponentialLaw{}, {make_effect("viscous")});
   options.peak = 0.08;
-  const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 6.0}, options));
+  const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 15.0}, options));
   EXPECT_TRUE(bound.parameters[3].at_bound);
-  EXPECT_TRUE(has(bound, "sigma is at its upper bound of 0.002 s/mm"));
+  EXPECT_TRUE(has(bound, "sigma is at its upper bound of"));
 }
 
 TEST(Fit, FewerThanThreeCyclesIsAReasonNotAnException) {
@@ -298,7 +298,7 @@ TEST(Fit, AnEffectThatIsNotThereDoesNotMakeTheFitWorse) {
   const synthetic::Record record = synthetic::make(bare, synthetic::table4_15mm(ExponentialLaw{}), options);
   const double error = fit_record(bare, record).error.rmse;
   EXPECT_LT(fit_record(FrictionModel(ExponentialLaw{}, {make_effect("viscous")}), record).error.rmse, 1.001 * error);
-  // The least memory within bounds, 0.5 um, still shows where these slips come to rest as gently as no rig does.
+  // The least memory within bounds still shows where these slips come to rest as gently as no rig does.
   const FrictionModel memory(ExponentialLaw{}, {make_effect("rate-state")});
   EXPECT_LT(fit_record(memory, record, {}, 1000).error.rmse, 1.06 * error);
 }

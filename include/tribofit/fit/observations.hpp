@@ -19,6 +19,7 @@ namespace tribofit {
 struct RecordScales {
   double slip_time = 1.0 / 30;   ///< [s]
   double slip_length = 1.25e-3;  ///< [m]
+  double top_speed = 0.1;        ///< largest |v_r| [m/s]
   double stick_time = 0.15;      ///< [s]; a slip time of this record where no stick is known
   double duration = 40;          ///< of the longest record [s]
   double distance = 0.25;        ///< slid in the longest record [m]

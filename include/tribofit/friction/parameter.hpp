@@ -18,7 +18,7 @@ enum class BoundScaling {
   with_stick_time,      ///< a time over which contacts age
   with_slip_length,     ///< a distance over which contacts are renewed
   against_slip_length,  ///< a stiffness
-  against_slip_speed,   ///< friction per speed
+  against_top_speed,    ///< friction per speed
   with_duration,        ///< a time within the record
   against_duration,     ///< a rate of change over the record
   with_distance,        ///< a distance within all that was slid

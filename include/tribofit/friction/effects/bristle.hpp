@@ -43,7 +43,7 @@ struct Bristle {
                         .upper = 0.1,
                         .neutral = 0,
                         .scales_with_friction = true,
-                        .bound_scaling = BoundScaling::against_slip_speed}},
+                        .bound_scaling = BoundScaling::against_top_speed}},
         .needs = {.lead = true},
         .excitation = {.changing_speed = true},
         .sketch = {.view = SketchView::creep, .values = {40, 0}},
