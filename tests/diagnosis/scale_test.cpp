@@ -1,0 +1,102 @@
+/// The rig's scales do not decide: the same record in other seconds is the same diagnosis, and noise is no effect.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../fit/synthetic.hpp"
+#include "fit/starts.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace {
+
+using namespace tribofit;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Keys on the ladder above the base law.
+std::vector<std::string> names(const Diagnosis& diagnosis) {
+  std::vector<std::string> out;
+  for (const Rung& rung : diagnosis.ladder) {
+    if (!rung.added.empty()) out.push_back(rung.added);
+  }
+  return out;
+}
+
+/// A record of a rig that is `slower` times slower: t -> S t, v -> v/S.
+synthetic::Options on_a_rig(double slower) {
+  synthetic::Options options;
+  options.rate /= slower;
+  options.stick_time *= slower;
+  options.slip_time *= slower;
+  options.peak /= slower;
+  options.noise = 0.003;
+  return options;
+}
+
+TEST(Scale, ASlowerOrFasterRigWithTheSameLagGetsTheSameName) {
+  const FrictionModel model(ExponentialLaw{}, {make_effect("frictional-lag")});
+  for (const double slower : {1000.0, 30.0, 1.0, 0.05, 0.01}) {
+    const double tau = 2e-3 * slower;
+    const synthetic::Record made = synthetic::make(model, {0.509, 0.318, 52.14 * slower, tau}, on_a_rig(slower));
+    const Record record = {&made.motion, &made.segmentation};
+    const Diagnosed out = diagnose({&record, 1}, {ExponentialLaw{}, FractionalLaw{}});
+    EXPECT_THAT(names(out.diagnosis), ElementsAre("frictional-lag")) << slower;
+    const FitParameter& found = out.fits.back().parameters.back();
+    EXPECT_NEAR(found.value, tau, 4 * found.std_error) << slower;
+    EXPECT_LT(found.std_error, 0.05 * tau) << slower;
+  }
+}
+
+TEST(Scale, BoundsGoWithTheScalesOfTheRecord) {
+  const FrictionModel model(ExponentialLaw{}, {make_effect("frictional-lag"), make_effect("bristle")});
+  const auto bounds = [&](double slower) {
+    const synthetic::Record made =
+        synthetic::make(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14 * slower}, on_a_rig(slower));
+    return bounds_of(model, observe(made.motion, made.segmentation, model.needs()));
+  };
+  const Bounds here = bounds(1), slow = bounds(30);
+  const std::size_t tau = model.offset_of("frictional-lag"), stiffness = model.offset_of("bristle");
+  EXPECT_NEAR(slow.upper[tau] / here.upper[tau], 30, 1e-6);
+  EXPECT_NEAR(slow.upper[stiffness] / here.upper[stiffness], 1, 1e-6);  // lengths are the same
+}
+
+/// Ten records of 200 samples: a constant force with noise at ten constant speeds.
+std::vector<TraceInput> constant_friction(std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<TraceInput> inputs;
+  for (int k = 0; k < 10; ++k) {
+    auto trace = std::make_shared<Trace>();
+    trace->path = "run-" + std::to_string(k);
+    trace->friction_kind = FrictionKind::force;
+    trace->velocity_kind = VelocityKind::relative;
+    for (std::size_t i = 0; i < 200; ++i) {
+      trace->time.push_back(0.005 * static_cast<double>(i));
+      trace->friction.push_back(15 + 1.6 * normal(engine));
+      trace->velocity.push_back(0.01 + 0.01 * k + 5e-5 * normal(engine));
+    }
+    trace->steps = {{.begin = 0, .end = trace->size()}};
+    inputs.push_back({trace->path, {}, trace});
+  }
+  return inputs;
+}
+
+TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const DiagnosedTraces result = diagnose(constant_friction(seed));
+    EXPECT_THAT(names(result.diagnosis), IsEmpty()) << seed;
+    EXPECT_GT(result.diagnosis.ladder.at(0).held_out_rmse, 1.5) << seed;  // no less than the noise that was put in
+    for (const EffectFinding& finding : result.diagnosis.effects) {
+      if (finding.key == "bristle" || finding.key == "rate-state" || finding.key == "frictional-lag")
+        EXPECT_EQ(finding.status, EffectStatus::untestable) << finding.key;
+    }
+  }
+}
+
+}  // namespace
