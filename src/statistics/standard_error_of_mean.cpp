@@ -1,14 +1,27 @@
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <unsupported/Eigen/FFT>
 #include <vector>
+
+#include "golden_section.hpp"
 
 namespace tribofit {
 
 namespace {
+
+void centre(std::vector<double>& x) {
+  double mean = 0;
+  for (const double value : x) mean += value;
+  mean /= static_cast<double>(x.size());
+  for (double& value : x) value -= mean;
+}
 
 /// First-order autocorrelation of a centred series, corrected for its small-sample bias, within [0, 0.97].
 double first_autocorrelation(const std::vector<double>& d) {
@@ -23,36 +36,146 @@ double first_autocorrelation(const std::vector<double>& d) {
   return std::clamp(r + (1 + 3 * r) / n, 0.0, 0.97);
 }
 
+/// A series without what its first-order autoregression predicts, centred.
+std::vector<double> prewhitened(const std::vector<double>& d, double r) {
+  std::vector<double> w(d.size());
+  w[0] = d[0] * std::sqrt(1 - r * r);
+  for (std::size_t i = 1; i < d.size(); ++i) w[i] = d[i] - r * d[i - 1];
+  centre(w);
+  return w;
+}
+
+/// A sine in a series.
+struct SeriesLine {
+  double frequency = 0;  ///< per value
+  std::complex<double> amplitude;
+};
+
+/// Least-squares sine of a frequency in a centred series, and the squares that it takes out.
+struct SineFit {
+  SeriesLine line;
+  double squares = 0;
+};
+SineFit sine_in(const std::vector<double>& d, double frequency) {
+  const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * frequency);
+  std::complex<double> z{1, 0};
+  // Normal equations of cos, sin and a constant; the constant takes their means off.
+  double cc = 0, ss = 0, cs = 0, c = 0, s = 0, xc = 0, xs = 0;
+  for (const double x : d) {
+    c += z.real(), s += z.imag();
+    cc += z.real() * z.real(), ss += z.imag() * z.imag(), cs += z.real() * z.imag();
+    xc += x * z.real(), xs += x * z.imag();
+    z *= turn;
+  }
+  const auto n = static_cast<double>(d.size());
+  cc -= c * c / n, ss -= s * s / n, cs -= c * s / n;
+  const double determinant = cc * ss - cs * cs;
+  if (!(determinant > 0)) return {};
+  const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
+  return {{frequency, {a, b}}, a * xc + b * xs};
+}
+
+/// Squares of the spectrum at k/(2n), k = 0 ... n.
+std::vector<double> periodogram(const std::vector<double>& w) {
+  std::vector<double> padded(w);
+  padded.resize(2 * w.size(), 0.0);
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, padded);
+  std::vector<double> power;
+  for (const std::complex<double>& x : spectrum) power.push_back(std::norm(x));
+  return power;
+}
+
+/// The clearest line of a centred series; none where nothing stands out.
+std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
+  constexpr std::size_t kFewest = 32;     // values that show a line
+  constexpr std::size_t kTwoPeriods = 4;  // bin of two periods in the record; slower ones are drifts
+  constexpr std::size_t kLeak = 4;        // bins on either side that hold some of a line
+  constexpr double kChance = 1e-3;
+  const std::size_t n = d.size();
+  if (n < kFewest) return std::nullopt;
+  const std::vector<double> power = periodogram(prewhitened(d, first_autocorrelation(d)));
+  std::size_t peak = 0;
+  double least = kChance / static_cast<double>(n);
+  for (std::size_t k = kTwoPeriods; k + 1 < power.size(); ++k) {
+    if (power[k] < power[k - 1] || power[k] < power[k + 1]) continue;
+    // The neighbourhood: an octave to either side, the line itself left out.
+    const std::size_t first = std::max<std::size_t>(1, k / 2), last = std::min(power.size() - 1, 2 * k + 2 * kLeak);
+    double sum = 0, count = 0;
+    for (std::size_t i = first; i <= last; ++i) {
+      if (i + kLeak > k && i < k + kLeak) continue;
+      sum += power[i];
+      count += 1;
+    }
+    const double independent = count / 2;  // bins are half as wide as the record resolves
+    if (!(independent >= 4)) continue;
+    const double chance = sum > 0 ? std::pow(1 + 2 * power[k] / sum, -independent) : 0;
+    if (power[k] > 0 && chance < least) peak = k, least = chance;
+  }
+  if (peak == 0) return std::nullopt;
+  const auto bins = 2 * static_cast<double>(n);
+  const auto left = [&](double frequency) { return -sine_in(d, frequency).squares; };
+  const double at = static_cast<double>(peak);
+  return sine_in(d, golden_section(left, (at - 1) / bins, std::min(0.5 - 1 / bins, (at + 1) / bins), 24).at).line;
+}
+
+void take_out(const SeriesLine& line, std::vector<double>& d) {
+  const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * line.frequency);
+  std::complex<double> z{1, 0};
+  for (double& x : d) {
+    x -= line.amplitude.real() * z.real() + line.amplitude.imag() * z.imag();
+    z *= turn;
+  }
+  centre(d);
+}
+
+/// Mean square, over its phase, of the mean of a line over n values.
+double mean_square_of_mean(const SeriesLine& line, double n) {
+  const double half = std::numbers::pi * line.frequency;
+  const double kernel = std::sin(n * half) / (n * std::sin(half));
+  return 0.5 * std::norm(line.amplitude) * kernel * kernel;
+}
+
+/// Mean square of the `count` lowest cosines of a series.
+double lowest_cosines(const std::vector<double>& w, int count) {
+  const auto n = static_cast<double>(w.size());
+  double sum = 0;
+  for (int j = 1; j <= count; ++j) {
+    double projection = 0;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      projection += w[i] * std::cos(std::numbers::pi * j * (static_cast<double>(i) + 0.5) / n);
+    }
+    sum += 2 / n * projection * projection;
+  }
+  return sum;
+}
+
 }  // namespace
 
 MeanError standard_error_of_mean(std::span<const double> series) {
+  constexpr int kMostLines = 8, kFewestFrequencies = 2;
   const std::size_t n = series.size();
   if (n < 3) return {std::numeric_limits<double>::quiet_NaN(), 1};
   const auto count = static_cast<double>(n);
-  const auto centre = [count](std::vector<double>& x) {
-    double mean = 0;
-    for (const double value : x) mean += value;
-    mean /= count;
-    for (double& value : x) value -= mean;
-  };
+  const int frequencies = std::max(kFewestFrequencies, static_cast<int>(std::lround(0.4 * std::pow(count, 2.0 / 3.0))));
   std::vector<double> d(series.begin(), series.end());
   centre(d);
-  const double r = first_autocorrelation(d);
-  std::vector<double> w(n);
-  w[0] = d[0] * std::sqrt(1 - r * r);
-  for (std::size_t i = 1; i < n; ++i) w[i] = d[i] - r * d[i - 1];
-  centre(w);
-  const int frequencies = std::max(2, static_cast<int>(std::lround(0.4 * std::pow(count, 2.0 / 3.0))));
-  double sum = 0;
-  for (int j = 1; j <= frequencies; ++j) {
-    double projection = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      projection += w[i] * std::cos(std::numbers::pi * j * (static_cast<double>(i) + 0.5) / count);
-    }
-    sum += 2 / count * projection * projection;
+  double of_lines = 0;
+  int freedom = frequencies;
+  for (int k = 0; k < kMostLines; ++k) {
+    const std::optional<SeriesLine> line = clearest_line(d);
+    if (!line) break;
+    const bool among = 2 * line->frequency * count <= frequencies + 1;
+    if (among && freedom < kFewestFrequencies + 2) break;
+    freedom -= among ? 2 : 0;
+    of_lines += mean_square_of_mean(*line, count);
+    take_out(*line, d);
   }
-  const double long_run_variance = sum / frequencies / ((1 - r) * (1 - r));
-  return {std::sqrt(long_run_variance / count), static_cast<double>(frequencies)};
+  const double r = first_autocorrelation(d);
+  const double long_run_variance = lowest_cosines(prewhitened(d, r), frequencies) / freedom / ((1 - r) * (1 - r));
+  return {std::sqrt(long_run_variance / count + of_lines), static_cast<double>(freedom)};
 }
 
 Estimate mean_with_error(std::vector<double> values) {

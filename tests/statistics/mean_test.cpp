@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -45,6 +46,51 @@ TEST(MeanWithError, FindsTheLongRunVarianceOfALongSeries) {
   const Estimate mean = mean_with_error(autoregression(engine, kLength, r));
   const double expected = 1 / (1 - r) / std::sqrt(static_cast<double>(kLength));
   EXPECT_NEAR(mean.std_error, expected, 5 * expected / std::sqrt(2 * mean.degrees_of_freedom));
+}
+
+/// What repeats exactly leaves at most its amplitude over pi and the periods in the mean.
+TEST(MeanWithError, APeriodicSeriesIsNoScatterWithAMemory) {
+  constexpr std::size_t kLength = 197;
+  constexpr double kPeriod = 74;
+  std::vector<double> series(kLength);
+  const auto fill = [&](double phase, const auto& noise) {
+    for (std::size_t i = 0; i < kLength; ++i) {
+      series[i] = std::sin(2 * std::numbers::pi * static_cast<double>(i) / kPeriod + phase) + noise();
+    }
+    return mean_with_error(series);
+  };
+  const double periods = kLength / kPeriod, most = 1 / (std::numbers::pi * periods);
+  EXPECT_LT(fill(0.3, [] { return 0.0; }).std_error, most);
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal(0, 0.1);
+  std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
+  constexpr int kSeries = 500;
+  double squares = 0, claimed = 0;
+  for (int k = 0; k < kSeries; ++k) {
+    const Estimate mean = fill(turn(engine), [&] { return normal(engine); });
+    squares += mean.value * mean.value / kSeries;
+    claimed += mean.std_error * mean.std_error / kSeries;
+  }
+  EXPECT_NEAR(std::sqrt(claimed / squares), 1, 0.1);
+}
+
+TEST(MeanWithError, CoversTheTruthBesideALineOfTheSizeOfTheNoise) {
+  std::mt19937_64 engine(12);
+  std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
+  for (const double period : {5.0, 13.3}) {
+    constexpr int kSeries = 1000;
+    int covered = 0;
+    for (int k = 0; k < kSeries; ++k) {
+      std::vector<double> x = autoregression(engine, 197, 0.5);
+      const double phase = turn(engine);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] += 3 * std::cos(2 * std::numbers::pi * static_cast<double>(i) / period + phase);
+      }
+      const Estimate mean = mean_with_error(x);
+      covered += std::abs(mean.value) <= t_quantile_95(mean.degrees_of_freedom) * mean.std_error ? 1 : 0;
+    }
+    EXPECT_NEAR(covered / static_cast<double>(kSeries), 0.95, 0.025) << period;
+  }
 }
 
 TEST(MeanWithError, UnknownIsSaidAsUnknown) {
