@@ -116,10 +116,15 @@ Parameter read_start(const std::string& name, const std::string& value, const st
   if (!unit_text.empty()) {
     const std::optional<Unit> unit = find_unit(unit_text);
     if (!unit) reject("the unit '" + unit_text + "' of '" + name + "' is not known", text);
+    if (unit->offset != 0) {
+      reject(
+          "'" + name + "' in " + unit_text + " may be a temperature or a difference of temperatures; give it in degC",
+          text);
+    }
     parameter.unit = std::string(formula_unit(unit->quantity));
     const std::optional<Unit> shown = find_unit(parameter.unit);
-    factor = unit->factor / (shown ? shown->factor : 1.0);
-    parameter.si = 1;
+    parameter.si = shown ? shown->factor : 1.0;
+    factor = unit->factor / parameter.si;
   }
   parameter.periodic = parameter.unit == "rad";
   parameter.within_record = parameter.unit == "s";
@@ -308,7 +313,7 @@ std::size_t Formula::parameter_count() const {
 void Formula::evaluate(std::span<const double> values, const Slip& slip, std::span<const double> speed,
                        std::span<double> terms) const {
   Parsed& p = *parsed_;
-  std::copy(values.begin(), values.end(), p.value.begin());
+  for (std::size_t k = 0; k < values.size(); ++k) p.value[k] = values[k] / p.parameters[k].si;
   try {
     for (std::size_t i = 0; i < slip.size(); ++i) {
       const SlidingState<double> at = slip.at(i, speed[i]);
@@ -333,8 +338,9 @@ void Formula::differentiate(std::size_t k, std::span<const double> values, const
   constexpr double kRelativeStep = 6e-6;  // cube root of the rounding unit: least error of a central difference
   if (k < values.size()) {
     std::vector<double> moved(values.begin(), values.end());
-    const double scale = std::max(std::abs(values[k]), std::abs(parsed_->parameters[k].start));
-    difference(kRelativeStep * (scale > 0 ? scale : 1), [&](double h, std::span<double> terms) {
+    const Parameter& parameter = parsed_->parameters[k];
+    const double scale = std::max(std::abs(values[k]), std::abs(parameter.start * parameter.si));
+    difference(kRelativeStep * (scale > 0 ? scale : parameter.si), [&](double h, std::span<double> terms) {
       moved[k] = values[k] + h;
       evaluate(moved, slip, speed, terms);
     });

@@ -20,10 +20,11 @@ TEST(Formula, FollowsItsExpressionInTheUnitsOfThePage) {
   EXPECT_EQ(model.parameters()[3].parameter.name, "v0");
   EXPECT_DOUBLE_EQ(model.parameters()[3].parameter.start, 25);
   EXPECT_EQ(model.parameters()[3].parameter.unit, "mm/s");
+  EXPECT_DOUBLE_EQ(model.parameters()[3].parameter.si, 1e-3);
   const Steady at(0.031, 1e-3, 1);
-  EXPECT_NEAR(run(model, {0.5, 0.3, 0.02, 25, 6}, at.slip)[0], 0.3 + 0.02 * std::exp(-1.0), 1e-12);
+  EXPECT_NEAR(run(model, {0.5, 0.3, 0.02, 0.025, 0.006}, at.slip)[0], 0.3 + 0.02 * std::exp(-1.0), 1e-12);
   const Steady back(-0.031, 1e-3, 1);
-  EXPECT_NEAR(run(model, {0.5, 0.3, 0.02, 25, 6}, back.slip)[0], -0.3 - 0.02 * std::exp(-1.0), 1e-12);
+  EXPECT_NEAR(run(model, {0.5, 0.3, 0.02, 0.025, 0.006}, back.slip)[0], -0.3 - 0.02 * std::exp(-1.0), 1e-12);
 }
 
 TEST(Formula, SeesEveryVariable) {
@@ -55,6 +56,9 @@ TEST(Formula, RefusesWhatItCannotRead) {
   EXPECT_NE(problem("hump = a*v; a=1 parsec").find("'parsec'"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; v=1, a=1").find("'v' is a variable"), std::string::npos);
   EXPECT_NE(problem("a*v; a=1").find("no '='"), std::string::npos);
+  // 300 K is 26.85 degC, but 5 K may be a width.
+  EXPECT_NE(problem("h = a*(temperature-T0); a=1, T0=300K").find("in degC"), std::string::npos);
+  EXPECT_EQ(problem("h = a*(temperature-T0); a=1, T0=26.85degC"), "accepted");
   EXPECT_NE(problem("hump = a*v; a=").find("no number"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,1]").find("bounds"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,10garbage]").find("bounds"), std::string::npos);

@@ -15,7 +15,7 @@ namespace tribofit {
 /// Variables: v [mm/s] (the speed |v_r|), acceleration [mm/s^2], t [s], angle [rad], distance [mm], stick_time [s],
 /// load [N], temperature [degC]. The values behind the semicolon are starts; a unit behind a value converts it to the
 /// unit of the variables above. A parameter named f is the frequency of a spectral line. Bounds may follow a start in
-/// brackets: v0=25mm/s[5,60] (in the same units). Parsed by muParser.
+/// brackets: v0=25mm/s[5,60] (in the same units). Temperatures are in degC. Parsed by muParser.
 class Formula {
  public:
   /// Throws InputError that shows where a formula does not parse, names unknown names (with the nearest known one) and
@@ -68,8 +68,7 @@ class Formula {
     return x.v.squaredNorm() > 0;
   }
 
-  /// terms[i] of the formula for parameter values (in the units of the formula) at every sample. Not finite where the
-  /// expression is not.
+  /// terms[i] of the formula for parameter values (SI) at every sample. Not finite where the expression is not.
   void evaluate(std::span<const double> values, const Slip& slip, std::span<const double> speed,
                 std::span<double> terms) const;
   /// d term/d parameter k (k == parameter_count(): d term/d speed), by central differences.
