@@ -166,6 +166,9 @@ IdentifyOptions options_from(const Settings& s) {
   options.threads = s.threads;
   read_reading(s, options.read);
   options.motion.trim = s.trim;
+  options.motion.stick.never = s.never_sticks;
+  if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
+  if (s.never_sticks && !s.stick_below.empty()) throw UsageError("--never-sticks and --stick-below exclude each other");
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
   read_laws(s.laws, options.laws);
   read_effects(s, options.laws, options.effects);

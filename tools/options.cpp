@@ -20,6 +20,9 @@ void add_input_options(const Command& app, Settings& s) {
   input("--rate", s.rate, "Samples per second where there is no time column, 20kHz");
   input("--with", s.second_file, "Second file of the same run, from the other instrument");
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
+  app.add_flag("--never-sticks", s.never_sticks, "The block never sticks: every sample is sliding, however slow")
+      .group("Reading");
+  input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
   app.add_flag("--trim,!--no-trim", s.trim, "Exclude the run-up of the disc (default); --no-trim keeps it")
       .group("Reading");
 }

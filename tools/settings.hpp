@@ -12,6 +12,8 @@ struct Settings {
   std::vector<std::string> continued_in;
   std::vector<std::string> confirm;  // diagnose: runs held back
   bool trim = true;
+  bool never_sticks = false;
+  std::string stick_below;
   bool keep_high_pass = false;  // rig: do not undo one found on the velocity
 
   std::vector<std::string> laws, effects, formulas;

@@ -23,6 +23,7 @@ class Assembler {
     trace_.path = run_.path;
     trace_.checksum = run_.checksum;
     trace_.notes = std::move(run_.notes);
+    trace_.clock_offset_std_error = run_.clock_offset_std_error;
     trace_.warnings = std::move(run_.warnings);
     set_steps();
     set_load();

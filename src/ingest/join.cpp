@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "clock.hpp"
@@ -76,12 +77,14 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
     run.warnings.push_back(std::string(find ? "the two files show too few break-aways to compare their clocks; "
                                             : "the clocks of the two files were not compared; ") +
                            (overlap ? "the times were taken as written" : "both were taken to start together"));
+    run.clock_offset_std_error = std::numeric_limits<double>::quiet_NaN();
     return overlap ? as_written : 0;
   }
   run.notes.push_back(
       fmt::format("clock offset from {} break-aways: {:+.6f} s (+-{:.2g} s) added to the times of {}; it holds any "
                   "lag of friction behind velocity too",
                   found.events, found.offset - as_written, found.uncertainty, other.path));
+  run.clock_offset_std_error = found.uncertainty;
   if (found.ambiguity > 0.95) {
     run.warnings.push_back("the stick-slip is so regular that the clock offset may be wrong by whole periods");
   }

@@ -20,6 +20,14 @@ inline constexpr std::size_t kFewestBlocks = 4;
 /// known to.
 inline constexpr double kSettled = 0.02;
 
+/// Standard deviations of v_r within which its plateau is at zero, and the least where there is no noise, over the
+/// largest excursion: what creep before break-away makes of a rest. Wider: the lowest speed of a programme is a stick.
+inline constexpr double kRestNoise = 3, kRestDepth = 1e-3;
+/// A plateau off zero is rest with a wrong zero, or with creep, where a spring loads it: plateaus that must show it,
+/// and the rise of friction over them, over its range. In slow sliding friction stays or wanders.
+inline constexpr std::size_t kFewestLoadings = 3;
+inline constexpr double kLeastLoading = 0.3;
+
 // ---- high-pass of the vibrometer
 
 /// Fall of a plateau over its duration, 2 pi f_c t, over the level: below the first a high-pass does not matter and is

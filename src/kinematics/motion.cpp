@@ -158,6 +158,8 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
   motion_.step = trace_.interval();
   motion_.friction_kind = trace_.friction_kind;
   motion_.velocity_kind = trace_.velocity_kind;
+  motion_.stick = options.stick;
+  motion_.clock_offset_std_error = trace_.clock_offset_std_error;
 }
 
 /// What the recorder did: its range and its gaps.
@@ -186,7 +188,7 @@ void MotionStages::find_disc() {
 }
 
 void MotionStages::find_plateau() {
-  search_ = kinematics::search_plateaus(trace_, disc_, motion_.step);
+  search_ = kinematics::search_plateaus(trace_, disc_, motion_.step, options_.stick);
 }
 
 /// A vibrometer that points the other way.

@@ -34,6 +34,42 @@ double roughness_of(std::span<const double> velocity) {
   return tenth < quiet * middle ? tenth : middle;
 }
 
+/// Friction from the beginning of a plateau to its end, in the direction of v_r there or of friction itself [1 or N].
+double rise_over(const Trace& trace, const StickPlateau& run, std::size_t length) {
+  const auto mean_at = [&](std::size_t block) {
+    const std::span<const double> friction(trace.friction);
+    const std::size_t begin = std::min(block * length, friction.size() - 1);
+    return mean_of(friction.subspan(begin, std::min(length, friction.size() - begin)));
+  };
+  const double first = mean_at(run.begin), last = mean_at(run.end - 1);
+  return last < 0 ? first - last : last - first;
+}
+
+/// Whether the plateaus of v_r are rest, not slow sliding: see search_plateaus().
+bool rests(const Trace& trace, const PlateauSearch& s) {
+  const double noise = std::max(kRestNoise * s.noise, kRestDepth * s.plateaus.depth);
+  if (s.disc.mean.empty()) {
+    if (std::abs(s.plateaus.level) <= noise) return true;
+  } else {
+    // The disc turns at a speed of its own: what moves with it moves at half of it at least, however wrong its gain.
+    std::size_t moving = 0, all = 0;
+    for (const StickPlateau& run : s.plateaus.runs) {
+      for (std::size_t b = run.begin; b < run.end; ++b, ++all) {
+        const double disc = s.disc.mean[b], block = s.blocks.mean[b];
+        moving += std::abs(disc - block) <= std::max(noise, 0.5 * std::abs(disc)) ? 1u : 0u;
+      }
+    }
+    if (2 * moving > all) return true;
+  }
+  if (s.plateaus.runs.size() < kFewestLoadings) return false;
+  std::vector<double> rises;
+  for (const StickPlateau& run : s.plateaus.runs) rises.push_back(rise_over(trace, run, s.blocks.length));
+  std::vector<double> friction = thinned(trace.friction, std::size_t{1} << 15);
+  for (double& mu : friction) mu = std::abs(mu);
+  const double range = quantile(friction, 0.95) - quantile(friction, 0.05);
+  return median(std::move(rises)) > kLeastLoading * range;
+}
+
 }  // namespace
 
 const Condition& first_known(const Condition& a, const Condition& b) {
@@ -74,7 +110,7 @@ Disc disc_of(const Trace& trace) {
   return disc;
 }
 
-PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step) {
+PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step, const StickRule& stick) {
   PlateauSearch s;
   const std::span<const double> velocity(trace.velocity);
   const std::size_t length = block_length(velocity);
@@ -86,7 +122,8 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step)
   }
   const double roughness = roughness_of(velocity);
   const bool block = trace.velocity_kind == VelocityKind::block;
-  if (trace.velocity_kind == VelocityKind::fixed_block) {  // a block that is held cannot stick to the disc
+  // A block that is held cannot stick to the disc.
+  if (trace.velocity_kind == VelocityKind::fixed_block || stick.never) {
     s.noise = roughness;
     return s;
   }
@@ -120,7 +157,8 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step)
   s.noise = s.plateaus.empty() ? roughness : spread_about_parabolas(velocity, s.plateaus.runs, s.blocks.length);
   if (s.noise == 0) s.noise = s.plateaus.empty() ? 0 : std::min(roughness, 1e-3 * s.plateaus.depth);
   s.sticks = !s.plateaus.empty() && (!block || !disc.varying.empty() || std::abs(s.plateaus.level) > 3 * s.noise);
-  if (!s.sticks) s.plateaus.runs.clear();
+  if (s.sticks && (!block || !disc.varying.empty())) s.sticks = rests(trace, s);
+  if (!s.sticks) s.plateaus.runs.clear(), s.plateaus.level = 0;
   return s;
 }
 

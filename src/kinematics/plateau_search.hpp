@@ -6,6 +6,7 @@
 
 #include "plateau.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::kinematics {
 
@@ -35,7 +36,10 @@ struct PlateauSearch {
   bool sticks = false;
 };
 
-PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step);
+/// What is merely slow is no plateau: where v_r was measured, or the speed of the disc varies, the block must be at
+/// rest on the disc (within its noise, or moving with it by half at least), or friction must load up as a spring loads
+/// it. stick: what the user says of it.
+PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step, const StickRule& stick);
 
 /// Whether the plateau runs against the disc, or against friction where the direction of the disc is not known.
 bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSearch& search);

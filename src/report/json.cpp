@@ -147,10 +147,10 @@ Json stick_slip_json(const Identification& result) {
       "amplitude_mm_s", s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre,
       "stick_time_s", s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
       "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
-      s.slip_time.std_error, "slips", s.cycles.size(), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s",
-      long_sticks(s).longest, "branch_difference", s.branch_difference.value, "branch_difference_std_error",
-      s.branch_difference.std_error, "motion", kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes,
-      "spectrum",
+      s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip", samples_in_slip(s), "sticks_over_1_s",
+      long_sticks(s).count, "longest_stick_s", long_sticks(s).longest, "branch_difference", s.branch_difference.value,
+      "branch_difference_std_error", s.branch_difference.std_error, "motion",
+      kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes, "spectrum",
       object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
              peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
 }

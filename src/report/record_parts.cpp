@@ -52,6 +52,18 @@ std::string cycles_text(const Segmentation& s) {
   return fmt::format("{} with a stick and a slip ({} slips in all)", both, s.cycles.size());
 }
 
+/// How many samples carry the law, and why the others do not.
+std::string slip_text(const Identification& r) {
+  const std::size_t slip = samples_in_slip(r.segmentation), all = r.motion.size();
+  std::string text = fmt::format("{} of {} samples", grouped(slip), grouped(all));
+  if (slip == all) return text;
+  const double limit = r.segmentation.stick_threshold / kMillimetre;
+  const std::string below = limit > 0 ? fmt::format(" below {} mm/s", significant(limit, 2)) : "";
+  return text + (r.segmentation.kind == MotionKind::always_slipping
+                     ? fmt::format("; the others are at rest{} and take no part in the fit", below)
+                     : fmt::format("; the others stick{} and take no part in the law of sliding", below));
+}
+
 void add_health(const Motion& motion, TerminalText& text) {
   text.heading("Health");
   bool found = false;
@@ -80,6 +92,7 @@ Facts condition_facts(const Motion& motion) {
 Facts stick_slip_facts(const Identification& r) {
   const Segmentation& s = r.segmentation;
   Facts facts = {{"cycles", cycles_text(s)}};
+  if (s.kind != MotionKind::always_sticking) facts.emplace_back("in slip", slip_text(r));
   const auto add = [&](const char* name, const Estimate& m, double unit, const char* unit_name,
                        const std::string& more = "") {
     if (!std::isfinite(m.value) || s.kind != MotionKind::stick_slip) return;

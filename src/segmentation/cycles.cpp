@@ -105,6 +105,32 @@ std::vector<Cycle> phases(const Motion& motion, const std::vector<RawSlip>& slip
   return cycles;
 }
 
+/// Whether anything sticks: what is slow beside the fastest slip need not be at rest.
+bool any_stick(const Motion& motion, const std::vector<Cycle>& cycles, const Thresholds& t) {
+  if (motion.stick.never || motion.velocity_kind == VelocityKind::fixed_block || cycles.empty()) return false;
+  std::vector<SampleRange> sticks;
+  for (const Cycle& c : cycles) {
+    if (c.stick.size() > 0) sticks.push_back(c.stick);
+  }
+  if (cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size())
+    sticks.push_back({cycles.back().slip.end, motion.size()});
+  if (motion.sticks || motion.stick.below > 0) return !sticks.empty();
+  return std::any_of(sticks.begin(), sticks.end(),
+                     [&](const SampleRange& stick) { return segmentation::rests(motion, stick, t); });
+}
+
+/// A block that rests before or after it slides does not stick and slip: what there is to see is the sliding.
+bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const Thresholds& t) {
+  constexpr std::ptrdiff_t kFewest = 3;  // break-aways that carry an analysis of cycles
+  const auto break_aways =
+      std::count_if(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
+  if (break_aways >= kFewest) return false;
+  std::size_t sliding = 0;
+  for (const RawSlip& slide : segmentation::without_rests(motion, segmentation::find_slides(motion), t.peak))
+    sliding += slide.samples.size();
+  return 2 * sliding > motion.size();
+}
+
 /// First samples after a gap in the clock.
 std::vector<std::size_t> gaps_of(const Motion& motion) {
   constexpr double longest = 1.5;  // samples
@@ -174,7 +200,6 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
   }
 }
 
-// A record that never sticks: one slip per direction and step.
 std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawSlip>& slips) {
   std::vector<RawSlip> parts;
   for (const RawSlip& slip : slips) {
@@ -193,6 +218,18 @@ std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawS
     }
   }
   return parts;
+}
+
+/// A record that never sticks is one slip per direction and step.
+void slide_throughout(const Motion& motion, double peak, Segmentation& result) {
+  const Thresholds t = segmentation::thresholds_without_stick(motion);
+  result.slip_threshold = t.slip;
+  result.stick_threshold = t.stick;
+  result.cycles.clear();
+  std::vector<RawSlip> slides = segmentation::find_slides(motion);
+  if (!motion.stick.never) slides = segmentation::without_rests(motion, slides, peak);
+  for (const RawSlip& part : split_at_steps(motion, slides)) result.cycles.push_back(blank_cycle(part));
+  if (result.cycles.empty()) result.kind = MotionKind::always_sticking;
 }
 
 double rms_block_velocity(const Motion& motion) {
@@ -262,21 +299,16 @@ Segmentation find_cycles(const Motion& motion) {
   const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
   result.cycles = phases(motion, slips, t);
   cut_at_gaps(motion, result.cycles);
-  const auto& cycles = result.cycles;
-  const bool ends_in_stick =
-      !cycles.empty() && cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size();
-  const bool any_stick =
-      ends_in_stick || std::any_of(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
-  result.kind = slips.empty() ? MotionKind::always_sticking
-                : any_stick   ? MotionKind::stick_slip
-                              : MotionKind::always_slipping;
-  if (result.kind == MotionKind::always_slipping) {
-    result.cycles.clear();
-    for (const RawSlip& part : split_at_steps(motion, slips)) result.cycles.push_back(blank_cycle(part));
-  }
+  const bool sticks = any_stick(motion, result.cycles, t);
+  result.kind = sticks ? MotionKind::stick_slip : MotionKind::always_slipping;
+  if (slips.empty() && !motion.stick.never) result.kind = MotionKind::always_sticking;
+  const bool rests_only = sticks && motion.stick.below == 0 && mostly_slides(motion, result.cycles, t);
+  if (rests_only) result.kind = MotionKind::always_slipping;
+  if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
   measure(motion, result.cycles);
   summarise(result);
   add_notes(result);
+  if (rests_only) result.notes.back() = "the record rests and slides, with too few break-aways for stick-slip";
   return result;
 }
 

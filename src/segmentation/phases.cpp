@@ -9,6 +9,9 @@
 namespace tribofit::segmentation {
 namespace {
 
+/// Standard deviations of v_r within which it is zero, and the part of the typical peak where there is no noise.
+constexpr double kRestNoise = 3, kRestPart = 1e-3;
+
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
 double typical_peak(const Motion& motion) {
   constexpr std::size_t parts = 512;
@@ -84,6 +87,7 @@ Thresholds thresholds_of(const Motion& motion) {
   double fastest = std::abs(motion.plateau_velocity);
   for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
   fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
+  if (motion.stick.below > 0) return {motion.stick.below, motion.stick.below, peak > motion.stick.below ? peak : 0};
   if (peak <= std::max(8 * noise, 1e-12 * fastest)) return {8 * noise, 5 * noise, 0};
   t.peak = peak;
   t.slip = std::max(0.06 * peak, std::min(8 * noise, 0.15 * peak));
@@ -96,6 +100,74 @@ std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& threshol
   std::vector<RawSlip> slips = hysteresis(motion, thresholds);
   drop_chatter(slips, thresholds.peak);
   return slips;
+}
+
+Thresholds thresholds_without_stick(const Motion& motion) {
+  const double band = kRestNoise * motion.velocity_noise;
+  return {band, band, 0};
+}
+
+std::vector<RawSlip> find_slides(const Motion& motion) {
+  std::vector<RawSlip> slides;
+  const double band = thresholds_without_stick(motion).slip;
+  const std::vector<double>& v = motion.relative_velocity;
+  std::size_t i = 0;
+  while (i < v.size() && std::abs(v[i]) <= band) ++i;  // nobody knows in which direction
+  while (i < v.size()) {
+    RawSlip slide;
+    slide.direction = v[i] > 0 ? 1 : -1;
+    slide.samples = {i, i + 1};
+    for (; i < v.size() && slide.direction * v[i] >= -band; ++i) {
+      const double u = slide.direction * v[i];
+      if (u > band) slide.samples.end = i + 1;
+      slide.peak = std::max(slide.peak, u);
+    }
+    slides.push_back(slide);
+  }
+  return slides;
+}
+
+std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSlip>& slides, double peak) {
+  constexpr std::size_t kBlock = 16, kFewest = 2;  // samples of a mean; means in a row that make a rest
+  const double limit = std::max(motion.velocity_noise, kRestPart * peak);
+  std::vector<RawSlip> moving;
+  for (const RawSlip& slide : slides) {
+    std::size_t begin = slide.samples.begin, rest = begin, blocks = 0;
+    const auto keep = [&](std::size_t end) {
+      if (end <= begin) return;
+      moving.push_back(slide);
+      moving.back().samples = {begin, end};
+    };
+    for (std::size_t i = begin; i < slide.samples.end; i += kBlock) {
+      const std::size_t count = std::min(kBlock, slide.samples.end - i);
+      const double mean = mean_of(std::span<const double>(motion.relative_velocity).subspan(i, count));
+      if (std::abs(mean - motion.plateau_velocity) <= limit) {
+        if (blocks++ == 0) rest = i;
+        continue;
+      }
+      if (blocks >= kFewest) keep(rest), begin = i;
+      blocks = 0;
+    }
+    keep(blocks >= kFewest ? rest : slide.samples.end);
+  }
+  return moving;
+}
+
+bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thresholds) {
+  constexpr std::size_t kFewest = 3, kShape = 10;  // samples that can rest; of which the shape shows
+  const std::size_t n = stick.size();
+  if (n < kFewest) return false;
+  const bool block = motion.velocity_kind == VelocityKind::block;
+  if (block && motion.disc_velocity.empty()) return true;
+  const auto mean = [&](double from, double to) {
+    const auto begin = static_cast<std::size_t>(from * static_cast<double>(n));
+    const auto end = std::max(begin + 1, static_cast<std::size_t>(to * static_cast<double>(n)));
+    return mean_of(std::span<const double>(motion.relative_velocity).subspan(stick.begin + begin, end - begin));
+  };
+  const double middle = mean(0.3, 0.7), noise = motion.velocity_noise;
+  if (block && std::abs(middle) <= 0.5 * std::abs(motion.disc_velocity[stick.begin + n / 2])) return true;
+  if (std::abs(middle) > std::max(kRestNoise * noise, kRestPart * thresholds.peak)) return false;
+  return n < kShape || std::abs(0.5 * (mean(0.1, 0.3) + mean(0.7, 0.9)) - middle) <= noise;
 }
 
 bool only_reverses(const Motion& motion, const RawSlip& before, const RawSlip& after, const Thresholds& thresholds) {

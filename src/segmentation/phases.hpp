@@ -30,6 +30,20 @@ struct RawSlip {
 /// Slips by hysteresis, without the chatter that follows a re-stick (much lower and shorter than the slips).
 std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& thresholds);
 
+/// Of a record that never sticks: below them the direction of sliding is not known.
+Thresholds thresholds_without_stick(const Motion& motion);
+
+/// Sliding of a record that never sticks, in pieces of one direction, however slow: all samples but those within the
+/// noise of zero before, after and between them.
+std::vector<RawSlip> find_slides(const Motion& motion);
+
+/// The same without the stretches in which v_r is zero within its noise: before, between and after.
+std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSlip>& slides, double peak);
+
+/// Whether the block rests in what the thresholds take for stick, as v_r shows it: its middle is at zero within the
+/// noise (or the block moves along with a disc of varying speed), and it is no turning point of a smooth motion.
+bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thresholds);
+
 /// v_r above the plateau of stick.
 inline double above_plateau(const Motion& motion, std::size_t i) {
   return motion.relative_velocity[i] - motion.plateau_velocity;

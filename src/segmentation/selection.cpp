@@ -42,6 +42,16 @@ bool Segmentation::is_selected(const Cycle& cycle) const {
   return is_selected(whole(cycle));
 }
 
+std::size_t samples_in_slip(const Segmentation& segmentation) {
+  std::size_t samples = 0;
+  const bool pieces = segmentation.kind == MotionKind::always_slipping;
+  for (const Cycle& cycle : segmentation.cycles) {
+    const bool selected = pieces ? segmentation.is_selected(cycle.slip) : segmentation.is_selected(cycle);
+    if (selected) samples += cycle.slip.size();
+  }
+  return samples;
+}
+
 void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
   if (selection.empty()) return;
   if (selection.cycles) exclude_cycles(*selection.cycles, motion, segmentation);

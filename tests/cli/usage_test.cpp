@@ -107,10 +107,11 @@ TEST(Usage, HelpAndVersion) {
   const Outcome help = shop.identify("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :
-       {"--radius",  "--speed",    "--load",    "--instruments", "--json",  "--csv",     "--columns",
-        "--units",   "--rate",     "--threads", "--seed",        "--quiet", "--law",     "--effect",
-        "--formula", "--protocol", "--loss",    "--starts",      "--folds", "--profile", "--no-trim",
-        "--with",    "--continue", "--version", "simulate",      "effects", "diagnose",  "Exit status"}) {
+       {"--radius",   "--speed",   "--load",    "--instruments",  "--json",        "--csv",
+        "--columns",  "--units",   "--rate",    "--threads",      "--seed",        "--quiet",
+        "--law",      "--effect",  "--formula", "--protocol",     "--loss",        "--starts",
+        "--folds",    "--profile", "--no-trim", "--never-sticks", "--stick-below", "--with",
+        "--continue", "--version", "simulate",  "effects",        "diagnose",      "Exit status"}) {
     EXPECT_THAT(help.out, HasSubstr(option));
   }
   EXPECT_THAT(help.err, IsEmpty());

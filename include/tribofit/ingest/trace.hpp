@@ -52,6 +52,9 @@ struct Trace {
 
   Conditions conditions;    ///< of the whole trace; radius unknown where the steps differ
   std::vector<Step> steps;  ///< at least one; they cover the trace without gaps
+  /// Standard error of the time between friction and velocity, where two instruments recorded them: that of the offset
+  /// found between their clocks [s]; NaN where it could not be found; 0 on one clock.
+  double clock_offset_std_error = 0;
 
   std::vector<std::string> notes;     ///< what was assumed or handled while reading, for the report
   std::vector<std::string> warnings;  ///< contradictions and defects that were handled

@@ -28,6 +28,12 @@ enum class PlateauCorrection {
   gain,    ///< the vibrometer reads too much or too little: v_b over the ratio
 };
 
+/// What counts as stick, where the user says it.
+struct StickRule {
+  bool never = false;  ///< nothing sticks: every sample slides, however slowly
+  double below = 0;    ///< |v_r| below which the block sticks [m/s]; 0: found from the record
+};
+
 /// A trace turned into relative motion: instruments corrected, run-up trimmed, v_r computed.
 ///
 /// v_r = omega r - v_b ([D] Eq 4). All vectors have the same length; optional channels are empty when absent.
@@ -53,9 +59,11 @@ struct Motion {
   double velocity_noise = 0;    ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
   double plateau_velocity = 0;  ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
   double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
-  double high_pass_std_error = 0;  ///< [Hz]
-  bool sticks = false;             ///< the trace has a plateau of stick
-  DiscRipple speed_ripple;         ///< found on the plateaus and undone
+  double high_pass_std_error = 0;     ///< [Hz]
+  bool sticks = false;                ///< the trace has a plateau of stick
+  StickRule stick;                    ///< as the user said
+  double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
+  DiscRipple speed_ripple;            ///< found on the plateaus and undone
 
   /// Plateau of v_b over the stated omega r, creep of the contact taken off, and its standard error from stick to
   /// stick. Radius (or speed) and gain of the vibrometer show in it alike. NaN where no radius and speed were stated,
@@ -80,6 +88,7 @@ struct MotionOptions {
   bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
   bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
   PlateauCorrection plateau = PlateauCorrection::none;
+  StickRule stick = {};
 };
 
 /// Computes the motion: declared instrument corrections first, then run-up, high-pass, speed, v_r, health.

@@ -95,7 +95,14 @@ struct Selection {
 /// nothing sticks there are no cycles to be chosen, which a note says, too.
 void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation);
 
-/// Finds stick and slip by hysteresis on |v_r| with thresholds from the trace's own noise.
+/// Samples of the slips that are selected: those to which a law of sliding is fitted.
+std::size_t samples_in_slip(const Segmentation& segmentation);
+
+/// Finds stick and slip by hysteresis on |v_r| with thresholds from the trace's own noise, or as Motion::stick says.
+///
+/// The block sticks where v_r is within the noise of zero, not where it is slow beside the fastest slip: a record in
+/// which it never rests is sliding throughout, whatever its range of speeds.
+///
 ///
 /// Break-away is placed between samples by fitting the growth of v_r after it (v_r ~ exp(lambda t) - 1 - lambda t, the
 /// solution of m v_r' = k (omega r) t + |dmu/dv| N v_r near v_r = 0); re-stick by a line through v_r before it.
