@@ -32,9 +32,28 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
   return comparison;
 }
 
+namespace {
+
+/// The observations of a record as the fit means them: its parameters refer to its own N0 and T0.
+Observations observed_for(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+  Observations out = observe(motion, segmentation, fit.model.needs());
+  out.mean_load = fit.mean_load;
+  out.mean_temperature = fit.mean_temperature;
+  return out;
+}
+
+}  // namespace
+
 Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
   Fit out = fit;
-  const Observations observations = observe(motion, segmentation, fit.model.needs());
+  if (fit.parameters.empty()) {
+    out.messages.insert(out.messages.begin(), "the fit failed: there is nothing to try on another record");
+    out.converged = false;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    out.error = {unknown, unknown, unknown, unknown};
+    return out;
+  }
+  const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
   const SampleErrors errors = sample_errors(fit.model, fit.values(), record, observations);
@@ -59,18 +78,22 @@ double held_out_std_error(const Fit& fit) {
 
 Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   Curve curve;
-  curve.velocity.assign(velocity.begin(), velocity.end());
   const std::vector<double> p = fit.values();
+  if (p.empty()) return curve;
+  curve.velocity.assign(velocity.begin(), velocity.end());
   const std::size_t n = p.size();
   // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
   // over a turn.
   const int turns = fit.model.needs().angle ? 24 : 1;
   const auto steady = [&](const std::vector<double>& q, double v) {
-    const double time[] = {0, 1}, speed[] = {v, v};
+    const double time[] = {-1, 0}, speed[] = {v, v};
     double mu[2], sum = 0;
     for (int k = 0; k < turns; ++k) {
       const double theta = 2 * std::numbers::pi * k / turns, angle[] = {theta, theta};
       Slip slip;
+      slip.mean_load = fit.mean_load;
+      slip.mean_temperature = fit.mean_temperature;
+      slip.disc_speed = fit.disc_speed;
       slip.time = time;
       slip.velocity = speed;
       slip.angle = angle;
@@ -105,7 +128,7 @@ std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmenta
   std::vector<double> mu(motion.size(), std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> p = fit.values();
   if (p.empty()) return mu;
-  const Observations observations = observe(motion, segmentation, fit.model.needs());
+  const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
   for (const auto& range : observations.slips) {

@@ -34,14 +34,18 @@ Slip FullRecord::slip(const Observations::SlipObservation& range) const {
     acceleration_ = slip_acceleration(motion, range.samples);
     slip.acceleration = acceleration_;
   }
-  slip.angle = part(channel.angle);
-  slip.distance = part(channel.distance);
-  slip.load = part(motion.load);
+  // What the observations lack the model was fitted without, though this record may have it.
+  const auto as_fitted = [&](const std::vector<double>& fitted, const std::vector<double>& recorded) {
+    return fitted.empty() ? std::span<const double>() : part(recorded);
+  };
+  slip.angle = as_fitted(observations_.angle, channel.angle);
+  slip.distance = as_fitted(observations_.distance, channel.distance);
+  slip.load = as_fitted(observations_.load, motion.load);
   if (motion.load.empty() && !observations_.load.empty()) {
     load_.assign(range.samples.size(), observations_.load[range.begin]);
     slip.load = load_;
   }
-  slip.temperature = part(motion.temperature);
+  slip.temperature = as_fitted(observations_.temperature, motion.temperature);
   return slip;
 }
 

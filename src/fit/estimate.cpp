@@ -97,7 +97,7 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
 /// [D] 3.2: levels from extremes, then the decay factor alone.
 Solution estimate_by_extremes(FitContext& context, Fit& fit) {
   Solution out;
-  out.extremes = extremes_of(context.observations, *context.records[0].segmentation);
+  out.extremes = extremes_of(context.observations, context.records);
   out.start = start_from_data(context.model, context.observations, context.bounds);
   apply_given(context.model, context.options.given, context.bounds, out.start);
   const std::array<double, 2> levels = out.extremes.means();

@@ -55,6 +55,11 @@ Fit empty_fit(const FrictionModel& model, Protocol protocol, const Observations&
   fit.cycles = observations.cycles;
   fit.fastest = observations.fastest;
   fit.slowest = observations.slowest;
+  fit.mean_load = observations.mean_load;
+  fit.mean_temperature = observations.mean_temperature;
+  for (const auto& slip : observations.slips) {
+    fit.disc_speed += slip.disc_speed / static_cast<double>(observations.slips.size());
+  }
   fit.stick_rmse = std::numeric_limits<double>::quiet_NaN();
   return fit;
 }
@@ -97,16 +102,15 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   set_floor(floor, fit);
 }
 
-/// What is known of one record only: the effect of the declared instruments, and the creep in stick.
-void fill_errors_of_record(const FitContext& context, const std::vector<double>& p, const std::vector<bool>& free,
-                           Fit& fit) {
-  if (context.records.size() != 1) return;
-  const Motion& motion = *context.records[0].motion;
-  const std::vector<double> systematic = systematic_errors(context.model, p, motion, context.observations,
+/// What the declared instruments make uncertain, and of one record the creep in stick.
+void fill_errors_of_records(const FitContext& context, const std::vector<double>& p, const std::vector<bool>& free,
+                            Fit& fit) {
+  const std::vector<double> systematic = systematic_errors(context.model, p, context.records, context.observations,
                                                            context.instruments, free, context.by_extremes());
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
-  if (context.model.acts_in_stick())
-    fit.stick_rmse = stick_creep_rmse(context.model, p, motion, *context.records[0].segmentation);
+  const Record& record = context.records[0];
+  if (context.records.size() == 1 && context.model.acts_in_stick())
+    fit.stick_rmse = stick_creep_rmse(context.model, p, *record.motion, *record.segmentation);
 }
 
 }  // namespace
@@ -168,9 +172,12 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   fill_errors(errors, fit);
   fill_floor(context, p, errors, fit);
   cross_validate(context, solution, equations, freedom.inside, errors, fit);
-  fill_errors_of_record(context, p, freedom.inside, fit);
-  if (options.profile && !context.by_extremes())
-    add_profiles(residuals, context.given, inverse_over(equations.total, freedom.inside), fit);
+  fill_errors_of_records(context, p, freedom.inside, fit);
+  if (!context.by_extremes()) {
+    const Eigen::MatrixXd inverse = inverse_over(equations.total, freedom.inside);
+    open_whole_ranges(residuals, context.given, inverse, fit);
+    if (options.profile) add_profiles(residuals, context.given, inverse, fit);
+  }
   add_messages(freedom.unconstrained, freedom.groups, fit);
   return fit;
 }

@@ -22,8 +22,7 @@ struct FitContext {
   ModelResiduals::Options loss{};
   ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
-  /// One record by the per-cycle extremes; several records are always fitted jointly.
-  bool by_extremes() const { return options.protocol == Protocol::published && records.size() == 1; }
+  bool by_extremes() const { return options.protocol == Protocol::published; }
   ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
     ModelResiduals out(model, observations, slips, loss);
     if (whitening.part > 0) out.whiten(whitening, own_levels);

@@ -41,6 +41,15 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
     fit.messages.push_back(
         names + " are not determined: the data fix only a combination of them, so none has an interval of its own");
   }
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const bool alone = std::none_of(groups.begin(), groups.end(), [k](const std::vector<std::size_t>& group) {
+      return std::find(group.begin(), group.end(), k) != group.end();
+    });
+    if (!fit.parameters[k].determined && alone) {
+      fit.messages.push_back(shown_name(fit.parameters[k]) +
+                             " is not determined: its 95 % interval holds every value within its bounds");
+    }
+  }
   add_correlations(fit);
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];

@@ -155,7 +155,7 @@ void add_channels(const Motion& motion, const Channels& needs, const Reducer& re
   if (needs.acceleration) add_acceleration(motion, out);
   if (needs.angle) out.angle = reduce.means(disc_angle(motion));
   if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
-  if (needs.load) {
+  if (needs.load || needs.force) {
     // Records that differ in a constant load show together what none shows alone.
     if (motion.load.empty() && motion.conditions.load.known()) {
       out.load.assign(out.time.size(), motion.conditions.load.value);

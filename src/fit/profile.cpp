@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <limits>
+
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 
@@ -78,6 +81,28 @@ std::vector<ProfilePoint> profile_about(const ModelResiduals& residuals, const B
 }
 
 }  // namespace
+
+void open_whole_ranges(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
+                       Fit& fit) {
+  constexpr double kFirstStep = 1e-3;  // of the range
+  const std::vector<double> best = fit.values();
+  const double t = t_quantile_95(fit.degrees_of_freedom);
+  for (std::size_t k = 0; k < best.size(); ++k) {
+    FitParameter& p = fit.parameters[k];
+    const double lower = bounds.lower[k], upper = bounds.upper[k];
+    const bool whole = p.determined && lower < upper && p.lower95 <= lower && p.upper95 >= upper;
+    if (!whole) continue;
+    const auto i = static_cast<Eigen::Index>(k);
+    const double rise = std::pow(t * p.std_error, 2) / inverse_curvature(i, i);
+    p.determined = false;
+    p.std_error = p.upper95 = std::numeric_limits<double>::infinity();
+    p.lower95 = -p.upper95;
+    if (!std::isfinite(rise) || !(rise > 0)) continue;
+    const double step = kFirstStep * (upper - lower);
+    p.profile_lower95 = interval_end(residuals, bounds, best, k, step, rise, -1);
+    p.profile_upper95 = interval_end(residuals, bounds, best, k, step, rise, +1);
+  }
+}
 
 void add_profiles(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
                   Fit& fit) {

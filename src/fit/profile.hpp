@@ -7,6 +7,11 @@
 
 namespace tribofit {
 
+/// Opens the interval of every parameter that holds all of its bounds: the data say nothing of it, or only that it
+/// lies above or below a value, which its profile then says.
+void open_whole_ranges(const ModelResiduals& residuals, const Bounds& bounds, const Eigen::MatrixXd& inverse_curvature,
+                       Fit& fit);
+
 /// Adds profile-likelihood 95 % intervals to a fit.
 ///
 /// Each parameter is moved away from its best value while the others are refitted, until the sum of squares has

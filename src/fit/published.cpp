@@ -26,11 +26,11 @@ std::array<double, 2> CycleExtremes::means(const std::vector<bool>& left_out) co
   return out;
 }
 
-CycleExtremes extremes_of(const Observations& observations, const Segmentation& segmentation) {
+CycleExtremes extremes_of(const Observations& observations, std::span<const Record> records) {
   CycleExtremes out;
   for (auto& values : out.of_cycle) values.assign(observations.cycles, kNaN);
   for (const auto& slip : observations.slips) {
-    const Cycle& cycle = segmentation.cycles[slip.segment];
+    const Cycle& cycle = records[slip.record].segmentation->cycles[slip.segment];
     if (cycle.stick.size() == 0 || !cycle.slip_complete) continue;
     out.of_cycle[0][slip.cycle] = cycle.stick_maximum;
     out.of_cycle[1][slip.cycle] = cycle.slip_minimum;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "influence.hpp"
@@ -18,7 +19,7 @@ struct CycleExtremes {
   /// Means over the cycles that are not in `left_out` (or over all); NaN when fewer than three are left.
   std::array<double, 2> means(const std::vector<bool>& left_out = {}) const;
 };
-CycleExtremes extremes_of(const Observations& observations, const Segmentation& segmentation);
+CycleExtremes extremes_of(const Observations& observations, std::span<const Record> records);
 
 /// Influence of each cycle: that on the two means, and what the parameters fitted after them (free) make of both.
 Eigen::MatrixXd published_influence(const NormalEquations& equations, const std::vector<bool>& free,

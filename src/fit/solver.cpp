@@ -64,14 +64,27 @@ class Cost : public ceres::CostFunction {
   mutable std::vector<double> all_;
 };
 
-/// Ceres reports trouble through glog, on stderr; a fit reports it in its result.
-void keep_logging_quiet() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    FLAGS_minloglevel = 3;
-    FLAGS_logtostderr = false;
-  });
-}
+/// Ceres reports trouble through glog, on stderr; a fit reports it in its result. While any fit is being solved glog
+/// keeps quiet; then it is as the program had it.
+class QuietLogging {
+ public:
+  QuietLogging() {
+    const std::lock_guard lock(guard_);
+    if (solving_++ > 0) return;
+    level_ = FLAGS_minloglevel;
+    FLAGS_minloglevel = google::GLOG_FATAL;
+  }
+  ~QuietLogging() {
+    const std::lock_guard lock(guard_);
+    if (--solving_ == 0) FLAGS_minloglevel = level_;
+  }
+  QuietLogging(const QuietLogging&) = delete;
+  QuietLogging& operator=(const QuietLogging&) = delete;
+
+ private:
+  static inline std::mutex guard_;
+  static inline int solving_ = 0, level_ = 0;
+};
 
 /// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must
 /// be shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
@@ -176,7 +189,7 @@ SolverResult unsolved(const Residuals& problem, std::span<const double> start, b
 
 SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower,
                       std::span<const double> upper, const SolverOptions& options) {
-  keep_logging_quiet();
+  const QuietLogging quiet;
   std::vector<std::size_t> free;
   for (std::size_t k = 0; k < start.size(); ++k) {
     if (lower.empty() || lower[k] < upper[k]) free.push_back(k);

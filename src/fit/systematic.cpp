@@ -1,7 +1,9 @@
 #include "systematic.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -11,128 +13,219 @@ namespace tribofit {
 
 namespace {
 
-/// A source of systematic error: how one standard deviation changes the observations.
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A source of systematic error: how one standard deviation changes the observations. What is NaN is not known.
 struct Shift {
-  std::vector<double> velocity, friction;  ///< one per value; empty: no change
-  double offset = 0, part = 0;             ///< |friction| by offset + part |friction|, break-aways and extremes too
+  std::vector<double> velocity = {}, friction = {};  ///< one per value; empty: no change
+  /// |friction| by offset + part |friction|, break-aways and extremes too; one per record, or empty.
+  std::vector<double> offset = {}, part = {};
+
+  double offset_of(std::size_t record) const { return offset.empty() ? 0 : offset[record]; }
+  double part_of(std::size_t record) const { return part.empty() ? 0 : part[record]; }
+  bool known() const {
+    const auto finite = [](double x) { return std::isfinite(x); };
+    return std::all_of(velocity.begin(), velocity.end(), finite) &&
+           std::all_of(friction.begin(), friction.end(), finite) && std::all_of(offset.begin(), offset.end(), finite) &&
+           std::all_of(part.begin(), part.end(), finite);
+  }
 };
 
 double uncertainty(const std::optional<Declared>& declared) {
   return declared ? declared->uncertainty : 0;
 }
 
-/// Displacement of the block from its mean [m] at every value: what an uncertain high-pass corner multiplies.
-std::vector<double> displacement(const Motion& motion, const Observations& observations) {
+/// A value of the observations in the motion it came from.
+struct Place {
+  const Motion* motion;
+  std::size_t record, sample;
+};
+
+/// What all shifts are made from.
+struct Sources {
+  std::span<const Record> records;
+  const Observations& observations;
+  const Instruments& instruments;
+  std::vector<Place> places;  ///< of every value
+
+  Sources(std::span<const Record> of_records, const Observations& of_values, const Instruments& declared)
+      : records(of_records), observations(of_values), instruments(declared), places(of_values.size()) {
+    for (const auto& slip : observations.slips) {
+      const Motion& motion = *records[slip.record].motion;
+      for (std::size_t i = slip.begin; i < slip.end; ++i) {
+        const auto at = std::lower_bound(motion.time.begin(), motion.time.end(), observations.time[i]);
+        const auto sample = static_cast<std::size_t>(at - motion.time.begin());
+        places[i] = {&motion, slip.record, std::min(sample, motion.size() - 1)};
+      }
+    }
+  }
+
+  /// change(place, index) of every value.
+  template <class Change>
+  std::vector<double> values(Change&& change) const {
+    std::vector<double> out(places.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(places[i], i);
+    return out;
+  }
+  /// change(motion) of every record.
+  template <class Change>
+  std::vector<double> each(Change&& change) const {
+    std::vector<double> out;
+    for (const Record& record : records) out.push_back(change(*record.motion));
+    return out;
+  }
+};
+
+/// v_r was made from omega r as stated or recorded.
+bool follows_stated_disc(const Motion& motion) {
+  return motion.velocity_kind != VelocityKind::relative && motion.conditions.speed.source != "plateau";
+}
+
+/// The speed of the disc was recorded, not stated (where a ripple was undone, the channel was made from the statement).
+bool speed_was_recorded(const Motion& motion) {
+  return !motion.disc_speed.empty() && motion.speed_ripple.amplitude == 0;
+}
+
+const Condition& condition_at(const Motion& motion, std::size_t sample, Condition Conditions::*which) {
+  for (const Step& step : motion.steps) {
+    const Condition& own = step.conditions.*which;
+    if (step.begin <= sample && sample < step.end && own.known()) return own;
+  }
+  return motion.conditions.*which;
+}
+
+/// omega at a sample; NaN where it is not known [rad/s].
+double disc_speed_at(const Place& at) {
+  if (!at.motion->disc_speed.empty()) return at.motion->disc_speed[at.sample];
+  const Condition& speed = condition_at(*at.motion, at.sample, &Conditions::speed);
+  return speed.known() ? speed.value : kUnknown;
+}
+
+/// N at a sample; NaN where it is not known [N]. 1 where friction is a force.
+double load_at(const Place& at) {
+  if (at.motion->friction_kind == FrictionKind::force) return 1;
+  if (!at.motion->load.empty()) return at.motion->load[at.sample];
+  const Condition& load = condition_at(*at.motion, at.sample, &Conditions::load);
+  return load.known() ? load.value : kUnknown;
+}
+
+/// Displacement of the block from its mean [m] at every sample: what an uncertain high-pass corner multiplies.
+std::vector<double> displacement(const Motion& motion) {
   const std::size_t n = motion.size();
-  double mean = 0;
+  double mean = 0, x = 0;
   std::vector<double> block(n);
   for (std::size_t i = 0; i < n; ++i) {
     block[i] = motion.disc_velocity_at(i) - motion.relative_velocity[i];
-    mean += block[i];
+    mean += block[i] / static_cast<double>(n);
   }
-  mean /= static_cast<double>(n);
-  std::vector<double> at_values;
-  double x = 0;
-  std::size_t i = 0;
-  for (const auto& slip : observations.slips) {
-    for (std::size_t begin = slip.samples.begin; begin < slip.samples.end; begin += observations.samples_per_value) {
-      for (; i <= begin; ++i) x += (block[i] - mean) * motion.step;
-      at_values.push_back(x);
-    }
-  }
-  return at_values;
+  for (double& v : block) v = x += (v - mean) * motion.step;
+  return block;
 }
 
-/// `delay` times dv_r/dt at every value, slip by slip.
-std::vector<double> slopes(const Observations& observations, double delay) {
+/// `delay` of each record times dv_r/dt at every value, slip by slip.
+std::vector<double> slopes(const Observations& observations, const std::vector<double>& delay) {
   std::vector<double> out(observations.size(), 0.0);
   for (const auto& slip : observations.slips) {
+    if (delay[slip.record] == 0) continue;
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
       const std::size_t before = std::max(i, slip.begin + 1) - 1, after = std::min(i + 1, slip.end - 1);
       if (after == before) continue;
-      out[i] = delay * (observations.velocity[after] - observations.velocity[before]) /
+      out[i] = delay[slip.record] * (observations.velocity[after] - observations.velocity[before]) /
                (observations.time[after] - observations.time[before]);
     }
   }
   return out;
 }
 
-/// What the uncertainties of radius, speed and vibrometer do to v_r.
-void add_velocity_shifts(const Motion& motion, const Observations& observations, const Instruments& instruments,
-                         std::vector<Shift>& shifts) {
-  const auto values = [&](auto&& change) {
-    std::vector<double> out(observations.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(i);
-    return out;
-  };
-  const auto block_velocity = [&](std::size_t i) { return motion.constant_disc_velocity - observations.velocity[i]; };
-  const auto& rig = instruments.rig;
-  const auto& vibrometer = instruments.vibrometer;
-  const bool plateau = motion.conditions.speed.source == "plateau";
-  if (const double u = uncertainty(rig.radius); u > 0 && !plateau && motion.conditions.speed.known()) {
-    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.speed.value; }), {}});
+/// What the uncertainties of radius and speed do to v_r.
+void add_disc_shifts(const Sources& s, std::vector<Shift>& shifts) {
+  const auto& rig = s.instruments.rig;
+  if (const double u = uncertainty(rig.radius); u > 0) {
+    shifts.push_back({s.values(
+        [&](const Place& at, std::size_t) { return follows_stated_disc(*at.motion) ? u * disc_speed_at(at) : 0.0; })});
   }
-  if (const double u = uncertainty(rig.speed); u > 0 && motion.conditions.radius.known()) {
-    shifts.push_back({values([&](std::size_t) { return u * motion.conditions.radius.value; }), {}});
+  if (const double u = uncertainty(rig.speed); u > 0) {
+    shifts.push_back({s.values([&](const Place& at, std::size_t) {
+      if (!follows_stated_disc(*at.motion) || speed_was_recorded(*at.motion)) return 0.0;
+      const Condition& radius = condition_at(*at.motion, at.sample, &Conditions::radius);
+      return radius.known() ? u * radius.value : kUnknown;
+    })});
   }
+}
+
+/// What those of the vibrometer do to it.
+void add_vibrometer_shifts(const Sources& s, std::vector<Shift>& shifts) {
+  const auto& vibrometer = s.instruments.vibrometer;
   if (const double u = uncertainty(vibrometer.gain); u > 0) {
     // v_b = reading/gain; where omega r was read off the plateau it scales with it, and so does v_r as a whole.
     const double part = u / vibrometer.gain->value;
-    shifts.push_back(
-        {values([&](std::size_t i) { return plateau ? -part * observations.velocity[i] : part * block_velocity(i); }),
-         {}});
+    shifts.push_back({s.values([&](const Place& at, std::size_t i) {
+      const double v = s.observations.velocity[i];
+      return follows_stated_disc(*at.motion) ? part * (at.motion->disc_velocity_at(at.sample) - v) : -part * v;
+    })});
   }
-  const double corner = vibrometer.high_pass ? uncertainty(vibrometer.high_pass) : motion.high_pass_std_error;
-  if (corner > 0) {
-    const std::vector<double> x = displacement(motion, observations);
-    shifts.push_back({values([&](std::size_t i) { return -2 * std::numbers::pi * corner * x[i]; }), {}});
+  std::vector<std::vector<double>> x;
+  for (const Record& record : s.records) x.push_back(displacement(*record.motion));
+  const auto shift_of = [&](double corner, std::size_t only) {
+    return Shift{s.values([&](const Place& at, std::size_t) {
+      return at.record == only || only == s.records.size() ? -2 * std::numbers::pi * corner * x[at.record][at.sample]
+                                                           : 0.0;
+    })};
+  };
+  if (vibrometer.high_pass) {
+    if (const double u = uncertainty(vibrometer.high_pass); u > 0) shifts.push_back(shift_of(u, s.records.size()));
+    return;
+  }
+  for (std::size_t r = 0; r < s.records.size(); ++r) {  // found in each record by itself
+    const double u = s.records[r].motion->high_pass_std_error;
+    if (u > 0) shifts.push_back(shift_of(u, r));
   }
 }
 
 /// What delays between the channels do. Low-passes are corrected as the delay they make at low frequency.
-void add_delay_shifts(const Observations& observations, const Instruments& instruments, std::vector<Shift>& shifts) {
+void add_delay_shifts(const Sources& s, std::vector<Shift>& shifts) {
   constexpr double kSensorDamping = 0.7;
+  const Instruments& instruments = s.instruments;
   const auto low_pass_delay = [](const std::optional<Declared>& corner_frequency, double factor) {
     const double u_f = uncertainty(corner_frequency);
     return u_f > 0 ? factor * u_f / (2 * std::numbers::pi * std::pow(corner_frequency->value, 2)) : 0.0;
   };
   for (const double u : {uncertainty(instruments.vibrometer.delay), low_pass_delay(instruments.vibrometer.low_pass, 1),
                          low_pass_delay(instruments.force_sensor.bandwidth, 2 * kSensorDamping)}) {
-    if (u > 0) shifts.push_back({slopes(observations, u), {}});
+    if (u > 0) shifts.push_back({slopes(s.observations, std::vector<double>(s.records.size(), u))});
   }
-}
-
-/// Mean over each value of the change of friction by the inertia of a mass below the sensor that is uncertain: `scale`
-/// of friction per m/s^2.
-std::vector<double> inertia_changes(const Motion& motion, const Observations& observations, double scale) {
-  const std::vector<double> full = block_acceleration(motion);
-  std::vector<double> change;
-  for (const auto& slip : observations.slips) {
-    for (std::size_t s = slip.samples.begin; s < slip.samples.end; s += observations.samples_per_value) {
-      const std::size_t end = std::min(s + observations.samples_per_value, slip.samples.end);
-      double sum = 0;
-      for (std::size_t i = s; i < end; ++i) sum += full[i];
-      change.push_back(scale * sum / static_cast<double>(end - s));
-    }
+  for (std::size_t r = 0; r < s.records.size(); ++r) {  // the clocks were compared in each record by itself
+    const double u = s.records[r].motion->clock_offset_std_error;
+    if (u == 0) continue;
+    std::vector<double> delay(s.records.size(), 0.0);
+    delay[r] = u;
+    shifts.push_back({slopes(s.observations, delay)});
   }
-  return change;
 }
 
 /// What the uncertainties of force sensor and load do to friction.
-void add_friction_shifts(const Motion& motion, const Observations& observations, const Instruments& instruments,
-                         std::vector<Shift>& shifts) {
-  const auto& rig = instruments.rig;
-  const auto& sensor = instruments.force_sensor;
-  const auto zero = zero_of_friction(sensor, motion.friction_kind, motion.conditions.load);
-  if (const double u = uncertainty(zero); u > 0) shifts.push_back({{}, {}, -u, 0});
-  if (const double u = uncertainty(sensor.crosstalk); u > 0) shifts.push_back({{}, {}, -u, 0});
-  if (const double u = uncertainty(sensor.gain); u > 0) shifts.push_back({{}, {}, 0, -u / sensor.gain->value});
+void add_friction_shifts(const Sources& s, std::vector<Shift>& shifts) {
+  const auto& rig = s.instruments.rig;
+  const auto& sensor = s.instruments.force_sensor;
+  const std::vector<double> zero = s.each([&](const Motion& motion) {
+    return -uncertainty(zero_of_friction(sensor, motion.friction_kind, motion.conditions.load));
+  });
+  if (uncertainty(sensor.zero) > 0) shifts.push_back({.offset = zero});
+  const auto same = [&](double value) { return std::vector<double>(s.records.size(), value); };
+  if (const double u = uncertainty(sensor.crosstalk); u > 0) shifts.push_back({.offset = same(-u)});
+  if (const double u = uncertainty(sensor.gain); u > 0) shifts.push_back({.part = same(-u / sensor.gain->value)});
   if (const double u = uncertainty(rig.load); u > 0 && !sensor.load_measured) {
-    shifts.push_back({{}, {}, 0, -u / rig.load->value});
+    shifts.push_back({.part = s.each([&](const Motion& motion) {
+      return motion.friction_kind == FrictionKind::force ? 0.0 : -u / rig.load->value;
+    })});
   }
-  if (const double u = uncertainty(sensor.mass_below); u > 0 && motion.conditions.load.known()) {
+  if (const double u = uncertainty(sensor.mass_below); u > 0) {
     // In rigid stick the block moves with the disc, so the levels at break-away do not change.
-    shifts.push_back({{}, inertia_changes(motion, observations, u / motion.conditions.load.value)});
+    std::vector<std::vector<double>> acceleration;
+    for (const Record& record : s.records) acceleration.push_back(block_acceleration(*record.motion));
+    shifts.push_back({.friction = s.values([&](const Place& at, std::size_t) {
+      return u * acceleration[at.record][at.sample] / load_at(at);
+    })});
   }
 }
 
@@ -142,26 +235,44 @@ Observations moved(const Observations& observations, const Shift& shift) {
   for (std::size_t i = 0; i < shift.velocity.size(); ++i) out.velocity[i] += shift.velocity[i];
   for (std::size_t i = 0; i < shift.friction.size(); ++i) out.friction[i] += shift.friction[i];
   for (auto& slip : out.slips) {
+    const double offset = shift.offset_of(slip.record), part = shift.part_of(slip.record);
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
       // An offset is of the sensor, not of the direction of sliding.
-      out.friction[i] += shift.offset + shift.part * out.friction[i];
+      out.friction[i] += offset + part * out.friction[i];
     }
-    slip.break_away_friction += slip.direction * shift.offset + shift.part * slip.break_away_friction;
+    slip.break_away_friction += slip.direction * offset + part * slip.break_away_friction;
   }
   return out;
 }
 
+/// How the levels of per-cycle extremes follow: means over the slips.
+Eigen::VectorXd moved_levels(const Observations& observations, const Shift& shift, const std::vector<double>& p) {
+  Eigen::VectorXd levels = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
+  const auto slips = static_cast<double>(observations.slips.size());
+  for (const auto& slip : observations.slips) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      levels(static_cast<Eigen::Index>(k)) +=
+          (shift.offset_of(slip.record) + shift.part_of(slip.record) * p[k]) / slips;
+    }
+  }
+  return levels;
+}
+
 }  // namespace
 
-std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
-                                      const Observations& observations, const Instruments& instruments,
-                                      const std::vector<bool>& free, bool published) {
+std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
+                                      std::span<const Record> records, const Observations& observations,
+                                      const Instruments& instruments, const std::vector<bool>& free, bool published) {
   std::vector<double> squares(p.size(), 0.0);
   std::vector<Shift> shifts;
-  add_velocity_shifts(motion, observations, instruments, shifts);
-  add_delay_shifts(observations, instruments, shifts);
-  add_friction_shifts(motion, observations, instruments, shifts);
+  const Sources sources(records, observations, instruments);
+  add_disc_shifts(sources, shifts);
+  add_vibrometer_shifts(sources, shifts);
+  add_delay_shifts(sources, shifts);
+  add_friction_shifts(sources, shifts);
   if (shifts.empty()) return squares;
+  if (!std::all_of(shifts.begin(), shifts.end(), [](const Shift& shift) { return shift.known(); }))
+    return std::vector<double>(p.size(), kUnknown);
   const std::vector<std::size_t> all = all_slips(observations);
   const auto gradient = [&](const Observations& at, Eigen::MatrixXd* curvature) {
     const NormalEquations equations = normal_equations(ModelResiduals(model, at, all), at, p);
@@ -174,9 +285,8 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   const Eigen::VectorXd base = gradient(observations, &curvature);
   const Eigen::MatrixXd inverse = inverse_over(curvature, free);
   for (const Shift& shift : shifts) {
-    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());  // of per-cycle extremes, which give them
-    for (Eigen::Index k = 0; published && k < 2; ++k)
-      levels(k) = shift.offset + shift.part * p[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd levels =
+        published ? moved_levels(observations, shift, p) : Eigen::VectorXd(Eigen::VectorXd::Zero(curvature.rows()));
     const Eigen::VectorXd pull = gradient(moved(observations, shift), nullptr) - base;
     const Eigen::VectorXd step = levels - inverse * (pull + curvature * levels);
     for (std::size_t k = 0; k < p.size(); ++k) squares[k] += std::pow(step(static_cast<Eigen::Index>(k)), 2);

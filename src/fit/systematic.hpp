@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model_residuals.hpp"
@@ -9,9 +10,11 @@ namespace tribofit {
 
 /// Standard uncertainty of each parameter from what the instruments file declares (and from a high-pass that was found
 /// and undone): every declared uncertainty moves velocity or friction by one standard deviation, one Newton step says
-/// how far the parameters follow, and independent sources add in squares. Zero where nothing is declared.
-std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
-                                      const Observations& observations, const Instruments& instruments,
-                                      const std::vector<bool>& free, bool published);
+/// how far the parameters follow, and independent sources add in squares. So does the offset between the clocks of two
+/// instruments. What is declared moves all records alike, what was found in a record moves that one. Zero where nothing
+/// is declared; NaN where something is whose effect on these records is not known.
+std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
+                                      std::span<const Record> records, const Observations& observations,
+                                      const Instruments& instruments, const std::vector<bool>& free, bool published);
 
 }  // namespace tribofit

@@ -20,7 +20,7 @@ constexpr const char* kValueColumns =
 Json numbers_json(const PooledValue& v) {
   return object("unit", v.unit, "runs", v.runs, "mean", v.mean, "mean_std_error", v.standard_error_of_mean, "value",
                 v.value, "std_error", v.std_error, "ci95", interval_json(v.lower95, v.upper95), "statistical",
-                v.statistical, "between_runs", v.between, "systematic", v.systematic);
+                v.statistical, "between_runs", v.between, "systematic", positive_or_null(v.systematic));
 }
 
 Json value_json(const PooledValue& v) {

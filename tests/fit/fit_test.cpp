@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"formula",
                          Law(ExponentialLaw{}),
                          {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")},
-                         {0.02, 25, 6}}),
+                         {0.02, 0.025, 0.006}}),
     [](const auto& c) { return std::string(c.param.name); });
 
 TEST(Fit, WhatTheDataDoNotDetermineHasNoFiniteInterval) {

@@ -58,13 +58,15 @@ struct FitParameter {
   double value = 0;
   double std_error = 0;                             ///< statistical, from cycle to cycle; infinite where not determined
   double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval; infinite where not determined
-  double systematic = 0;                            ///< standard uncertainty from the declared instruments
-  double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for
+  double systematic = 0;                            ///< standard uncertainty from the declared instruments and the
+                                                    ///< clocks; NaN: not known; 0: nothing is declared
+  double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for or not determined by itself
   std::vector<ProfilePoint> profile;                ///< by value, from twice the half-width below to twice above; empty
                                                     ///< unless asked for
   double start = 0;
   bool at_bound = false;
-  bool determined = true;  ///< false: the data fix only a combination of it with others, which a message names
+  /// false: the data fix only a combination of it with others, or nothing of it within its bounds; a message says so.
+  bool determined = true;
 };
 
 /// What the model leaves, over slip samples and break-aways (see Observations).
@@ -102,9 +104,11 @@ struct Fit {
   std::size_t observations = 0;  ///< samples
   std::size_t cycles = 0;
   double stick_rmse =
-      0;               ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
-  double fastest = 0;  ///< the data reach up to this |v_r| [m/s]
-  double slowest = 0;  ///< and down to this one; 0 where slips begin in stick [m/s]
+      0;  ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
+  double mean_load = 1, mean_temperature = 0;        ///< N0 [N] and T0 [degC] to which the parameters refer
+  double disc_speed = 0;                             ///< mean omega of the slips [rad/s]; 0 where it is not known
+  double fastest = 0;                                ///< the data reach up to this |v_r| [m/s]
+  double slowest = 0;                                ///< and down to this one; 0 where slips begin in stick [m/s]
   double degrees_of_freedom = 1;                     ///< of the t distribution of the statistical errors
   std::vector<Correlation> correlations;             ///< those above 0.9 in size, largest first
   std::vector<double> covariance;                    ///< of the values (SI), row by row, statistical
@@ -136,7 +140,7 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
               const Observations& observations, const Instruments& instruments = {}, const FitOptions& options = {});
 
 /// The same for several records with all parameters shared; `observations` are theirs, joined in the same order. The
-/// floor is the mean of theirs. Per-cycle extremes and systematic errors are for one record.
+/// floor is the mean of theirs; what is uncertain in the instruments is so in all of them alike.
 Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
               const Instruments& instruments = {}, const FitOptions& options = {});
 
@@ -147,7 +151,8 @@ Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 /// Sets the noise floor of a fit and the share of the error above it that the model explains.
 void set_floor(const Floor& floor, Fit& fit);
 
-/// A fit tried on another record with every parameter frozen: its errors there, all of them held out.
+/// A fit tried on another record with every parameter frozen, at the N0 and T0 of the fit: its errors there, all of
+/// them held out. A fit that failed stays failed, with a message.
 Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
 
 /// Standard error of the held-out RMSE, from cycle to cycle [1 or N].
@@ -163,13 +168,13 @@ struct Comparison {
 Comparison compare_held_out(const Fit& first, const Fit& second);
 
 /// mu(v) of a fit with its pointwise 95 % band (statistical) in steady sliding at the given speeds [m/s], at mean load
-/// and temperature, at the start of the record.
+/// and temperature, at the start of the record and the mean speed of the disc. Empty for a fit that failed.
 struct Curve {
   std::vector<double> velocity, mu, lower95, upper95;
 };
 Curve law_curve(const Fit& fit, std::span<const double> velocity);
 
-/// Model friction at every sample of the slips (NaN in stick and outside), signed.
+/// Model friction at every sample of the slips (NaN in stick and outside), signed, at the N0 and T0 of the fit.
 std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
 
 }  // namespace tribofit

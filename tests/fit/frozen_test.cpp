@@ -1,0 +1,222 @@
+// What a fit is taken for beside its own record: failed fits, other loads, several records, what nothing determines.
+#include <glog/logging.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "synthetic.hpp"
+#include "tribofit/fit/fit.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+const FrictionModel kExponential(ExponentialLaw{});
+const std::vector<double> kTruth = synthetic::table4_15mm(ExponentialLaw{});
+
+Fit fit_record(const FrictionModel& model, const synthetic::Record& record, const Instruments& instruments = {},
+               const FitOptions& options = {}) {
+  const Observations observations = observe(record.motion, record.segmentation, model.needs());
+  return fit_model(model, record.motion, record.segmentation, observations, instruments, options);
+}
+
+/// The same record without any stick: one slip after the other.
+synthetic::Record never_sticking(synthetic::Record record) {
+  record.segmentation.kind = MotionKind::always_slipping;
+  for (Cycle& cycle : record.segmentation.cycles) {
+    cycle.stick = {};
+    cycle.break_away_friction = cycle.stick_maximum = std::numeric_limits<double>::quiet_NaN();
+  }
+  return record;
+}
+
+TEST(FailedFit, HasNoCurveAndNothingToTry) {
+  const synthetic::Record record = never_sticking(synthetic::make(kExponential, kTruth, {}));
+  FitOptions published;
+  published.protocol = Protocol::published;
+  const Fit fit = fit_record(kExponential, record, {}, published);
+  ASSERT_FALSE(fit.converged);
+  ASSERT_TRUE(fit.parameters.empty());
+  const Curve curve = law_curve(fit, std::vector<double>{0.01, 0.02});
+  EXPECT_TRUE(curve.velocity.empty() && curve.mu.empty() && curve.lower95.empty());
+  const Fit frozen = evaluate_frozen(fit, record.motion, record.segmentation);
+  EXPECT_FALSE(frozen.converged);
+  EXPECT_TRUE(std::isnan(frozen.error.held_out_rmse));
+  EXPECT_FALSE(frozen.messages.empty());
+  for (const double mu : predict(fit, record.motion, record.segmentation)) EXPECT_TRUE(std::isnan(mu));
+}
+
+synthetic::Record at_load(double mean, double swing, const FrictionModel& model, std::vector<double> p, double n0) {
+  synthetic::Options options;
+  options.cycles = 12;
+  // Levels of the coefficient at this load, by hand: mu (N/N0)^-p, cycle by cycle.
+  const double exponent = p.back();
+  p.pop_back();
+  synthetic::Record record = synthetic::make(model, p, options);
+  std::size_t number = 0;
+  for (Cycle& cycle : record.segmentation.cycles) {
+    const double load = mean + swing * std::sin(static_cast<double>(number++));
+    const double factor = std::pow(load / n0, -exponent);
+    for (std::size_t i = cycle.stick.begin; i < cycle.slip.end; ++i) {
+      record.motion.friction[i] *= factor;
+      record.motion.load.push_back(load);
+    }
+    cycle.break_away_friction *= factor;
+  }
+  return record;
+}
+
+TEST(FrozenFit, ItsParametersReferToItsOwnLoad) {
+  constexpr double kExponent = 0.3;
+  std::vector<double> p = kTruth;
+  p.push_back(kExponent);
+  const FrictionModel model(ExponentialLaw{}, {make_effect("load-dependence")});
+  const synthetic::Record light = at_load(50, 10, kExponential, p, 50), heavy = at_load(100, 10, kExponential, p, 50);
+  const Fit fit = fit_record(model, light);
+  ASSERT_NEAR(fit.parameters[3].value, kExponent, 1e-3);
+  EXPECT_NEAR(fit.mean_load, 50, 3);
+  const Fit there = evaluate_frozen(fit, heavy.motion, heavy.segmentation);
+  EXPECT_LT(there.error.rmse, 1e-4);
+  const std::vector<double> mu = predict(fit, heavy.motion, heavy.segmentation);
+  double worst = 0;
+  for (std::size_t i = 0; i < mu.size(); ++i) {
+    if (std::isfinite(mu[i])) worst = std::max(worst, std::abs(mu[i] - heavy.motion.friction[i]));
+  }
+  EXPECT_LT(worst, 1e-3);
+}
+
+/// The reading mu - m_s a/N follows N(t) where it was recorded, in the fit as in its errors.
+TEST(FrozenFit, AMassBelowTheSensorSeesTheLoadAsRecorded) {
+  synthetic::Options options;
+  options.cycles = 20;
+  synthetic::Record record = synthetic::make(kExponential, kTruth, options);
+  const FrictionModel model(ExponentialLaw{}, {make_effect("sensor-inertia")});
+  constexpr double kMass = 0.2;
+  std::size_t number = 0;
+  for (Cycle& cycle : record.segmentation.cycles) {
+    const double load = number++ % 2 == 0 ? 20 : 80;
+    const std::vector<double> a = slip_acceleration(record.motion, cycle.slip);
+    for (std::size_t i = cycle.stick.begin; i < cycle.slip.end; ++i) {
+      record.motion.load.push_back(load);
+      if (i >= cycle.slip.begin) record.motion.friction[i] -= kMass * a[i - cycle.slip.begin] / load;
+    }
+  }
+  const Fit fit = fit_record(model, record);
+  ASSERT_EQ(fit.parameters.size(), 4u);
+  EXPECT_NEAR(fit.parameters[3].value, kMass, 0.02 * kMass);
+  EXPECT_LT(fit.error.rmse, 2e-4);
+}
+
+TEST(SeveralRecords, PerCycleExtremesAreThoseOfAll) {
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.cycles = 20;
+  const synthetic::Record a = synthetic::make(kExponential, kTruth, options);
+  options.seed = 2;
+  const synthetic::Record b = synthetic::make(kExponential, {0.49, 0.3, 52.14}, options);
+  const Record records[] = {{&a.motion, &a.segmentation}, {&b.motion, &b.segmentation}};
+  std::vector<Observations> each;
+  for (const Record& record : records) each.push_back(observe(*record.motion, *record.segmentation));
+  const Observations all = join(each);
+  FitOptions published;
+  published.protocol = Protocol::published;
+  const Fit fit = fit_model(kExponential, records, all, {}, published);
+  ASSERT_TRUE(fit.converged);
+  double maxima = 0, minima = 0, count = 0;
+  for (const Record& record : records) {
+    for (const Cycle& cycle : record.segmentation->cycles) {
+      maxima += cycle.stick_maximum, minima += cycle.slip_minimum, count += 1;
+    }
+  }
+  EXPECT_NEAR(fit.parameters[0].value, maxima / count, 1e-12);
+  EXPECT_NEAR(fit.parameters[1].value, minima / count, 1e-12);
+}
+
+/// Systematic parts of one record, of two, with the disc as stated and as a recorded channel.
+TEST(SeveralRecords, SystematicPartsDoNotVanish) {
+  synthetic::Options options;
+  options.noise = 0.001;
+  const synthetic::Record stated = synthetic::make(kExponential, kTruth, options);
+  synthetic::Record recorded = stated;
+  const std::size_t n = stated.motion.size();
+  recorded.motion.disc_speed.assign(n, 0.419);
+  recorded.motion.disc_velocity.assign(n, 0.00628);
+  recorded.motion.constant_disc_velocity = 0;
+  recorded.motion.conditions.speed = {};
+  Instruments radius, gain;
+  radius.rig.radius = Declared{0.015, 0.001};
+  gain.vibrometer.gain = Declared{1, 0.01};
+  for (const Instruments& declared : {radius, gain}) {
+    const Fit one = fit_record(kExponential, stated, declared), channel = fit_record(kExponential, recorded, declared);
+    const Record records[] = {{&stated.motion, &stated.segmentation}, {&stated.motion, &stated.segmentation}};
+    const Observations single = observe(stated.motion, stated.segmentation);
+    const Fit both = fit_model(kExponential, records, join({single, single}), declared);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_GT(one.parameters[k].systematic, 0) << k;
+      EXPECT_NEAR(channel.parameters[k].systematic, one.parameters[k].systematic, 0.01 * one.parameters[k].systematic);
+      EXPECT_NEAR(both.parameters[k].systematic, one.parameters[k].systematic, 0.01 * one.parameters[k].systematic);
+    }
+  }
+}
+
+TEST(Systematic, AnOffsetOfTheClocksCountsAsADelayOfTheVibrometer) {
+  synthetic::Options options;
+  options.noise = 0.001;
+  synthetic::Record record = synthetic::make(kExponential, kTruth, options);
+  Instruments late;
+  late.vibrometer.delay = Declared{0, 1e-4};
+  const Fit declared = fit_record(kExponential, record, late);
+  record.motion.clock_offset_std_error = 1e-4;
+  const Fit joined = fit_record(kExponential, record);
+  record.motion.clock_offset_std_error = std::numeric_limits<double>::quiet_NaN();
+  const Fit unknown = fit_record(kExponential, record);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GT(joined.parameters[k].systematic, 0);
+    EXPECT_DOUBLE_EQ(joined.parameters[k].systematic, declared.parameters[k].systematic);
+    EXPECT_TRUE(std::isnan(unknown.parameters[k].systematic));
+  }
+}
+
+/// A law that has fallen to its end before the slowest sample: nothing is known of how it fell.
+TEST(NotDetermined, AParameterThatFillsItsBoundsHasNoInterval) {
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.cycles = 12;
+  synthetic::Record record = never_sticking(synthetic::make(kExponential, kTruth, options));
+  for (std::size_t i = 0; i < record.motion.size(); ++i) record.motion.relative_velocity[i] += 0.2;
+  for (double& mu : record.motion.friction) mu = 0.318 + 0.01 * (mu - 0.318);
+  const Fit fit = fit_record(kExponential, record);
+  ASSERT_EQ(fit.parameters.size(), 3u);
+  const FitParameter& alpha = fit.parameters[2];
+  EXPECT_FALSE(alpha.determined);
+  EXPECT_FALSE(std::isfinite(alpha.std_error));
+  EXPECT_FALSE(std::isfinite(alpha.upper95));
+  EXPECT_THAT(fit.messages, testing::Contains(testing::HasSubstr("not determined")));
+}
+
+TEST(Solver, LeavesTheLoggingOfTheProgramAsItIs) {
+  const int before = FLAGS_minloglevel;
+  FLAGS_minloglevel = google::GLOG_WARNING;
+  fit_record(kExponential, synthetic::make(kExponential, kTruth, {.cycles = 8}));
+  EXPECT_EQ(FLAGS_minloglevel, google::GLOG_WARNING);
+  FLAGS_minloglevel = before;
+}
+
+TEST(Curve, TurnsWithTheDiscOfTheRecord) {
+  synthetic::Options options;
+  options.noise = 0.001;
+  const FrictionModel model(ExponentialLaw{}, {make_effect("drift")});
+  const synthetic::Record record = synthetic::make(kExponential, kTruth, options);
+  const Fit fit = fit_record(model, record);
+  EXPECT_NEAR(fit.disc_speed, 0.419, 1e-12);
+  Fit later = fit;  // a drift of 10 % a second is none at the start
+  later.parameters[3].value = 0.1;
+  later.parameters[0].value = later.parameters[1].value = 0.3;
+  EXPECT_NEAR(law_curve(later, std::vector<double>{0.02}).mu[0], 0.3, 1e-12);
+}
+
+}  // namespace
