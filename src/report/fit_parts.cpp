@@ -26,15 +26,16 @@ std::string remarks_on(const Fit& fit, std::size_t index) {
   const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
                                       [&](const Correlation& c) { return c.first == index || c.second == index; });
   if (correlated) add("correlated");
-  if (!p.determined) add("not determined");
   return remarks;
 }
 
 /// Value, errors, intervals, start and remarks of every parameter, in the digits that its error allows.
 ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic) {
-  const bool profile = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const FitParameter& p) {
-    return std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
+  const auto any = [&](auto&& has) { return std::any_of(fit.parameters.begin(), fit.parameters.end(), has); };
+  const bool profile = any([](const FitParameter& p) {
+    return p.determined && std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
   });
+  systematic = systematic || any([](const FitParameter& p) { return p.systematic != 0; });
   ReportTable table;
   table.text({"parameter"}).numbers({"value"}).numbers({"std error"}, 1).numbers({"relative"}, 2);
   table.numbers({"95 % interval"});
@@ -50,12 +51,15 @@ ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systemati
       return interval_text(shown(p, lower), shown(p, upper), places);
     };
     std::vector<std::string>& row = table.rows.emplace_back();
-    row = {full_name(p), text(p.value), has_error ? text(p.std_error) : "-",
+    row = {full_name(p), p.determined ? text(p.value) : "not determined", has_error ? text(p.std_error) : "-",
            has_error && p.value != 0 ? "(" + percent(p.std_error / std::abs(p.value)) + ")" : "",
-           has_error ? interval(p.lower95, p.upper95) : "-"};
-    if (profile) row.push_back(interval(p.profile_lower95, p.profile_upper95));
+           has_error                                ? interval(p.lower95, p.upper95)
+           : p.determined || limits_text(p).empty() ? "-"
+                                                    : limits_text(p)};
+    if (profile) row.push_back(p.determined ? interval(p.profile_lower95, p.profile_upper95) : "-");
     // Nothing declared that bears on it is not the same as no uncertainty.
-    if (systematic) row.push_back(p.systematic > 0 ? text(p.systematic) : "-");
+    if (systematic)
+      row.push_back(std::isnan(p.systematic) ? "unknown" : p.systematic > 0 && p.determined ? text(p.systematic) : "-");
     row.insert(row.end(), {shown_unit(p, motion), significant(shown(p, p.start), 3), remarks_on(fit, k)});
   }
   return table;

@@ -102,7 +102,21 @@ std::string full_name(const FitParameter& p) {
   return p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
 }
 
+std::string limits_text(const FitParameter& p) {
+  const double lower = shown(p, p.profile_lower95), upper = shown(p, p.profile_upper95);
+  const double reach = 1e-6 * (p.parameter.upper - p.parameter.lower);
+  const bool above = lower > p.parameter.lower + reach, below = upper < p.parameter.upper - reach;
+  if (above && below) return fmt::format("{} to {}", significant(lower, 2), significant(upper, 2));
+  if (above) return "at least " + significant(lower, 2);
+  return below ? "at most " + significant(upper, 2) : "";
+}
+
 std::string value_text(const FitParameter& p, const Motion& motion) {
+  if (!p.determined) {
+    const std::string limits = limits_text(p);
+    return limits.empty() ? "not determined"
+                          : fmt::format("not determined ({}{})", limits, unit_behind(shown_unit(p, motion)));
+  }
   return with_error(shown(p, p.value), shown(p, p.std_error)) + unit_behind(shown_unit(p, motion));
 }
 

@@ -54,7 +54,10 @@ double shown(const FitParameter& parameter, double value_in_si);
 /// "mu_s", "frictional-lag.tau".
 std::string full_name(const FitParameter& parameter);
 
-/// "0.048 +/- 0.001 mm"; a number without unit has none behind it.
+/// What a profile says of a parameter that is not determined: "at least 28", "at most 3"; empty where nothing.
+std::string limits_text(const FitParameter& parameter);
+
+/// "0.048 +/- 0.001 mm"; a number without unit has none behind it. "not determined (at least 28 1/mm)".
 std::string value_text(const FitParameter& parameter, const Motion& motion);
 
 /// Decimal places of a parameter's value: those its standard error allows, else five significant digits.

@@ -23,6 +23,23 @@ TEST(Numbers, AnErrorThatIsNotKnownIsNotMadeUp) {
   EXPECT_EQ(with_error(std::nan(""), 0.1), "-");
 }
 
+TEST(Numbers, WhatTheDataDoNotDetermineHasNoNumber) {
+  const Motion motion;
+  FitParameter p;
+  p.parameter = {.name = "sigma0", .unit = "1/mm", .si = 1e3, .lower = 1, .upper = 1e5};
+  p.value = 0;
+  p.std_error = 2e26;
+  p.determined = false;
+  p.profile_lower95 = p.profile_upper95 = std::nan("");
+  EXPECT_EQ(value_text(p, motion), "not determined");
+  p.profile_lower95 = 28e3;
+  p.profile_upper95 = 1e8;
+  EXPECT_EQ(value_text(p, motion), "not determined (at least 28 1/mm)");
+  p.profile_lower95 = 1e3;
+  p.profile_upper95 = 3e3;
+  EXPECT_EQ(value_text(p, motion), "not determined (at most 3.0 1/mm)");
+}
+
 TEST(Numbers, DigitsOfAMeasuredValueStopAtSix) {
   EXPECT_EQ(with_error(4.877842069, 5e-8), "4.87784 +/- 5e-08");
 }
