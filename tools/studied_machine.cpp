@@ -1,5 +1,7 @@
 #include "studied_machine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,7 @@
 #include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/report/terminal.hpp"
 #include "tribofit/study/identified.hpp"
 
 using namespace tribofit;
@@ -106,7 +109,24 @@ RigFit rig_of(const Fit& fit, const Identification& trace, const Instruments& in
   return rig;
 }
 
-StudiedMachine identified(const Settings& settings, const MachineRequest& typed) {
+/// The diagnosis of the record with the options that say how it is read and what is known of it.
+std::string diagnose_command(const std::string& path, const std::vector<std::string>& arguments) {
+  static constexpr std::array<std::string_view, 13> kValued = {
+      "--radius", "--speed",    "--load",        "--instruments", "--columns", "--units",  "--rate",
+      "--with",   "--continue", "--stick-below", "--law",         "--effect",  "--formula"};
+  static constexpr std::array<std::string_view, 2> kFlags = {"--never-sticks", "--no-trim"};
+  std::string command = "identify diagnose";
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const bool valued = std::find(kValued.begin(), kValued.end(), arguments[i]) != kValued.end();
+    const bool flag = std::find(kFlags.begin(), kFlags.end(), arguments[i]) != kFlags.end();
+    if (valued || flag) command += " " + arguments[i];
+    if (valued && i + 1 < arguments.size()) command += " " + shell_quoted(arguments[++i]);
+  }
+  return command + " " + shell_quoted(path);
+}
+
+StudiedMachine identified(const Settings& settings, const MachineRequest& typed,
+                          const std::vector<std::string>& arguments) {
   const Settings of_trace = settings_of_trace(settings, typed);
   IdentifyOptions options = options_from(of_trace);
   const Input input = only_input(of_trace, options.read, "study");
@@ -125,6 +145,12 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
   out.covariance = std::move(found.covariance);
   forget_typed(typed, out.machine.model, out.covariance);
   out.source = "identified from " + input.trace.path;
+  if (std::isfinite(found.law_over_floor)) {
+    out.warnings.push_back(fmt::format(
+        "the {} law leaves {:.1f} times the noise floor of the record: the answers are those of another machine until "
+        "the missing effect is found: {}",
+        fit.model.name(), found.law_over_floor, diagnose_command(input.trace.path, arguments)));
+  }
   out.notes = std::move(found.notes);
   if (rig.per_unit_load) {
     out.notes.push_back(
@@ -139,8 +165,9 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed)
 
 }  // namespace
 
-StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed) {
-  return settings.traces.empty() ? given(settings, typed) : identified(settings, typed);
+StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed,
+                               const std::vector<std::string>& arguments) {
+  return settings.traces.empty() ? given(settings, typed) : identified(settings, typed, arguments);
 }
 
 std::vector<std::string> shared_arguments(const Command& kind) {

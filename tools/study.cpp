@@ -140,7 +140,7 @@ Begun begin(Request& r, const Command& kind) {
   Begun out;
   out.settle = settle_options(r);
   out.json.arguments = kind.own_options();
-  out.machine = studied_machine(r.settings, r.machine);
+  out.machine = studied_machine(r.settings, r.machine, out.json.arguments);
   out.machine.sharpness = out.settle.sharpness;
   out.terminal = terminal_options(r.settings, shared_arguments(kind));
   out.terminal.inputs = r.settings.traces;

@@ -13,6 +13,7 @@ namespace tribofit {
 namespace {
 
 void add_machine(const StudiedMachine& of, TerminalText& text) {
+  for (const std::string& warning : of.warnings) text.warning(warning);
   text.raw(fmt::format("{}: {}\n", of.source, of.machine.model.name()));
   text.lines(machine_sentences(of));
   if (of.sharpness > 0) text.line(sharpness_text(of));

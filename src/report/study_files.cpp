@@ -42,8 +42,8 @@ Json machine_json(const StudiedMachine& of) {
                 "stiffness_N_per_mm", 1e-3 * m.rig.stiffness, "damping_ratio", m.rig.damping_ratio(), "load_N", m.load,
                 "radius_mm", m.radius / kMillimetre, "speed_rpm", m.speed / kRpm, "velocity_mm_s",
                 m.disc_velocity() / kMillimetre, "law", to_string(m.model.law()), "effects", m.model.effect_names(),
-                "parameters", parameters, "sharpness_s_per_mm", positive_or_null(1e-3 * of.sharpness), "notes",
-                of.notes);
+                "parameters", parameters, "sharpness_s_per_mm", positive_or_null(1e-3 * of.sharpness), "warnings",
+                of.warnings, "notes", of.notes);
 }
 
 std::string study_text(const StudiedMachine& of, const char* kind, const Json& body, const JsonOptions& options) {

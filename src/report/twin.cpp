@@ -156,8 +156,19 @@ std::string twin_verdict(const TwinIdentification& result) {
                     law, fmt::join(twin.failures(last), ", "));
 }
 
+std::string law_warning(const TwinIdentification& result, const TerminalOptions& options) {
+  if (!result.twin.reason.empty() || !law_falls_short(result)) return "";
+  const Fit& fit = result.trace.fits.back();
+  if (!(over_floor(fit) > 1)) return "";
+  return fmt::format(
+      "the {} law leaves {:.1f} times the noise floor of the record: its twin is that of another machine until the "
+      "missing effect is found: {}",
+      fit.model.name(), over_floor(fit), command_line(words_of({"diagnose"}, options.arguments), {result.trace.path}));
+}
+
 std::string render_twin(const TwinIdentification& result, const TerminalOptions& options) {
   TerminalText text(options);
+  if (const std::string warning = law_warning(result, options); !warning.empty()) text.warning(warning);
   add_record(result.trace, text);
   if (result.twin.reason.empty()) {
     const ReportSection model = twin_model(result);
@@ -175,10 +186,14 @@ std::string render_twin(const TwinIdentification& result, const TerminalOptions&
 std::string to_json(const TwinIdentification& result, const JsonOptions& options) {
   const Identification& trace = result.trace;
   Json json = record_json(trace, options);
+  TerminalOptions known;
+  known.arguments = options.arguments;
+  std::vector<std::string> warnings = trace.warnings;
+  if (std::string warning = law_warning(result, known); !warning.empty()) warnings.push_back(std::move(warning));
   add_members(json, "fits", fits_json(trace.fits, trace.motion), "rig",
               result.rigs.empty() ? Json(nullptr) : rig_json(result.rigs.front()), "rigs",
               list_of(result.rigs, rig_json), "twin", twin_json(result, options), "analysed", trace.analysed,
-              "warnings", trace.warnings);
+              "warnings", warnings);
   return text_of(json);
 }
 

@@ -25,6 +25,9 @@ std::string twin_note(const Twin& twin);
 /// Whether the twin moves as the record does, and where it does not.
 std::string twin_verdict(const TwinIdentification& result);
 
+/// Said first: a law that leaves clearly more than noise has the twin of another machine. Empty where it does not.
+std::string law_warning(const TwinIdentification& result, const TerminalOptions& options);
+
 /// options.arguments: without the verb.
 Suggestion next_after_twin(const TwinIdentification& result, const TerminalOptions& options);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct IdentifiedMachine {
   Machine machine;
   MachineCovariance covariance;
   BreakAwayScatter scatter;
+  /// Held-out error of the law over the noise floor where it is clearly more: then the machine is another one. NaN
+  /// where the law is at its floor, or none is known.
+  double law_over_floor = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> notes;  ///< what a person should know
   std::string reason;              ///< why there is none; empty where there is one
 };

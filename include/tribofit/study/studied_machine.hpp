@@ -23,6 +23,7 @@ struct StudiedMachine {
   double sharpness = 0;  ///< of the smoothed law [s/m]; 0: the event-located law
   /// From which it was identified, to be shown beside what is simulated; null: from none.
   std::shared_ptr<const Identification> record = {};
+  std::vector<std::string> warnings = {};  ///< said first: why the answers may be those of another machine
 };
 
 /// Standard error of a variable of an identified machine [SI]; NaN where none is known.

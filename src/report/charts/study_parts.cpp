@@ -49,6 +49,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const StudiedMachine& 
 Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
                     const ReportOptions& options) {
   Report report = titled_report("study", title, "Study", std::move(lead));
+  report.warnings = of.warnings;
   report.facts.emplace_back("machine", of.source);
   for (auto& fact : facts_of(of)) report.facts.push_back(std::move(fact));
   report.facts.emplace_back("study", kind);

@@ -115,6 +115,8 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   Report report = titled_report("twin", file_name(trace.path),
                                 "The measured motion beside those that law and rig predict,", twin_verdict(result));
   report.warnings = trace.warnings;
+  if (std::string warning = law_warning(result, terminal_like(options)); !warning.empty())
+    report.warnings.insert(report.warnings.begin(), std::move(warning));
   report.facts = facts_of(trace);
   report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
