@@ -181,20 +181,24 @@ TEST(Systematic, AnOffsetOfTheClocksCountsAsADelayOfTheVibrometer) {
   }
 }
 
-/// A law that has fallen to its end before the slowest sample: nothing is known of how it fell.
+/// Constant friction: nothing is known of how steeply a law would fall, within what is plausible.
 TEST(NotDetermined, AParameterThatFillsItsBoundsHasNoInterval) {
   synthetic::Options options;
   options.noise = 0.003;
   options.cycles = 12;
-  synthetic::Record record = never_sticking(synthetic::make(kExponential, kTruth, options));
-  for (std::size_t i = 0; i < record.motion.size(); ++i) record.motion.relative_velocity[i] += 0.2;
-  for (double& mu : record.motion.friction) mu = 0.318 + 0.01 * (mu - 0.318);
-  const Fit fit = fit_record(kExponential, record);
+  const synthetic::Record record = never_sticking(synthetic::make(FrictionModel(CoulombLaw{}), {0.3, 0.3}, options));
+  FitOptions within;
+  within.given = {{"alpha", std::nullopt, GivenParameter::Bounds{50, 55}}};
+  const Fit fit = fit_record(kExponential, record, {}, within);
   ASSERT_EQ(fit.parameters.size(), 3u);
-  const FitParameter& alpha = fit.parameters[2];
-  EXPECT_FALSE(alpha.determined);
-  EXPECT_FALSE(std::isfinite(alpha.std_error));
-  EXPECT_FALSE(std::isfinite(alpha.upper95));
+  for (const FitParameter& p : fit.parameters) {
+    const bool whole =
+        p.lower95 <= p.parameter.lower * p.parameter.si && p.upper95 >= p.parameter.upper * p.parameter.si;
+    EXPECT_EQ(p.determined, !whole) << p.parameter.name;
+    EXPECT_EQ(std::isfinite(p.std_error), p.determined) << p.parameter.name;
+    EXPECT_EQ(std::isfinite(p.upper95 - p.lower95), p.determined) << p.parameter.name;
+  }
+  EXPECT_FALSE(fit.parameters[2].determined);
   EXPECT_THAT(fit.messages, testing::Contains(testing::HasSubstr("not determined")));
 }
 

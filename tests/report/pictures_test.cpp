@@ -283,11 +283,17 @@ TEST_F(Pictures, SayWhatABuildWithoutCairoLeavesOut) {
   EXPECT_TRUE(folder_.names().empty());
 }
 
-TEST_F(Pictures, NeedAChartAndAFolder) {
-  EXPECT_THROW(write_pictures(Report{}, folder_.path("none"), PictureFormat::svg), InputError);
+TEST_F(Pictures, NeedAFolderAndSayThatThereIsNoChart) {
+  Report bare;
+  bare.lead = "Nothing slips.";
+  write_pictures(bare, folder_.path("none"), PictureFormat::svg);
+  std::ifstream captions(folder_.path("none/figures.txt"));
+  std::string line;
+  std::getline(captions, line);
+  EXPECT_EQ(line, "There is no chart to draw: Nothing slips.");
   std::ofstream(folder_.path("file")) << "x";
   EXPECT_THAT(refusal(folder_.path("file")), HasSubstr("not a folder"));
-  EXPECT_THAT(folder_.names(), ElementsAre("file"));
+  EXPECT_THAT(folder_.names(), ElementsAre("file", "none"));
 }
 
 TEST_F(Pictures, HaveNamesOnlyWhenCommitted) {

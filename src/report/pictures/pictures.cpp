@@ -9,7 +9,6 @@
 #include "report/pictures/canvas.hpp"
 #include "report/pictures/draw.hpp"
 #include "report/pictures/layout.hpp"
-#include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 namespace {
@@ -74,11 +73,10 @@ struct PictureFiles::Files {
 
 PictureFiles::PictureFiles(const Report& report, const std::string& folder, PictureFormat format) {
   const std::vector<Picture> pictures = pictures_of(report);
-  if (pictures.empty()) throw InputError("there is no chart to draw a picture of", "leave --figures out");
   std::vector<std::string> files;
   for (const Picture& picture : pictures) files.push_back(drawn(*picture.chart, format));
   files_ = std::make_unique<Files>(folder);  // no folder while drawing may still fail or be stopped
-  std::string captions;
+  std::string captions = pictures.empty() ? "There is no chart to draw: " + one_line(report.lead) + "\n" : "";
   for (std::size_t k = 0; k < pictures.size(); ++k) {
     files_->folder.add(pictures[k].name + "." + name_of(format)).write(files[k]);
     captions += (k > 0 ? "\n" : "") + caption_of(pictures[k], format);
