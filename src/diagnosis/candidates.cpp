@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "fit/spectral_lines.hpp"
 #include "fit/starts.hpp"
 #include "limits.hpp"
-#include "spectral_lines.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {

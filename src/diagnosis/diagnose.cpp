@@ -7,8 +7,8 @@
 #include "base_law.hpp"
 #include "findings.hpp"
 #include "fit/fit_laws.hpp"
+#include "fit/spectral_lines.hpp"
 #include "limits.hpp"
-#include "spectral_lines.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -108,15 +108,16 @@ Ladder reported_of(const DiagnosisContext& context, const std::vector<Law>& laws
 }
 
 /// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
-/// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that
-/// held-out errors at full resolution do not bear out, ends the ladder below it.
+/// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that held-out errors at full
+/// resolution do not bear out, ends the ladder below it.
 std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, const FitOptions& options,
                            Ladder& ladder) {
   std::vector<Fit> fits(ladder.steps.size());
   run_tasks(ladder.steps.size(), context.threads, [&](std::size_t k) {
     const Trial& trial = ladder.steps[k].trial;
     FitOptions warm = options;
-    warm.start = trial.p;
+    const bool bare = trial.model.effects().empty();  // identify needs no start for a bare law
+    if (!bare) warm.start = trial.p;
     if (k == 0 || k + 1 == ladder.steps.size()) {
       const Observations own = observations_for(trial.model, context.records);
       fits[k] = fit_model(trial.model, context.records, own, instruments, warm);

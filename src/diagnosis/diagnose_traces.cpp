@@ -131,6 +131,28 @@ void take_rungs(std::vector<Fit> rungs, DiagnosedTraces& out) {
   out.rungs = std::move(rungs);
 }
 
+/// The fit with what belongs to a record alone (phases, the time of a change) found anew on this one.
+Fit with_values_of_record(const Fit& fit, const Identification& trace) {
+  FitOptions options;
+  const auto belongs_to_record = [&](std::size_t k) {
+    return fit.model.parameters()[k].parameter.scope == ParameterScope::record;
+  };
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const double value = fit.parameters[k].value;
+    if (belongs_to_record(k)) continue;
+    options.given.push_back({fit.model.parameters()[k].full_name(), value, GivenParameter::Bounds{value, value}});
+  }
+  if (options.given.size() == fit.parameters.size()) return fit;
+  const Record record = {&trace.motion, &trace.segmentation};
+  const Fit own =
+      fit_model(fit.model, {&record, 1}, observations_for(fit.model, {&record, 1}, FitDetail::quick), {}, options);
+  Fit out = fit;
+  for (std::size_t k = 0; k < own.parameters.size(); ++k) {
+    if (belongs_to_record(k)) out.parameters[k].value = own.parameters[k].value;
+  }
+  return out;
+}
+
 }  // namespace
 
 EffectRoles roles_of(const std::vector<Effect>& effects) {
@@ -196,7 +218,7 @@ Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs)
   out.base_rmse = out.final_rmse = std::numeric_limits<double>::quiet_NaN();
   if (!trace.analysed) return out;
   const Fit base = evaluate_frozen(rungs.front(), trace.motion, trace.segmentation);
-  const Fit last = evaluate_frozen(rungs.back(), trace.motion, trace.segmentation);
+  const Fit last = evaluate_frozen(with_values_of_record(rungs.back(), trace), trace.motion, trace.segmentation);
   out.base_rmse = base.error.rmse;
   out.final_rmse = last.error.rmse;
   const Comparison comparison = compare_held_out(last, base);

@@ -183,7 +183,10 @@ void describe_place(const FindingInputs& in, std::size_t k, EffectFinding& findi
     finding.held_out_std_error = held_out_std_error(in.fits[s]);
     finding.error_reduction = reduction(in, in.fits[s - 1].error.held_out_rmse, std::pow(finding.held_out_rmse, 2));
     finding.parameters = parameters_of(in.fits.back(), finding.key);
-    finding.reason = "with it the error on held-out cycles falls";
+    const auto decided = std::find_if(step.judged.begin(), step.judged.end(),
+                                      [&](const CandidateResult& judged) { return judged.candidate == k; });
+    if (decided != step.judged.end()) finding.p_value = decided->p_value;
+    finding.reason = "with it the held-out error falls";
     return;
   }
 }

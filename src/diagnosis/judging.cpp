@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "fit/spectral_lines.hpp"
 #include "fit/starts.hpp"
-#include "spectral_lines.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "spectral_lines.hpp"
+#include "fit/spectral_lines.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit::diagnosis {

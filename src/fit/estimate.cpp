@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "change_point.hpp"
+#include "spectral_lines.hpp"
 
 namespace tribofit {
 
@@ -34,10 +36,32 @@ SolverOptions careful_search() {
   return careful;
 }
 
+/// A spectral line is narrower than any random start would find: the strongest lines about the mean friction over
+/// speed are starts too, each with a few phases.
+void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
+  constexpr int kPhases = 4;
+  for (std::size_t k = 0; k < context.model.parameters().size(); ++k) {
+    const Parameter& q = context.model.parameters()[k].parameter;
+    if (q.search != ParameterSearch::steady_line) continue;
+    const SpectralLines lines =
+        strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
+                        context.bounds.lower[k], context.bounds.upper[k]);
+    for (const double frequency : lines.frequencies) {
+      for (int phase = 0; phase < kPhases; ++phase) {
+        std::vector<double> start = start_from_data(context.model, context.observations, context.bounds);
+        start[k] = frequency;
+        start[k + 1] = 2 * std::numbers::pi * phase / kPhases - std::numbers::pi;  // a line is followed by its phase
+        starts.push_back(std::move(start));
+      }
+    }
+  }
+}
+
 /// Where the search begins: the starts of the data or of the user, each once.
 std::vector<std::vector<double>> different_starts(const FitContext& context) {
   auto starts =
       make_starts(context.model, context.observations, context.bounds, context.options.starts, context.options.seed);
+  add_starts_at_lines(context, starts);
   if (!context.options.start.empty()) starts = {context.options.start};
   for (auto& start : starts) apply_given(context.model, context.options.given, context.bounds, start);
   for (std::size_t k = 1; k < starts.size();) {  // where all is given, all starts are one

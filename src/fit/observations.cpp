@@ -212,9 +212,11 @@ RecordScales scales_of(std::span<const Observations> records) {
   const auto take = [](double& scale, double value) {
     if (value > 0 && std::isfinite(value)) scale = value;
   };
+  constexpr double kSlipOfPiece = 1.0 / 6;
+  const double part = any_stick ? 1 : kSlipOfPiece;
   if (!times.empty()) {
-    take(out.slip_time, median(std::move(times)));
-    take(out.slip_length, median(std::move(lengths)));
+    take(out.slip_time, part * median(std::move(times)));
+    take(out.slip_length, part * median(std::move(lengths)));
     take(out.stick_time, sticks.empty() ? out.slip_time : median(std::move(sticks)));
   }
   take(out.duration, duration);

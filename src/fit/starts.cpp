@@ -23,17 +23,23 @@ double mean_break_away(const Observations& observations) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
+constexpr std::size_t kBins = 80;
+
+/// Finer near v = 0, where laws bend.
+std::size_t bin_of(const Observations& observations, std::size_t i) {
+  const double place =
+      observations.fastest > 0 ? std::sqrt(std::abs(observations.velocity[i]) / observations.fastest) : 0;
+  return std::min(kBins - 1, static_cast<std::size_t>(place * kBins));
+}
+
 FrictionCurve curve_of(const Observations& observations) {
-  constexpr std::size_t kBins = 80;
   FrictionCurve curve{.bins = std::vector<FrictionCurve::Bin>(kBins),
                       .break_away = mean_break_away(observations),
                       .fastest = observations.fastest};
   for (const auto& slip : observations.slips) {
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
       const double v = std::abs(observations.velocity[i]);
-      // Finer near v = 0, where laws bend.
-      const double place = observations.fastest > 0 ? std::sqrt(v / observations.fastest) : 0;
-      FrictionCurve::Bin& bin = curve.bins[std::min(kBins - 1, static_cast<std::size_t>(place * kBins))];
+      FrictionCurve::Bin& bin = curve.bins[bin_of(observations, i)];
       bin.speed += observations.weight[i] * v;
       bin.friction += observations.weight[i] * observations.friction[i] * slip.direction;
       bin.weight += observations.weight[i];
@@ -188,6 +194,23 @@ std::vector<std::vector<double>> make_starts(const FrictionModel& model, const O
     starts.push_back(p);
   }
   return starts;
+}
+
+std::vector<double> about_mean_curve(const Observations& observations) {
+  std::vector<double> sum(kBins, 0.0), weight(kBins, 0.0), out(observations.size(), 0.0);
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      sum[bin_of(observations, i)] += observations.weight[i] * slip.direction * observations.friction[i];
+      weight[bin_of(observations, i)] += observations.weight[i];
+    }
+  }
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      const std::size_t bin = bin_of(observations, i);
+      out[i] = observations.friction[i] - slip.direction * sum[bin] / weight[bin];
+    }
+  }
+  return out;
 }
 
 }  // namespace tribofit

@@ -33,4 +33,8 @@ std::vector<double> start_from_data(const FrictionModel& model, const Observatio
 std::vector<std::vector<double>> make_starts(const FrictionModel& model, const Observations& observations,
                                              const Bounds& bounds, int count, std::uint64_t seed);
 
+/// Friction about its mean over speed, one value for each of the observations, signed: what a law of speed leaves,
+/// before any law is fitted.
+std::vector<double> about_mean_curve(const Observations& observations);
+
 }  // namespace tribofit

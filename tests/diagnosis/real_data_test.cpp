@@ -83,12 +83,20 @@ TEST_F(RealData, PositioningSystemClimbsFromCoulombFrictionToItsPublishedModel) 
   ASSERT_TRUE(result.analysed);
   EXPECT_EQ(result.diagnosis.law, Law(CoulombLaw{}));  // no Stribeck drop
   const std::vector<std::string> added = rungs(result);
-  for (const char* key : {"sensor-inertia", "viscous", "sensor-offset"}) EXPECT_THAT(added, Contains(key));
+  for (const char* key : {"sensor-inertia", "viscous"}) EXPECT_THAT(added, Contains(key));
+  // An offset of the sensor and Coulomb friction that differs with the direction are one and the same on this record.
+  const auto& ladder = result.diagnosis.ladder;
+  const bool offset = std::any_of(ladder.begin(), ladder.end(), [](const Rung& rung) {
+    return rung.added == "sensor-offset" || std::count(rung.equivalent.begin(), rung.equivalent.end(), "sensor-offset");
+  });
+  EXPECT_TRUE(offset);
   EXPECT_FALSE(std::count(added.begin(), added.end(), "stribeck-exponent"));
   EXPECT_NEAR(value_of(result, "m_s"), 95.1089, 0.02 * 95.1089);
   EXPECT_NEAR(value_of(result, "sigma"), 203.5034, 0.05 * 203.5034);
-  EXPECT_NEAR(value_of(result, "mu_k"), 20.3935, 0.02 * 20.3935);
-  EXPECT_NEAR(value_of(result, "b"), -3.1648, 0.1 * 3.1648);
+  const double forth = value_of(result, "mu_k"), ratio = value_of(result, "ratio"), b = value_of(result, "b");
+  const double level = std::isfinite(ratio) ? 0.5 * forth * (1 + ratio) : forth;
+  EXPECT_NEAR(level, 20.3935, 0.02 * 20.3935);
+  EXPECT_NEAR(std::isfinite(ratio) ? 0.5 * forth * (1 - ratio) : b, -3.1648, 0.1 * 3.1648);
   EXPECT_NE(result.diagnosis.verdict, Verdict::sufficient);
   EXPECT_NE(result.diagnosis.verdict, Verdict::not_enough_data);
 }

@@ -81,7 +81,8 @@ std::vector<TraceInput> constant_friction(std::uint64_t seed) {
       trace->friction.push_back(15 + 1.6 * normal(engine));
       trace->velocity.push_back(0.01 + 0.01 * k + 5e-5 * normal(engine));
     }
-    trace->steps = {{.begin = 0, .end = trace->size()}};
+    trace->steps.resize(1);
+    trace->steps[0].end = trace->size();
     inputs.push_back({trace->path, {}, trace});
   }
   return inputs;
@@ -93,8 +94,9 @@ TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {
     EXPECT_THAT(names(result.diagnosis), IsEmpty()) << seed;
     EXPECT_GT(result.diagnosis.ladder.at(0).held_out_rmse, 1.5) << seed;  // no less than the noise that was put in
     for (const EffectFinding& finding : result.diagnosis.effects) {
-      if (finding.key == "bristle" || finding.key == "rate-state" || finding.key == "frictional-lag")
-        EXPECT_EQ(finding.status, EffectStatus::untestable) << finding.key;
+      const bool memory = finding.key == "bristle" || finding.key == "rate-state" || finding.key == "frictional-lag";
+      if (!memory) continue;
+      EXPECT_EQ(finding.status, EffectStatus::untestable) << finding.key;
     }
   }
 }

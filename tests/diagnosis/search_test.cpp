@@ -12,7 +12,7 @@
 #include "diagnosis/base_law.hpp"
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/probes.hpp"
-#include "diagnosis/spectral_lines.hpp"
+#include "fit/spectral_lines.hpp"
 #include "diagnosis/trial.hpp"
 
 namespace {

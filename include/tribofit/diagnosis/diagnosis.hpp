@@ -78,7 +78,8 @@ struct Rung {
   std::vector<std::string> equivalent;  ///< effects that fit as well, without `added`
 };
 
-/// A finding tried on a run that was not fitted, with every parameter frozen.
+/// A finding tried on a run that was not fitted, with every parameter frozen but those that belong to a record (phases,
+/// the time of a change), which are found anew.
 struct Confirmation {
   std::string path;
   double base_rmse = 0;   ///< what the base law leaves there [1 or N]

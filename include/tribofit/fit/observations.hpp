@@ -13,8 +13,8 @@
 
 namespace tribofit {
 
-/// The scales of a motion, in which bounds and windows are stated: medians over the slips that begin in stick, or over
-/// the pieces of a record that never sticks. The values given here are those of the rig of [D] (a pad on a disc,
+/// The scales of a motion, in which bounds and windows are stated: medians over the slips that begin in stick; where
+/// nothing sticks, the sixth part of a piece of the record, as a slip is of a cycle. The values given here are those of the rig of [D] (a pad on a disc,
 /// 15 mm, 4 rpm, 50 N), for which the catalogue states its bounds.
 struct RecordScales {
   double slip_time = 1.0 / 30;   ///< [s]

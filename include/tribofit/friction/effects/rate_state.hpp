@@ -32,7 +32,7 @@ struct RateState {
                             .start = 20,
                             .neutral = 0.1,
                             .bound_scaling = BoundScaling::with_slip_length,
-                            .start_grid_points = 5},
+                            .start_grid_points = 4},
                            {.name = "a",
                             .description = "direct effect: rise of friction with the logarithm of speed, at once",
                             .lower = 0,

@@ -6,7 +6,7 @@
 
 #include "tribofit/fit/fit.hpp"
 
-namespace tribofit::diagnosis {
+namespace tribofit {
 
 /// Spectral lines and how many independent frequencies were looked at to find them.
 struct SpectralLines {
@@ -33,4 +33,4 @@ double lowest_ringing(const Observations& observations);
 /// Samples per second of the observations, at the least [Hz].
 double observation_rate(const Observations& observations);
 
-}  // namespace tribofit::diagnosis
+}  // namespace tribofit

@@ -11,7 +11,7 @@
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
-namespace tribofit::diagnosis {
+namespace tribofit {
 
 namespace {
 
@@ -192,4 +192,4 @@ SpectralLines strongest_ringing(const Observations& observations, std::span<cons
   return line;
 }
 
-}  // namespace tribofit::diagnosis
+}  // namespace tribofit

@@ -1,0 +1,62 @@
+/// A finding on a run that was held back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../fit/synthetic.hpp"
+#include "diagnosis/diagnose_traces.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+constexpr double kTurnRate = 4;  // [rad/s]
+
+/// A run on a disc whose runout begins at an angle of its own; amplitude: of friction, over friction.
+Identification run(double amplitude, double phase, std::uint64_t seed) {
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.seed = seed;
+  synthetic::Record made =
+      synthetic::make(FrictionModel(ExponentialLaw{}), synthetic::table4_15mm(ExponentialLaw{}), options);
+  made.motion.conditions.speed = {kTurnRate, "command line"};
+  const auto factor = [&](double time) { return 1 + amplitude * std::cos(kTurnRate * time + phase); };
+  for (std::size_t i = 0; i < made.motion.size(); ++i) made.motion.friction[i] *= factor(made.motion.time[i]);
+  for (Cycle& cycle : made.segmentation.cycles) cycle.break_away_friction *= factor(cycle.break_away_time);
+  Identification out;
+  out.path = "run";
+  out.motion = made.motion;
+  out.segmentation = made.segmentation;
+  out.analysed = true;
+  return out;
+}
+
+Diagnosed diagnosed(const Identification& trace) {
+  const Record record = {&trace.motion, &trace.segmentation};
+  return diagnose({&record, 1}, {ExponentialLaw{}});
+}
+
+TEST(Confirm, TheSameRunoutFromAnotherStartingAngleBearsItOut) {
+  const Diagnosed found = diagnosed(run(0.05, 0.4, 1));
+  ASSERT_EQ(found.diagnosis.verdict, Verdict::effect_found);
+  Diagnosis diagnosis = found.diagnosis;
+  const Confirmation same = diagnosis::confirm(run(0.05, 2.6, 2), found.fits);
+  EXPECT_LT(same.final_rmse, 0.6 * same.base_rmse);
+  diagnosis::veto({same}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effect_found);
+}
+
+TEST(Confirm, ARunWithoutTheEffectVetoes) {
+  const Diagnosed found = diagnosed(run(0.05, 0.4, 1));
+  Diagnosis diagnosis = found.diagnosis;
+  const Confirmation none = diagnosis::confirm(run(0, 0, 3), found.fits);
+  EXPECT_GT(none.final_rmse, none.base_rmse);
+  diagnosis::veto({none}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::unconfirmed);
+  EXPECT_NE(diagnosis.messages.back().find("does not bear out"), std::string::npos);
+}
+
+}  // namespace
