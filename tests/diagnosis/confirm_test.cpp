@@ -23,6 +23,9 @@ Identification run(double amplitude, double phase, std::uint64_t seed) {
   synthetic::Record made =
       synthetic::make(FrictionModel(ExponentialLaw{}), synthetic::table4_15mm(ExponentialLaw{}), options);
   made.motion.conditions.speed = {kTurnRate, "command line"};
+  made.motion.constant_disc_velocity = kTurnRate * made.motion.conditions.radius.value;
+  made.motion.disc_angle.clear();
+  for (const double time : made.motion.time) made.motion.disc_angle.push_back(kTurnRate * time);
   const auto factor = [&](double time) { return 1 + amplitude * std::cos(kTurnRate * time + phase); };
   for (std::size_t i = 0; i < made.motion.size(); ++i) made.motion.friction[i] *= factor(made.motion.time[i]);
   for (Cycle& cycle : made.segmentation.cycles) cycle.break_away_friction *= factor(cycle.break_away_time);
@@ -41,7 +44,8 @@ Diagnosed diagnosed(const Identification& trace) {
 
 TEST(Confirm, TheSameRunoutFromAnotherStartingAngleBearsItOut) {
   const Diagnosed found = diagnosed(run(0.05, 0.4, 1));
-  ASSERT_EQ(found.diagnosis.verdict, Verdict::effect_found);
+  ASSERT_EQ(found.diagnosis.ladder.back().added, "runout");
+  ASSERT_EQ(found.diagnosis.verdict, Verdict::effect_found) << found.diagnosis.messages.back();
   Diagnosis diagnosis = found.diagnosis;
   const Confirmation same = diagnosis::confirm(run(0.05, 2.6, 2), found.fits);
   EXPECT_LT(same.final_rmse, 0.6 * same.base_rmse);
@@ -56,6 +60,7 @@ TEST(Confirm, ARunWithoutTheEffectVetoes) {
   EXPECT_GT(none.final_rmse, none.base_rmse);
   diagnosis::veto({none}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::unconfirmed);
+  ASSERT_FALSE(diagnosis.messages.empty());
   EXPECT_NE(diagnosis.messages.back().find("does not bear out"), std::string::npos);
 }
 
