@@ -19,6 +19,8 @@ struct Motion;
 ///    needs.
 /// 2. Its name in the list of friction/effects/all.hpp.
 /// 3. One test in tests/friction/.
+/// The place in the list is the order in which effects act. viscous.hpp is a short example; a point of it stands in
+/// tests/friction/effects_test.cpp (SayWhatTheirEquationSaysAtAPoint).
 /// The command line, the help, the JSON, the bounds, the contract tests, the simulation and the diagnosis find it
 /// through the list. All that they must know of it stands in its EffectInfo: no other file names it.
 ///

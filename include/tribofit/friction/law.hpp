@@ -26,16 +26,19 @@ namespace tribofit {
 /// SI, in the order of info():
 ///
 ///   key                                     name on the command line and in JSON
-///   LawInfo info()                          what it says about itself
-///   std::vector<double> start(const FrictionCurve&)   where a fit begins, from the data; SI
+///   LawInfo info()                          what it says about itself; the equation begins "mu = " and names every
+///                                           parameter
+///   std::vector<double> start(const FrictionCurve&)   where a fit begins, from the data, SI; see best_fall() and
+///                                           line_over() there
 ///   T at_rest(q)                            friction that a rigid stick reaches at break-away
 ///   T steepness(q)                          only where friction depends on the reduced speed x = steepness v [s/m]
 ///   T friction(q, const T& x)               steady friction at x; at the speed v where there is no steepness
 ///   T mean_friction(q, const T& x, const T& variance)   its mean over speeds with a small variance about x, for
-///   samples
-///                                           that are means over a few neighbours
+///                                           samples that are means over a few neighbours
 ///   T remaining_fall(const T& x)            only for laws with two levels that have a steepness: how much of the way
 ///                                           from mu_s to mu_k is still to come at x, 1 at rest and 0 at high speed
+///
+/// LogarithmicLaw is an example without levels, GaussianLaw one with them.
 ///
 /// Laws that fall from mu_s to mu_k by a shape of the reduced speed take all but key, info, steepness, shape and
 /// mean_shape from TwoLevelLaw.
