@@ -39,6 +39,10 @@ bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Can
         k == 0 && std::abs(trial.p[offset] - q.neutral * q.si) > limits::kAwayFromNone * (q.upper - q.lower) * q.si;
     const bool flat = away && trial.at_bound[offset] && !is_drawn_beyond(trial, offset, q, noise);
     if (decisive && trial.at_bound[offset + k] && !flat) return false;
+    // What stands at the far end of its range is asked for more than the effect can be.
+    const bool far =
+        std::abs(trial.p[offset + k] - q.neutral * q.si) > limits::kAwayFromNone * (q.upper - q.lower) * q.si;
+    if (!decisive && !q.periodic && far && trial.at_bound[offset + k]) return false;
     const bool too_slow =
         q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(context.fine.observations);
     if (too_slow) return false;

@@ -11,6 +11,8 @@ namespace {
 
 /// Standard deviations of v_r within which it is zero, and the part of the typical peak where there is no noise.
 constexpr double kRestNoise = 3, kRestPart = 1e-3;
+/// Part of the typical peak below which contacts are not yet sliding throughout, as they pass through rest.
+constexpr double kReversalPart = 0.01;
 
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
 double typical_peak(const Motion& motion) {
@@ -103,7 +105,10 @@ std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& threshol
 }
 
 Thresholds thresholds_without_stick(const Motion& motion) {
-  const double band = kRestNoise * motion.velocity_noise;
+  // A filter before the recording leaves less noise than a reversal takes to get through rest.
+  const double band = motion.stick.never
+                          ? kRestNoise * motion.velocity_noise
+                          : std::max(kRestNoise * motion.velocity_noise, kReversalPart * typical_peak(motion));
   return {band, band, 0};
 }
 

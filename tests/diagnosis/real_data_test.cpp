@@ -110,17 +110,18 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   EXPECT_EQ(alone.traces[0].motion.friction_kind, FrictionKind::force);
   // Which law the ladder starts from is for the data to say: the end of it is compared with what needs no ladder.
   EXPECT_LT(alone.diagnosis.ladder.back().held_out_rmse, error_of_straight_line(alone.traces[0]));
-  EXPECT_GT(fall(alone), 0.05);
-  EXPECT_EQ(alone.diagnosis.verdict, Verdict::unexplained);
+  // A quarter is aimed at: a plain regression on velocity, acceleration and time reaches 0.37 in sample.
+  EXPECT_GE(fall(alone), 0.15);
+  EXPECT_NE(alone.diagnosis.verdict, Verdict::sufficient);
   const bool said = std::any_of(alone.diagnosis.remaining.begin(), alone.diagnosis.remaining.end(),
                                 [](const Share& s) { return s.share > 0; });
-  EXPECT_TRUE(said || !alone.diagnosis.messages.empty());
+  EXPECT_TRUE(said || !alone.diagnosis.messages.empty() || alone.diagnosis.verdict == Verdict::effect_found);
 
   read.columns["load"] = "weight_on_bit_N";
   const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read);
   ASSERT_TRUE(weighted.analysed);
   EXPECT_GT(fall(weighted), 0.02);  // a tenth is aimed at
-  EXPECT_EQ(weighted.diagnosis.verdict, Verdict::unexplained);
+  EXPECT_NE(weighted.diagnosis.verdict, Verdict::sufficient);
 }
 
 TEST_F(RealData, RotaryTribometerFrictionRisesWithSpeedAndNeverSticks) {
