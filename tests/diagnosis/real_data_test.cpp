@@ -28,8 +28,8 @@ class RealData : public ::testing::Test {
     if (!std::filesystem::exists(shared_)) GTEST_SKIP() << shared_ << " is absent";
   }
 
-  DiagnosedTraces diagnosed(const std::string& file, ReadOptions read) const {
-    return diagnose({{(shared_ / file).string(), std::move(read), {}}});
+  DiagnosedTraces diagnosed(const std::string& file, ReadOptions read, const IdentifyOptions& options = {}) const {
+    return diagnose({{(shared_ / file).string(), std::move(read), {}}}, options);
   }
 
   std::filesystem::path shared_;
@@ -105,10 +105,12 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   ReadOptions read;
   read.conditions.radius = {0.05, "command line"};
   read.columns = {{"v_r", "bit_speed_rpm"}, {"torque", "torque_on_bit_Nm"}, {"load", "none"}};
-  const DiagnosedTraces alone = diagnosed("drill-string/drillstring_175.csv", read);
+  IdentifyOptions one_law;  // two climb as high, in twice the time
+  one_law.laws = {ExponentialLaw{}};
+  const DiagnosedTraces alone = diagnosed("drill-string/drillstring_175.csv", read, one_law);
   ASSERT_TRUE(alone.analysed);
   EXPECT_EQ(alone.traces[0].motion.friction_kind, FrictionKind::force);
-  // Which law the ladder starts from is for the data to say: the end of it is compared with what needs no ladder.
+  // The end of the ladder is compared with what needs no ladder.
   EXPECT_LT(alone.diagnosis.ladder.back().held_out_rmse, error_of_straight_line(alone.traces[0]));
   // A quarter is aimed at: a plain regression on velocity, acceleration and time reaches 0.37 in sample.
   EXPECT_GE(fall(alone), 0.15);
@@ -118,7 +120,7 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   EXPECT_TRUE(said || !alone.diagnosis.messages.empty() || alone.diagnosis.verdict == Verdict::effect_found);
 
   read.columns["load"] = "weight_on_bit_N";
-  const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read);
+  const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read, one_law);
   ASSERT_TRUE(weighted.analysed);
   EXPECT_GT(fall(weighted), 0.02);  // a tenth is aimed at
   EXPECT_NE(weighted.diagnosis.verdict, Verdict::sufficient);
