@@ -110,7 +110,7 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
   }
   if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";
   if (info.excitation.changing_speed && !seen.speed_changes) {
-    return "v_r does not change within a record: nothing excites a memory";
+    return "v_r does not change within a record: nothing shows what follows it late";
   }
   const std::string& purpose = info.excitation.break_away;
   if (!purpose.empty() && !seen.breaks_away) return "there is no break-away " + purpose;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "base_law.hpp"
@@ -140,10 +141,14 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   return fits;
 }
 
-/// One noise floor for all rungs: the sensor noise of the records, and the scatter that the last rung sees.
+/// One noise floor for all rungs, since it is a property of the records: the sensor noise, and the least of what the
+/// rungs make of the scatter of break-away. A richer model that calls more of the error scatter has not explained it.
 double share_floor(double noise, std::vector<Fit>& fits) {
   Floor floor = fits.back().floor;
-  const double scatter = std::max(0.0, floor.rmse * floor.rmse - floor.noise * floor.noise);
+  double scatter = std::numeric_limits<double>::infinity();
+  for (const Fit& rung : fits) {
+    scatter = std::min(scatter, std::max(0.0, std::pow(rung.floor.rmse, 2) - std::pow(rung.floor.noise, 2)));
+  }
   floor.noise = noise;
   floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
   for (Fit& rung : fits) set_floor(floor, rung);
@@ -175,27 +180,16 @@ std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& a
   return rungs;
 }
 
-/// Effects that may explain what remains, and are not proven to.
-std::string possible_effects(const Diagnosis& diagnosis) {
-  std::string keys;
-  for (const EffectFinding& finding : diagnosis.effects) {
-    if (finding.status == EffectStatus::possible) keys += (keys.empty() ? "" : ", ") + finding.key;
-  }
-  return keys;
-}
-
 /// Far above the floor, an error that goes with no variable of these data is not explained either.
 void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
   const bool added = fits.size() > 1;
   diagnosis.verdict = structured ? Verdict::unexplained : added ? Verdict::effect_found : Verdict::sufficient;
-  if (const std::string possible = possible_effects(diagnosis); !possible.empty()) {
-    diagnosis.verdict = Verdict::unexplained;
-    diagnosis.messages.push_back(possible + " may explain what remains; these data do not prove it");
-    return;
-  }
+  const bool possible = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                    [](const EffectFinding& f) { return f.status == EffectStatus::possible; });
+  if (possible) diagnosis.verdict = Verdict::unexplained;
   const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
   const double left_over = fits.back().error.held_out_rmse / diagnosis.floor_rmse;
-  if (structured || !(left_over > far)) return;
+  if (structured || possible || !(left_over > far)) return;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(
       fmt::format("what remains is {:.1f} times the noise floor and goes with no variable of these data more than "

@@ -15,6 +15,7 @@
 #include "fit/stick_evidence.hpp"
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
+#include "limits.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -200,10 +201,11 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
 }
 
 void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis) {
-  constexpr double kChance = 0.05;  // one run that bears a finding out fails by chance once in twenty
   if (diagnosis.verdict != Verdict::effect_found) return;
   for (const Confirmation& run : confirmations) {
-    if (!std::isfinite(run.final_rmse) || (run.final_rmse < run.base_rmse && run.p_value < kChance)) continue;
+    if (!std::isfinite(run.final_rmse) ||
+        (run.final_rmse < run.base_rmse && run.p_value < limits::kChanceOfConfirmation))
+      continue;
     diagnosis.verdict = Verdict::unconfirmed;
     diagnosis.messages.push_back(
         fmt::format("{} does not bear out what was found: there the error goes from {:.4g} to "

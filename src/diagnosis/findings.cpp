@@ -161,7 +161,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last,
   if (finding.status == EffectStatus::unsupported && is_possible(in, last)) {
     finding.status = EffectStatus::possible;
     finding.reason =
-        fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to tell: {}",
+        fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to decide: {}",
                     last.judged->p_value, in.all[k].info.experiment);
   }
   if (!contains(in.ladder.withdrawn, k)) return;

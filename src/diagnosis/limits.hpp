@@ -52,7 +52,7 @@ inline constexpr double kAwayFromNone = 0.5;  ///< of its range the size of an e
 inline constexpr double kLeastSizeOfLevel =
     0.15;  ///< a high break-away makes its own stick longer, and explains as much
 inline constexpr std::ptrdiff_t kBreakAwaysOfStickSlip =
-    30;                                     ///< fewer: steps of speed go with time, nothing is obvious
+    30;                                     ///< fewer: what goes with the stick time goes with time
 inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles do not count as independent
 
 /// Two models are distinguishable when their squares differ by more than chance would make them: with the right one
@@ -85,6 +85,9 @@ inline constexpr double kCreepPart = 0.5;
 inline constexpr double kChanceOfPossible = 0.05;  ///< p-value: one record in twenty would else be called unfinished
 inline constexpr double kPossiblePart = 0.3;       ///< of what is above the noise: less does not change the picture
 inline constexpr double kLeastPossible = 0.1;      ///< of the squares of the noise: less shows on no plot
+
+// Whether a run that was held back bears a finding out.
+inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those that do one in twenty fails by chance
 
 // What remains.
 inline constexpr double kChance = 0.01;             ///< p-value below which structure is not chance

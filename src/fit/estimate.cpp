@@ -40,17 +40,22 @@ SolverOptions careful_search() {
 /// speed are starts too, each with a few phases.
 void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
   constexpr int kPhases = 4;
-  for (std::size_t k = 0; k < context.model.parameters().size(); ++k) {
-    const Parameter& q = context.model.parameters()[k].parameter;
-    if (q.search != ParameterSearch::steady_line) continue;
+  const auto parameters = context.model.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].parameter.search != ParameterSearch::steady_line) continue;
+    const auto phase_of_line = std::find_if(parameters.begin(), parameters.end(), [&](const FrictionModel::Slot& slot) {
+      return slot.effect == parameters[k].effect && slot.parameter.periodic;
+    });
+    const auto at_phase = static_cast<std::size_t>(phase_of_line - parameters.begin());
+    const bool has_phase = phase_of_line != parameters.end();
     const SpectralLines lines =
         strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
                         context.bounds.lower[k], context.bounds.upper[k]);
     for (const double frequency : lines.frequencies) {
-      for (int phase = 0; phase < kPhases; ++phase) {
+      for (int phase = 0; phase < (has_phase ? kPhases : 1); ++phase) {
         std::vector<double> start = start_from_data(context.model, context.observations, context.bounds);
         start[k] = frequency;
-        start[k + 1] = 2 * std::numbers::pi * phase / kPhases - std::numbers::pi;  // a line is followed by its phase
+        if (has_phase) start[at_phase] = 2 * std::numbers::pi * phase / kPhases - std::numbers::pi;
         starts.push_back(std::move(start));
       }
     }

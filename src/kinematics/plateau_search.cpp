@@ -158,7 +158,10 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step,
   if (s.noise == 0) s.noise = s.plateaus.empty() ? 0 : std::min(roughness, 1e-3 * s.plateaus.depth);
   s.sticks = !s.plateaus.empty() && (!block || !disc.varying.empty() || std::abs(s.plateaus.level) > 3 * s.noise);
   if (s.sticks && (!block || !disc.varying.empty())) s.sticks = rests(trace, s);
-  if (!s.sticks) s.plateaus.runs.clear(), s.plateaus.level = 0;
+  if (!s.sticks) {
+    s.plateaus.runs.clear();
+    s.plateaus.level = 0;
+  }
   return s;
 }
 

@@ -123,7 +123,7 @@ RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& v
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
                           std::optional<double> plateau) {
   HealthItem item{health_check::kClipping, Status::ok, "no runs of identical samples at the end of a channel's range"};
-  const auto warn_of = [&](const char* name, const EndRuns& end, double factor, const char* unit) {
+  const auto add_warning = [&](const char* name, const EndRuns& end, double factor, const char* unit) {
     if (end.count < 6) return;
     const double share = static_cast<double>(end.count) / static_cast<double>(trace.size());
     item.status = share > 0.001 ? Status::problem : Status::warning;
@@ -132,12 +132,12 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   };
   const auto& [low, high] = ends.friction;
   const char* unit = trace.friction_kind == FrictionKind::force ? " N" : "";
-  if (low.at <= 0) warn_of("friction", low, 1, unit);
-  if (high.at >= 0) warn_of("friction", high, 1, unit);
+  if (low.at <= 0) add_warning("friction", low, 1, unit);
+  if (high.at >= 0) add_warning("friction", high, 1, unit);
   const double range = std::abs(ends.velocity[1].at - ends.velocity[0].at);
   for (const EndRuns& end : ends.velocity) {
     const bool is_plateau = plateau && std::abs(end.at - *plateau) <= 0.02 * std::abs(*plateau) + 1e-6 * range;
-    if (!is_plateau) warn_of("velocity", end, 1e3, " mm/s");
+    if (!is_plateau) add_warning("velocity", end, 1e3, " mm/s");
   }
   if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
     const double declared = instruments.vibrometer.range->value;

@@ -126,8 +126,13 @@ class Sentences {
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (any(EffectStatus::possible)) {
-      return fmt::format("{} What remains may be explained, but these data do not prove it: {}.",
-                         found_effects(d_).empty() ? "No effect is proven." : found_sentence(result_), fall());
+      std::vector<std::string> keys;
+      for (const EffectFinding& e : d_.effects) {
+        if (e.status == EffectStatus::possible) keys.push_back(e.key);
+      }
+      return fmt::format("{} What remains may be explained by {}, but these data do not prove it: {}.",
+                         found_effects(d_).empty() ? "No effect is proven." : found_sentence(result_),
+                         fmt::join(keys, " or "), fall());
     }
     if (found_effects(d_).empty()) {
       return fmt::format("No effect of the catalogue explains what remains: the held-out error of the {} is {}, {}. {}",

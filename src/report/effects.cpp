@@ -44,6 +44,38 @@ std::string parameters_text(std::span<const Parameter> parameters) {
   return text;
 }
 
+/// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
+std::string_view scaling_text(BoundScaling scaling) {
+  switch (scaling) {
+    case BoundScaling::never:
+      return "";
+    case BoundScaling::with_slip_time:
+      return "; bounds in proportion to the slip time";
+    case BoundScaling::against_slip_time:
+      return "; bounds in inverse proportion to the slip time";
+    case BoundScaling::with_stick_time:
+      return "; bounds in proportion to the stick time";
+    case BoundScaling::with_slip_length:
+      return "; bounds in proportion to the slip length";
+    case BoundScaling::against_slip_length:
+      return "; bounds in inverse proportion to the slip length";
+    case BoundScaling::against_top_speed:
+      return "; bounds in inverse proportion to the top speed";
+    case BoundScaling::with_duration:
+      return "; bounds in proportion to the duration of the record";
+    case BoundScaling::against_duration:
+      return "; bounds in inverse proportion to the duration of the record";
+    case BoundScaling::with_distance:
+      return "; bounds in proportion to the distance slid";
+    case BoundScaling::with_mass:
+      return "; bounds in proportion to friction force over acceleration";
+    case BoundScaling::with_speed:
+    case BoundScaling::against_speed:
+      return "; bounds from the speeds of the record";
+  }
+  return "";
+}
+
 void add_effect(const EffectInfo& effect, TerminalText& text) {
   constexpr std::size_t kNames = 15;
   text.raw(fmt::format("{} ({})\n", text.bold(effect.spelled()), to_string(effect.group)));
@@ -68,7 +100,8 @@ void add_effect(const EffectInfo& effect, TerminalText& text) {
   text.raw("\n");
   for (const Parameter& p : effect.parameters) {
     const bool own = p.scope == ParameterScope::record;
-    text.item(p.name, p.description + (own ? "; another value in each record" : ""), kNames);
+    const std::string scaling(scaling_text(p.bound_scaling));
+    text.item(p.name, p.description + (own ? "; another value in each record" : "") + scaling, kNames);
   }
   if (!effect.pairs.empty()) text.raw("\n  looks like\n");
   for (const LookAlike& pair : effect.pairs) {

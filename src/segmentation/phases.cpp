@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/limits.hpp"
+#include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
 namespace {
 
-/// Standard deviations of v_r within which it is zero, and the part of the typical peak where there is no noise.
-constexpr double kRestNoise = 3, kRestPart = 1e-3;
-/// Part of the typical peak below which contacts are not yet sliding throughout, as they pass through rest.
-constexpr double kReversalPart = 0.01;
+using kinematics::kRestDepth;
+using kinematics::kRestNoise;
 
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
 double typical_peak(const Motion& motion) {
@@ -134,7 +134,7 @@ std::vector<RawSlip> find_slides(const Motion& motion) {
 
 std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSlip>& slides, double peak) {
   constexpr std::size_t kBlock = 16, kFewest = 2;  // samples of a mean; means in a row that make a rest
-  const double limit = std::max(motion.velocity_noise, kRestPart * peak);
+  const double limit = std::max(motion.velocity_noise, kRestDepth * peak);
   std::vector<RawSlip> moving;
   for (const RawSlip& slide : slides) {
     std::size_t begin = slide.samples.begin, rest = begin, blocks = 0;
@@ -150,7 +150,10 @@ std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSl
         if (blocks++ == 0) rest = i;
         continue;
       }
-      if (blocks >= kFewest) keep(rest), begin = i;
+      if (blocks >= kFewest) {
+        keep(rest);
+        begin = i;
+      }
       blocks = 0;
     }
     keep(blocks >= kFewest ? rest : slide.samples.end);
@@ -171,7 +174,7 @@ bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thr
   };
   const double middle = mean(0.3, 0.7), noise = motion.velocity_noise;
   if (block && std::abs(middle) <= 0.5 * std::abs(motion.disc_velocity[stick.begin + n / 2])) return true;
-  if (std::abs(middle) > std::max(kRestNoise * noise, kRestPart * thresholds.peak)) return false;
+  if (std::abs(middle) > std::max(kRestNoise * noise, kRestDepth * thresholds.peak)) return false;
   return n < kShape || std::abs(0.5 * (mean(0.1, 0.3) + mean(0.7, 0.9)) - middle) <= noise;
 }
 

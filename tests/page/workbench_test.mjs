@@ -161,7 +161,8 @@ async function diagnose(address) {
   await close();
 }
 
-/** The server ends while a page waits: within two seconds, and the page says so. */
+/** The server ends while a page waits: within two seconds, and the page says so. Whether the fit was under way: on a busy
+ *  machine it may be over before the signal arrives. */
 async function stopInMidFit({ server, address, ended }) {
   const { page, close } = await open(address, 1280);
   // Rich enough that the full fit does not end before the server does.
@@ -176,13 +177,12 @@ async function stopInMidFit({ server, address, ended }) {
   server.kill("SIGTERM");
   assert.equal(await ended, 0);
   assert.ok(performance.now() - begin < 2000, "the server took more than two seconds to end");
-  // On a busy machine the fit may be over before the signal arrives; that the server ends at once, and that the page says
-  // so, holds all the same.
-  if (await request.response() !== null) console.log("the fit was over before the server ended");
+  const inMidFit = await request.response() === null;
   await page.check("#effect-viscous");
   await page.waitForSelector("#bench-trouble:not([hidden])");
   assert.match(await page.textContent("#bench-trouble"), /does not answer/);
   await close();
+  return inMidFit;
 }
 
 const begun = await explore("--radius", "15mm", "lag.csv");
@@ -193,7 +193,9 @@ const { page: stranger, close } = await open(begun.address, 1280);
 const refused = await stranger.goto(begun.address.replace(/token=.*/, "token=0"));
 assert.equal(refused.status(), 403);
 await close();
-await stopInMidFit(begun);
+let inMidFit = await stopInMidFit(begun);
+for (let more = 0; more < 2 && !inMidFit; ++more) inMidFit = await stopInMidFit(await explore("--radius", "15mm", "lag.csv"));
+assert.ok(inMidFit, "the fit was over before the server ended, three times");
 const again = await explore("--session", "session.json");
 const { page: restored, close: closeRestored } = await open(again.address, 1280);
 assert.ok(await restored.locator("#bench-rungs tbody tr").count() > 3);
