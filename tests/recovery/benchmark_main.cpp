@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,8 @@ using nlohmann::json;
 
 struct Options {
   PlanOptions plan;
+  std::vector<std::string> kinds;
+  std::size_t records = 20;
   std::string only, one, json_path;
   int threads = 0;
   bool quiet = false, experiments = true;
@@ -59,11 +62,13 @@ json to_json(const Outcome& o) {
   return {{"case", o.of.name},
           {"kind", to_string(o.of.kind)},
           {"setting", to_string(o.of.setting)},
+          {"record_kind", o.of.record_kind},
           {"seed", o.of.seed},
           {"hidden", hidden},
           {"law", tribofit::to_string(o.of.law)},
           {"radius_mm", o.of.radius * 1e3},
           {"noise_colour", o.of.colour},
+          {"noise_flicker", o.of.flicker},
           {"scatter", o.of.scatter},
           {"wander", o.of.wander},
           {"named", named},
@@ -116,9 +121,15 @@ void explain(const Case& c) {
   fmt::print("next: {}\n", diagnosed.next_experiment);
 }
 
-int run(Options options) {
+std::vector<Case> plan(Options options) {
   if (!options.experiments) options.plan.look_alikes = 0;
-  std::vector<Case> cases = plan_cases(options.plan);
+  if (options.kinds.empty()) return plan_cases(options.plan);
+  if (options.kinds.front() == "all") options.kinds.clear();
+  return plan_record_kinds(options.kinds, options.records, options.records, options.plan.seed);
+}
+
+int run(const Options& options) {
+  std::vector<Case> cases = plan(options);
   if (!options.one.empty()) {
     for (const Case& c : cases) {
       if (c.name != options.one) continue;
@@ -140,7 +151,14 @@ int run(Options options) {
     if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
   });
   if (!options.json_path.empty()) write(options.json_path, outcomes);
-  fmt::print("{}", tables(outcomes));
+  if (options.kinds.empty()) {
+    fmt::print("{}", tables(outcomes));
+    return 0;
+  }
+  fmt::print("{}\n", record_kinds_table(outcomes));
+  for (const Outcome& o : outcomes) {
+    if (!o.right) fmt::print("{}\n", line(o));
+  }
   return 0;
 }
 
@@ -157,6 +175,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--look-alikes", options.plan.look_alikes, "cases of each pair that looks alike, for each of the two")
       ->capture_default_str();
+  app.add_option("--kinds", options.kinds,
+                 "instead of those cases, records of these kinds: all, or some of " +
+                     fmt::format("{}", fmt::join(record_kinds(), ", ")))
+      ->delimiter(',');
+  app.add_option("--records", options.records, "of each kind: so many with nothing hidden, and so many with an effect")
+      ->capture_default_str();
   app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
   app.add_option(
       "--only", options.only,
@@ -167,5 +191,10 @@ int main(int argc, char** argv) {
   app.add_flag("!--no-experiments", options.experiments, "do not simulate the next experiment where a group was named");
   app.add_flag("--quiet", options.quiet, "no line for each case");
   CLI11_PARSE(app, argc, argv);
-  return run(options);
+  try {
+    return run(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "hidden_effects_benchmark: {}\n", e.what());
+    return 2;
+  }
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "tribofit/friction/effects/all.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace {
@@ -22,9 +23,9 @@ using namespace recovery;
 /// Why an effect is left out: its model is an approximation of the simulated contact (contact-spin), it is read off the
 /// motion and not fitted, or a record at hand leaves a parameter of it open (ageing, load-coupling).
 bool is_fitted(const Case& c) {
-  static const char* const kLeftOut[] = {"contact-spin", "radius-offset", "velocity-gain", "velocity-highpass",
-                                         "speed-ripple", "ageing",        "load-coupling"};
-  return std::none_of(std::begin(kLeftOut), std::end(kLeftOut),
+  static const char* const kLeftOut[] = {"contact-spin", "ageing", "load-coupling"};
+  return !tribofit::is_kinematic(tribofit::make_effect(c.hidden[0].key)) &&
+         std::none_of(std::begin(kLeftOut), std::end(kLeftOut),
                       [&](const char* key) { return c.hidden[0].key == key; });
 }
 

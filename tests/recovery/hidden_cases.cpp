@@ -19,42 +19,8 @@ using namespace tribofit;
 namespace {
 
 constexpr double kRpm = 2 * std::numbers::pi / 60;
-
-/// FNV-1a.
-std::uint64_t hash(std::string_view text, std::uint64_t seed) {
-  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
-}
-
-Ingredient ingredient(const Recipe& r, double size, Random& random) {
-  return {r.key, size, r.values(size, random), r.main_parameters};
-}
-
-/// Rig, law and noise about those of [D]. `cell` walks through radii, laws, noise and scatter, so that every group of
-/// cases holds all of them.
-Case draw(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random) {
-  Case c;
-  c.name = fmt::format("{}:{}", group, number);
-  c.kind = kind;
-  c.setting = setting;
-  c.seed = seed;
-  const std::size_t cell = (5 * number + hash(group, 0) % 32) % 32;
-  c.group = std::move(group);
-  constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
-  c.radius = kRadii[cell % 4];
-  c.law = (cell / 4) % 2 == 0 ? Law(ExponentialLaw{}) : Law(FractionalLaw{});
-  c.colour = (cell / 8) % 2 == 0 ? 0 : 0.9;
-  c.wander = (cell / 16) % 2 == 0 ? 0 : 0.7;
-  c.scatter = random.uniform(0.004, 0.02);
-  c.rig = rig_with_damping_ratio(random.uniform(0.75, 0.95), 1e3 * random.uniform(11, 16), random.uniform(0.01, 0.04));
-  c.friction[0] = random.uniform(0.49, 0.53);
-  c.friction[1] = random.uniform(0.31, 0.39);
-  c.friction[2] = 1e3 * (c.law == Law(ExponentialLaw{}) ? random.uniform(0.03, 0.06) : random.uniform(0.05, 0.11));
-  c.speed = 4 * kRpm;
-  c.load = 50;
-  return c;
-}
+constexpr double kFrictionNoise = 0.003;
+constexpr std::pair<double, double> kSlidingRecord = {60, 200};  // [s, Hz]
 
 std::string number(double x) {
   return fmt::format("{:.9g}", x);
@@ -122,6 +88,7 @@ Drive drive_of(const Case& c, const Run& run, double duration, Random& random) {
   drive.mean_load = c.load;
   const double speed = run.speed * c.speed;
   drive.speed = constant_speed(speed);
+  if (c.programme != Programme::stick_slip) drive.speed = sliding_speed(c.programme, speed, random);
   const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
   if (back) drive.speed = reversing_speed(speed, random.uniform(0.1, 0.2));
   if (run.setting == Setting::pauses) {
@@ -171,8 +138,10 @@ std::pair<double, double> duration_and_rate(Setting setting) {
 /// Record number `number` of a case, from its own random numbers.
 SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
   Random random((c.seed ^ 0x5bd1e995u) + number);
+  const bool slides = c.programme != Programme::stick_slip;
   SimulationOptions options;
   std::tie(options.duration, options.rate) = duration_and_rate(run.setting);
+  if (slides) std::tie(options.duration, options.rate) = kSlidingRecord;
   if (run.duration > 0) options.duration = run.duration;
   if (run.rate > 0) options.rate = run.rate;
   const Drive drive = drive_of(c, run, options.duration, random);
@@ -180,11 +149,11 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
   rig.stiffness *= run.stiffness;
   rig.damping *= std::sqrt(run.stiffness);
   const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
-  if (!back) options.settle = settling_time(rig, drive, truth.p);
-  options.scatter = {c.scatter, c.wander};
+  if (!back) options.settle = slides ? 0.2 : settling_time(rig, drive, truth.p);
+  if (!slides) options.scatter = {c.scatter, c.wander};
   options.seed = c.seed + number;
   Sensors sensors;
-  sensors.friction_noise = 0.003;
+  sensors.friction_noise = c.flicker ? 0 : kFrictionNoise;
   sensors.velocity_noise = 0.02e-3;
   sensors.noise_colour = c.colour;
   sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
@@ -192,6 +161,35 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
 }
 
 }  // namespace
+
+std::uint64_t hash(std::string_view text, std::uint64_t seed) {
+  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return h;
+}
+
+Case draw_case(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random) {
+  Case c;
+  c.name = fmt::format("{}:{}", group, number);
+  c.kind = kind;
+  c.setting = setting;
+  c.seed = seed;
+  const std::size_t cell = (5 * number + hash(group, 0) % 32) % 32;
+  c.group = std::move(group);
+  constexpr double kRadii[] = {0.009, 0.012, 0.015, 0.018};
+  c.radius = kRadii[cell % 4];
+  c.law = (cell / 4) % 2 == 0 ? Law(ExponentialLaw{}) : Law(FractionalLaw{});
+  c.colour = (cell / 8) % 2 == 0 ? 0 : 0.9;
+  c.wander = (cell / 16) % 2 == 0 ? 0 : 0.7;
+  c.scatter = random.uniform(0.004, 0.02);
+  c.rig = rig_with_damping_ratio(random.uniform(0.75, 0.95), 1e3 * random.uniform(11, 16), random.uniform(0.01, 0.04));
+  c.friction[0] = random.uniform(0.49, 0.53);
+  c.friction[1] = random.uniform(0.31, 0.39);
+  c.friction[2] = 1e3 * (c.law == Law(ExponentialLaw{}) ? random.uniform(0.03, 0.06) : random.uniform(0.05, 0.11));
+  c.speed = 4 * kRpm;
+  c.load = 50;
+  return c;
+}
 
 std::string_view to_string(Setting setting) {
   constexpr std::string_view kNames[] = {"fast",
@@ -217,23 +215,23 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t seed = hash(fmt::format("{}:{}", group, i), options.seed);
       Random random(seed);
-      Case c = draw(group, i, kind, setting, seed, random);
+      Case c = draw_case(group, i, kind, setting, seed, random);
       add_effect(c, random);
       cases.push_back(std::move(c));
     }
   };
-  for (const Recipe& r : kRecipes) {
+  for (const Recipe& r : recipes()) {
     const char* suffix = r.setting == Setting::pauses ? "-pauses" : "";
-    for (const double size : r.sizes) {
-      if (options.largest_only && size != r.sizes.back()) continue;
-      add(fmt::format("{}{}={:g}", r.key, suffix, size), options.runs, Kind::single, r.setting,
-          [&](Case& c, Random& random) { c.hidden = {ingredient(r, size, random)}; });
+    for (const double size : r.effect.hidden.sizes) {
+      if (options.largest_only && size != r.effect.hidden.sizes.back()) continue;
+      add(fmt::format("{}{}={:g}", r.effect.key, suffix, size), options.runs, Kind::single, r.setting,
+          [&](Case& c, Random& random) { c.hidden = {ingredient(r.effect, size, random)}; });
     }
   }
   for (const Pair& pair : kPairs) {
     add(fmt::format("{}+{}", pair.a, pair.b), options.pairs, Kind::pair, pair.setting, [&](Case& c, Random& random) {
-      c.hidden = {ingredient(recipe(pair.a), pair.size_a, random)};
-      c.hidden.push_back(ingredient(recipe(pair.b), pair.size_b, random));
+      c.hidden = {ingredient(recipe(pair.a).effect, pair.size_a, random)};
+      c.hidden.push_back(ingredient(recipe(pair.b).effect, pair.size_b, random));
     });
   }
   // Nothing is hidden in records of every kind, mostly the plain ones.
@@ -253,13 +251,14 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
     });
   }
   add("ageing-at-one-speed", options.unknowable, Kind::unknowable, Setting::fast,
-      [&](Case& c, Random& random) { c.hidden = {ingredient(recipe("ageing"), 0.012, random)}; });
+      [&](Case& c, Random& random) { c.hidden = {ingredient(recipe(Ageing::key).effect, 0.012, random)}; });
   for (const auto& pair : look_alike_pairs()) {
     for (const auto& [key, partner] : {pair, {pair.second, pair.first}}) {
       const Recipe& r = recipe(key);
       add(fmt::format("{}~{}", key, partner), options.look_alikes, Kind::look_alike, r.setting,
           [&, &p = partner](Case& c, Random& random) {
-            c.hidden = {ingredient(r, r.sizes[random.below(r.sizes.size())], random)};
+            const std::vector<double>& sizes = r.effect.hidden.sizes;
+            c.hidden = {ingredient(r.effect, sizes[random.below(sizes.size())], random)};
             c.partner = p;
           });
     }
@@ -267,8 +266,33 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
   return cases;
 }
 
+namespace {
+
+/// What the sensors do not know of: noise as 1/f; a block that is held still and not looked at; a slower rig.
+void finish(const Case& c, Trace& trace, std::uint64_t seed) {
+  if (c.flicker) {
+    Random random(seed);
+    const std::vector<double> noise = flicker_noise(trace.size(), random);
+    for (std::size_t i = 0; i < noise.size(); ++i) trace.friction[i] += kFrictionNoise * noise[i];
+  }
+  if (c.programme != Programme::stick_slip) {
+    trace.velocity.clear();
+    trace.velocity_kind = VelocityKind::fixed_block;
+  }
+  for (double& t : trace.time) t *= c.slowness;
+  for (std::vector<double>* speeds : {&trace.velocity, &trace.disc_speed}) {
+    for (double& v : *speeds) v /= c.slowness;
+  }
+  trace.conditions.speed.value /= c.slowness;
+}
+
+}  // namespace
+
+/// A slow rig is simulated as that of [D], of which its record is an exact image.
 Simulated simulate_case(const Case& c, const Experiment& more) {
-  Model truth = true_model(c);
+  const Model truth = true_model(c);
+  const Case at_home = slowed(c, 1 / c.slowness);
+  const Model simulated = true_model(at_home);
   std::vector<Run> runs = {{.setting = c.setting}};
   if (c.setting == Setting::four_speeds) {
     runs.clear();
@@ -281,7 +305,8 @@ Simulated simulate_case(const Case& c, const Experiment& more) {
   double squares = 0;
   Simulated out{truth.model, truth.p, {}, 0, measured_by_hand(c, more.measured)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    SimulatedRecording hidden = hide_in(c, runs[i], truth, i);
+    SimulatedRecording hidden = hide_in(at_home, runs[i], simulated, i);
+    finish(c, hidden.recording.trace, (c.seed + i) ^ 0x94d049bb133111ebu);
     squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());
     hidden.recording.trace.path = fmt::format("{}{}", c.name, runs.size() > 1 ? fmt::format("/{}", i) : "");
     out.traces.push_back(std::make_shared<const Trace>(std::move(hidden.recording.trace)));

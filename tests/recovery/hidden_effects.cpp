@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 
+#include "tribofit/friction/effects/all.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -17,11 +18,6 @@ using namespace tribofit;
 namespace {
 
 constexpr std::size_t kLargestGroup = 4;
-
-/// Effects that show in the motion and not in the error: they count as named when they were found there.
-bool is_of_motion_key(const std::string& key) {
-  return key == "radius-offset" || key == "velocity-gain" || key == "velocity-highpass" || key == "speed-ripple";
-}
 
 const EffectFinding* finding(const Diagnosis& diagnosis, std::string_view key) {
   const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -37,20 +33,30 @@ std::size_t size_of(const Name& name) {
   return 1 + name.equivalent.size();
 }
 
-/// The ladder beyond the base law; effects of the motion from their own findings, radius and gain as one group.
+/// The ladder beyond the base law. Effects that show in the motion and not in the error count as named when they were
+/// found there, those that correct the plateau as one group.
 std::vector<Name> names_of(const Diagnosis& diagnosis) {
+  std::vector<EffectInfo> of_motion;
+  for (const Effect& effect : effect_catalogue()) {
+    if (is_kinematic(effect)) of_motion.push_back(describe(effect));
+  }
   std::vector<Name> names;
   for (const Rung& rung : diagnosis.ladder) {
-    if (!rung.added.empty() && !is_of_motion_key(rung.added)) names.push_back({rung.added, rung.equivalent});
+    const bool counted_below =
+        std::any_of(of_motion.begin(), of_motion.end(), [&](const EffectInfo& info) { return info.key == rung.added; });
+    if (!rung.added.empty() && !counted_below) names.push_back({rung.added, rung.equivalent});
   }
-  for (const char* key : {"radius-offset", "velocity-gain", "velocity-highpass", "speed-ripple"}) {
-    const EffectFinding* found = finding(diagnosis, key);
+  for (const EffectInfo& info : of_motion) {
+    const EffectFinding* found = finding(diagnosis, info.key);
     if (found == nullptr || found->status != EffectStatus::found) continue;
-    Name name{key, {}};
-    for (const char* other : {"radius-offset", "velocity-gain"}) {
-      const EffectFinding* twin = finding(diagnosis, other);
-      const bool of_plateau = std::string_view(key) == "radius-offset" || std::string_view(key) == "velocity-gain";
-      if (of_plateau && twin != nullptr && twin->status == EffectStatus::equivalent) name.equivalent.push_back(other);
+    Name name{info.key, {}};
+    for (const EffectInfo& other : of_motion) {
+      const EffectFinding* twin = finding(diagnosis, other.key);
+      const bool both_of_plateau =
+          info.plateau_correction != PlateauCorrection::none && other.plateau_correction != PlateauCorrection::none;
+      if (both_of_plateau && twin != nullptr && twin->status == EffectStatus::equivalent) {
+        name.equivalent.push_back(other.key);
+      }
     }
     names.push_back(std::move(name));
   }
@@ -161,8 +167,9 @@ bool splits(const Case& c, const Experiment& experiment, Outcome& out) {
   const auto in = [](const std::string& k) { return [&k](const Name& n) { return holds(n, k); }; };
   out.after = names_of(diagnose_case(simulate_case(c, experiment)).diagnosis);
   // A filter that a tap shows is not corrected: the records are to name it.
-  const bool by_hand = key != "force-bandwidth" && std::find(experiment.measured.begin(), experiment.measured.end(),
-                                                             key) != experiment.measured.end();
+  const bool is_filter = describe(make_effect(key)).declared_by == InstrumentValue::force_bandwidth;
+  const bool by_hand =
+      !is_filter && std::find(experiment.measured.begin(), experiment.measured.end(), key) != experiment.measured.end();
   if (!by_hand && std::none_of(out.after.begin(), out.after.end(), in(key))) return false;
   return std::none_of(out.partners.begin(), out.partners.end(), [&](const std::string& partner) {
     return std::any_of(out.after.begin(), out.after.end(), in(partner));

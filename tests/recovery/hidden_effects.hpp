@@ -35,6 +35,17 @@ enum class Setting {
 };
 std::string_view to_string(Setting setting);
 
+/// How the disc is driven beyond that.
+enum class Programme {
+  stick_slip,  ///< as the setting says, on a rig that sticks and slips
+  // Speed-controlled sliding, 60 s at 200 Hz: a rig too stiff to stick, the block at rest, the speed of the disc
+  // recorded. Between 5 and 85 mm/s but for the reversals.
+  steps,     ///< twelve speeds of 5 s
+  ramps,     ///< up and down in straight lines
+  sines,     ///< about a mean speed
+  reversals  ///< about zero
+};
+
 /// What a case is meant to show.
 enum class Kind {
   single,      ///< one effect: to be named
@@ -65,12 +76,16 @@ struct Case {
   tribofit::Law law = tribofit::ExponentialLaw{};
   std::vector<double> friction = {0, 0, 0};  ///< parameters of the law [SI]
   tribofit::Rig rig;
-  double radius = 0;  ///< [m]
-  double speed = 0;   ///< [rad/s]
-  double load = 0;    ///< [N]
-  double colour = 0;  ///< AR(1) coefficient of the noise
+  double radius = 0;     ///< [m]
+  double speed = 0;      ///< [rad/s]
+  double load = 0;       ///< [N]
+  double colour = 0;     ///< AR(1) coefficient of the noise
+  bool flicker = false;  ///< noise of friction with a spectrum as 1/f instead
   double scatter = 0, wander = 0;
   std::uint64_t seed = 0;
+  std::string record_kind;  ///< of plan_record_kinds(); empty in the others
+  Programme programme = Programme::stick_slip;
+  double slowness = 1;  ///< of the rig over that of [D]: times grow by it, speeds fall
   std::string partner;  ///< look-alikes: the one to distinguish it from
 };
 
@@ -87,6 +102,14 @@ struct PlanOptions {
 };
 
 std::vector<Case> plan_cases(const PlanOptions& options);
+
+/// Kinds of record beside those of [D]: programmes of sliding, slow and fast rigs, kinds of noise.
+std::vector<std::string> record_kinds();
+
+/// Of each of these kinds (all of them: empty) `empty` records with nothing hidden and `loaded` ones that walk through
+/// the effects which the kind can show, in all their sizes. Throws std::invalid_argument for an unknown kind.
+std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::size_t empty, std::size_t loaded,
+                                    std::uint64_t seed = 1);
 
 /// A record of a case.
 struct Run {
@@ -186,6 +209,9 @@ std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool
 
 /// The tables that stand in the README, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
+
+/// False alarms, names and intervals of each kind of record, as Markdown.
+std::string record_kinds_table(const std::vector<Outcome>& outcomes);
 
 /// A case fitted with the law and the effects it was made with (those of friction), started at the truth.
 struct KnownFit {

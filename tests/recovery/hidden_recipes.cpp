@@ -1,113 +1,122 @@
 #include "hidden_recipes.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace recovery {
 
+using namespace tribofit;
+
 namespace {
 
-std::vector<double> just(double size, Random&) {
-  return {size};
+/// Records in which the variable varies over which an effect is drawn.
+std::vector<Setting> settings_for(SketchView view) {
+  switch (view) {
+    case SketchView::directions:
+      return {Setting::both_directions};
+    case SketchView::stick_time:
+      return {Setting::four_speeds, Setting::pauses};
+    case SketchView::time:
+    case SketchView::distance:
+    case SketchView::angle:
+    case SketchView::ripple:
+      return {Setting::slow};
+    case SketchView::load:
+      return {Setting::load_swings};
+    case SketchView::temperature:
+      return {Setting::temperature_swings};
+    default:
+      return {Setting::fast};
+  }
 }
-std::vector<double> either_sign(double size, Random& r) {
-  return {r.sign() * size};
-}
-std::vector<double> ageing(double size, Random& r) {
-  return {size, r.uniform(0.05, 0.2)};
+
+std::vector<Recipe> from_catalogue() {
+  std::vector<Recipe> out;
+  for (const Effect& effect : effect_catalogue()) {
+    const EffectInfo info = describe(effect);
+    if (info.hidden.sizes.empty()) continue;
+    for (const Setting setting : settings_for(info.sketch.view)) out.push_back({info, setting});
+  }
+  return out;
 }
 
 }  // namespace
 
-const std::vector<Recipe> kRecipes = {
-    {"viscous", Setting::fast, {0.0008, 0.0011, 0.0015}, just},
-    {"stribeck-exponent", Setting::fast, {0.6, 1.4, 1.8}, just},
-    {"frictional-lag", Setting::fast, {0.5, 1, 2}, just},
-    {"rate-state",
-     Setting::fast,
-     {20, 50, 90},
-     [](double s, Random&) {
-       return std::vector{s, 0.0};
-     }},
-    {"bristle",
-     Setting::fast,
-     {100, 60, 30},
-     [](double s, Random&) {
-       return std::vector{s, 0.001};
-     }},
-    {"contact-spin", Setting::fast, {0.5, 1, 2}, just},
-    {"ageing", Setting::four_speeds, {0.01, 0.015, 0.02}, ageing},
-    {"ageing", Setting::pauses, {0.01, 0.015, 0.02}, ageing},
-    {"asymmetry", Setting::both_directions, {0.93, 1.07, 1.15}, just},
-    {"heating",
-     Setting::slow,
-     {0.05, 0.1},
-     [](double s, Random& r) {
-       return std::vector{r.sign() * s, r.uniform(8, 15)};
-     }},
-    {"run-in",
-     Setting::slow,
-     {0.05, 0.08},
-     [](double s, Random& r) {
-       return std::vector{r.sign() * s, r.uniform(30, 80)};
-     }},
-    {"drift", Setting::slow, {0.0006, 0.0009, 0.0012}, either_sign},
-    {"step",
-     Setting::slow,
-     {0.015, 0.03},
-     [](double s, Random& r) {
-       return std::vector{r.sign() * s, r.uniform(8, 32)};
-     },
-     {0, 1}},
-    {"load-dependence", Setting::load_swings, {0.1, 0.2, 0.3}, just},
-    {"temperature-dependence", Setting::temperature_swings, {0.003, 0.006}, either_sign},
-    {"runout",
-     Setting::slow,
-     {0.02, 0.04, 0.06},
-     [](double s, Random& r) {
-       return std::vector{s, r.phase()};
-     }},
-    {"disc-pattern",
-     Setting::slow,
-     {0.02, 0.04},
-     [](double s, Random& r) {
-       return std::vector{s, r.phase(), r.sign() < 0 ? 0 : 0.02, r.phase()};
-     }},
-    {"speed-ripple",
-     Setting::slow,
-     {0.03, 0.07},
-     [](double s, Random& r) {
-       return std::vector{s, 1.0 + static_cast<double>(r.below(3)), r.phase()};
-     }},
-    {"load-coupling", Setting::fast, {0.1, 0.2}, either_sign},
-    {"ringing",
-     Setting::fast,
-     {0.008, 0.014},
-     [](double s, Random& r) {
-       return std::vector{s, r.uniform(150, 400), r.uniform(0.02, 0.06), r.phase()};
-     },
-     {0, 1}},
-    {"sensor-inertia", Setting::fast, {0.1, 0.2}, just},
-    {"sensor-offset", Setting::both_directions, {0.01, 0.02}, either_sign},
-    {"crosstalk", Setting::load_swings, {0.01, 0.02}, either_sign},
-    {"force-bandwidth",
-     Setting::fast,
-     {300, 200, 100},
-     [](double s, Random& r) {
-       return std::vector{s, r.uniform(0.5, 0.9)};
-     }},
-    {"channel-delay", Setting::fast, {0.5, 1, 2}, either_sign},
-    {"radius-offset", Setting::fast, {0.94, 1.05}, just},
-    {"velocity-gain", Setting::fast, {0.93, 1.08}, just},
-    {"velocity-highpass", Setting::fast, {0.1, 0.3}, just},
-    {"interference",
-     Setting::fast,
-     {0.005, 0.012},
-     [](double s, Random& r) {
-       constexpr double kLines[] = {50, 60, 133};
-       return std::vector{s, kLines[r.below(3)], r.phase()};
-     },
-     {0, 1}},
-};
+const std::vector<Recipe>& recipes() {
+  static const std::vector<Recipe> all = from_catalogue();
+  return all;
+}
+
+const Recipe& recipe(std::string_view key) {
+  const auto at =
+      std::find_if(recipes().begin(), recipes().end(), [&](const Recipe& r) { return key == r.effect.key; });
+  if (at == recipes().end()) throw std::invalid_argument("no effect is hidden as " + std::string(key));
+  return *at;
+}
+
+Ingredient ingredient(const EffectInfo& effect, double size, Random& random) {
+  Ingredient out{effect.key, size, {effect.hidden.either_sign ? random.sign() * size : size}, {0}};
+  for (const ValueDraw& draw : effect.hidden.others) {
+    out.values.push_back(draw.choices.empty() ? random.uniform(draw.lower, draw.upper)
+                                              : draw.choices[random.below(draw.choices.size())]);
+  }
+  for (std::size_t k = 1; k < effect.parameters.size(); ++k) {
+    if (effect.parameters[k].decisive) out.main_parameters.push_back(k);
+  }
+  return out;
+}
+
+std::optional<Programme> sliding_programme(const EffectInfo& effect) {
+  switch (effect.sketch.view) {
+    case SketchView::loop:
+      return Programme::sines;
+    case SketchView::curve:
+      return Programme::steps;
+    case SketchView::directions:
+    case SketchView::creep:
+      return Programme::reversals;
+    case SketchView::time:
+    case SketchView::distance:
+    case SketchView::angle:
+    case SketchView::load:
+    case SketchView::temperature:
+    case SketchView::line:
+      return Programme::ramps;
+    default:
+      return std::nullopt;
+  }
+}
+
+double growth_of(BoundScaling scaling, const RelativeScales& scales) {
+  switch (scaling) {
+    case BoundScaling::with_slip_time:
+      return scales.slip_time;
+    case BoundScaling::against_slip_time:
+      return 1 / scales.slip_time;
+    case BoundScaling::with_stick_time:
+      return scales.stick_time;
+    case BoundScaling::with_slip_length:
+      return scales.slip_length;
+    case BoundScaling::against_slip_length:
+      return 1 / scales.slip_length;
+    case BoundScaling::with_speed:
+      return scales.top_speed;
+    case BoundScaling::against_top_speed:
+    case BoundScaling::against_speed:
+      return 1 / scales.top_speed;
+    case BoundScaling::with_duration:
+      return scales.duration;
+    case BoundScaling::against_duration:
+      return 1 / scales.duration;
+    case BoundScaling::with_distance:
+      return scales.distance;
+    case BoundScaling::with_mass:
+      return scales.mass;
+    case BoundScaling::never:
+      break;
+  }
+  return 1;
+}
 
 const std::vector<Pair> kPairs = {
     {"frictional-lag", "runout", 1, 0.04, Setting::slow},
@@ -129,9 +138,5 @@ const std::vector<Pair> kPairs = {
     {"run-in", "sensor-inertia", 0.08, 0.2, Setting::slow},
     {"drift", "runout", 0.0012, 0.04, Setting::slow},
 };
-
-const Recipe& recipe(std::string_view key) {
-  return *std::find_if(kRecipes.begin(), kRecipes.end(), [&](const Recipe& r) { return key == r.key; });
-}
 
 }  // namespace recovery

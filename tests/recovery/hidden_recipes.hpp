@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "tribofit/friction/effects/all.hpp"
+#include "tribofit/oscillator/drive.hpp"
 
-/// What is hidden in the benchmark: each effect with its sizes, and pairs of effects.
+/// What is hidden in the benchmark: each effect of the catalogue in the sizes that its header states, and pairs.
 namespace recovery {
-
-using namespace tribofit;
 
 /// Numbers from a seed, the same with every standard library.
 class Random {
@@ -20,6 +22,12 @@ class Random {
   explicit Random(std::uint64_t seed) : engine_(seed) {}
   double uniform(double lower, double upper) {
     return lower + (upper - lower) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  /// Of deviation 1: the sum of twelve uniform numbers.
+  double normal() {
+    double sum = -6;
+    for (int k = 0; k < 12; ++k) sum += uniform(0, 1);
+    return sum;
   }
   double sign() { return uniform(-1, 1) < 0 ? -1 : 1; }
   double phase() { return uniform(-std::numbers::pi, std::numbers::pi); }
@@ -31,20 +39,45 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-using Values = std::vector<double> (*)(double size, Random&);
-
-/// An effect, the sizes in which a user meets it, and how it is recorded. Units of the catalogue.
+/// An effect and the record in which it is hidden.
 struct Recipe {
-  const char* key;
+  tribofit::EffectInfo effect;
   Setting setting;
-  std::vector<double> sizes;
-  Values values;
-  std::vector<std::size_t> main_parameters = {0};
 };
 
-/// Every effect that a simulated record can hold.
-extern const std::vector<Recipe> kRecipes;
+/// Every effect of the catalogue, in its order, in each setting in which the variable of its sketch varies.
+const std::vector<Recipe>& recipes();
 const Recipe& recipe(std::string_view key);
+
+/// The effect in one of its sizes, its other parameters drawn as its header says.
+Ingredient ingredient(const tribofit::EffectInfo& effect, double size, Random& random);
+
+/// The speed programme of a sliding record that shows the effect; none where only break-away or stick shows it.
+std::optional<Programme> sliding_programme(const tribofit::EffectInfo& effect);
+
+/// Scales of a record over those of the records for which effects state their sizes.
+struct RelativeScales {
+  double slip_time = 1, stick_time = 1, slip_length = 1, top_speed = 1, duration = 1, distance = 1, mass = 1;
+};
+/// By how much a parameter is larger at these scales.
+double growth_of(tribofit::BoundScaling scaling, const RelativeScales& scales);
+
+/// Rig, law and noise about those of [D], walking through radii, laws, noise and scatter, so that every group of cases
+/// holds all of them.
+Case draw_case(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random);
+
+/// A number from a name (FNV-1a).
+std::uint64_t hash(std::string_view text, std::uint64_t seed);
+
+/// The speed of the disc about `mean` [rad/s], at t = 0 and later (and constant, or as it goes on, before).
+tribofit::SpeedProfile sliding_speed(Programme programme, double mean, Random& random);
+
+/// The case on a rig that is `slowness` times slower: all times grow by it, all speeds fall.
+Case slowed(Case c, double slowness);
+
+/// Friction that wanders with a spectrum as 1/f, from a few times the length of the record to the sampling rate, of
+/// deviation 1.
+std::vector<double> flicker_noise(std::size_t size, Random& random);
 
 struct Pair {
   const char *a, *b;

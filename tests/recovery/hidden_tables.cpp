@@ -216,6 +216,16 @@ std::string experiments_table(const Outcomes& tried) {
   return text;
 }
 
+/// What was said of records with nothing hidden.
+std::map<std::string, std::size_t> alarms_of(const Outcomes& empties) {
+  std::map<std::string, std::size_t> said;
+  for (const Outcome* o : empties) {
+    for (const Name& n : o->names) ++said[n.added];
+    if (o->names.empty() && !o->right) ++said[std::string("verdict ") + std::string(to_string(o->verdict))];
+  }
+  return said;
+}
+
 std::string nothing_table(const Outcomes& empties) {
   std::string text =
       "| records with nothing hidden | n | something named | rate | at most (95 %) | named |\n"
@@ -224,14 +234,9 @@ std::string nothing_table(const Outcomes& empties) {
     Outcomes g;
     std::copy_if(empties.begin(), empties.end(), std::back_inserter(g), of);
     if (g.empty()) return;
-    std::map<std::string, std::size_t> named;
-    for (const Outcome* o : g) {
-      for (const Name& n : o->names) ++named[n.added];
-      if (o->names.empty() && !o->right) ++named[std::string("verdict ") + std::string(to_string(o->verdict))];
-    }
     const std::size_t alarms = g.size() - count(g, is_right);
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {:.1f} % | {} |\n", name, g.size(), alarms,
-                   percent(alarms, g.size()), 100 * upper_bound_95(alarms, g.size()), list(named));
+                   percent(alarms, g.size()), 100 * upper_bound_95(alarms, g.size()), list(alarms_of(g)));
   };
   for (const double colour : {0.0, 0.9}) {
     for (const double wander : {0.0, 0.7}) {
@@ -336,6 +341,34 @@ std::string summary(const std::vector<Outcome>& all) {
 }
 
 }  // namespace
+
+std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
+  std::string text =
+      "| kind of record | empty | false alarms | rate at most (95 %) | alarms | loaded | named | alone | wrong | "
+      "missed | "
+      "inside 95 % |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|\n";
+  const auto row = [&](const std::string& name, const Outcomes& all) {
+    Outcomes empty, loaded;
+    for (const Outcome* o : all) (o->of.kind == Kind::nothing ? empty : loaded).push_back(o);
+    const std::size_t alarms = empty.size() - count(empty, is_right);
+    const Parameters p = parameters(loaded);
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name,
+                   empty.size(), alarms,
+                   empty.empty() ? "" : fmt::format("{:.1f} %", 100 * upper_bound_95(alarms, empty.size())),
+                   list(alarms_of(empty)), loaded.size(), percent(count(loaded, is_right), loaded.size()),
+                   count(loaded, Naming::alone), count(loaded, Naming::wrong) + count(loaded, Naming::beside),
+                   count(loaded, Naming::missed), percent(p.covered, p.n));
+  };
+  std::map<std::string, Outcomes> kinds;
+  Outcomes all;
+  for (const Outcome& o : outcomes) {
+    kinds[o.of.record_kind].push_back(&o);
+    all.push_back(&o);
+  }
+  for (const auto& [name, of] : kinds) row(name, of);
+  row("all", all);
+  return text;
+}
 
 std::string tables(const std::vector<Outcome>& all) {
   std::string text = summary(all);

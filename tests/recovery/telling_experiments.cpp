@@ -5,6 +5,7 @@
 #include <random>
 
 #include "hidden_effects.hpp"
+#include "tribofit/friction/effects/all.hpp"
 
 namespace recovery {
 
@@ -93,13 +94,25 @@ Instruments measured_by_hand(const Case& c, const std::vector<std::string>& keys
   for (const std::string& key : keys) {
     const auto at = std::find_if(c.hidden.begin(), c.hidden.end(), [&](const auto& what) { return what.key == key; });
     const auto size = [&](double neutral) { return at != c.hidden.end() ? at->values[0] : neutral; };
-    if (key == "sensor-offset") out.force_sensor.zero = reading(size(0), 0.0005, engine);
-    if (key == "sensor-inertia") out.force_sensor.mass_below = reading(size(0), 0.005, engine);
-    if (key == "velocity-gain") out.vibrometer.gain = reading(size(1), 0.002, engine);
-    // Where the edge of a tap is slower than the samples, that is known and nothing is declared.
-    if (key == "force-bandwidth" && at == c.hidden.end()) out.force_sensor.bandwidth = Declared{20000, 2000};
-    // Friction that comes late is velocity that comes early.
-    if (key == "channel-delay") out.vibrometer.delay = reading(-1e-3 * size(0), 0.02e-3, engine);
+    const EffectInfo effect = describe(make_effect(key));
+    switch (effect.declared_by) {
+      case InstrumentValue::force_zero:
+        out.force_sensor.zero = reading(size(0), 0.0005, engine);
+        break;
+      case InstrumentValue::force_mass_below:
+        out.force_sensor.mass_below = reading(size(0), 0.005, engine);
+        break;
+      case InstrumentValue::force_bandwidth:
+        // Where the edge of a tap is slower than the samples, that is known and nothing is declared.
+        if (at == c.hidden.end()) out.force_sensor.bandwidth = Declared{20000, 2000};
+        break;
+      case InstrumentValue::vibrometer_delay:
+        // Friction that comes late is velocity that comes early.
+        out.vibrometer.delay = reading(-1e-3 * size(0), 0.02e-3, engine);
+        break;
+      default:
+        if (effect.plateau_correction == PlateauCorrection::gain) out.vibrometer.gain = reading(size(1), 0.002, engine);
+    }
   }
   return out;
 }

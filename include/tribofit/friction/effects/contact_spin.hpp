@@ -41,7 +41,8 @@ struct ContactSpin {
                             .start_grid_points = 5}},
             .needs = {.plateau = true},
             .excitation = {.break_away = "before which the block could creep"},
-            .sketch = {.view = SketchView::creep, .values = {4}}};
+            .sketch = {.view = SketchView::creep, .values = {4}},
+            .hidden = {.sizes = {0.5, 1, 2}}};
   }
 
   template <class T>

@@ -26,7 +26,8 @@ struct Drift {
                             .lower = -0.005,
                             .upper = 0.005,
                             .bound_scaling = BoundScaling::against_duration}},
-            .sketch = {.view = SketchView::time, .values = {0.003}}};
+            .sketch = {.view = SketchView::time, .values = {0.003}},
+            .hidden = {.sizes = {0.0006, 0.0009, 0.0012}, .either_sign = true}};
   }
 
   template <class T>

@@ -42,7 +42,8 @@ struct Interference {
                             .periodic = true}},
             .group = EffectGroup::measurement,
             .needs_full_resolution = true,
-            .sketch = {.view = SketchView::line, .values = {0.01, 50, 0}}};
+            .sketch = {.view = SketchView::line, .values = {0.01, 50, 0}},
+            .hidden = {.sizes = {0.005, 0.012}, .others = {{.choices = {50, 60, 133}}, kAnyPhase}}};
   }
 
   template <class T>

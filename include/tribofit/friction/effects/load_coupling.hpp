@@ -19,7 +19,8 @@ struct LoadCoupling {
                             .upper = 0.3}},
             .needs = {.load = true},
             .group = EffectGroup::rig,
-            .sketch = {.view = SketchView::load_channel, .values = {0.15}}};
+            .sketch = {.view = SketchView::load_channel, .values = {0.15}},
+            .hidden = {.sizes = {0.1, 0.2}, .either_sign = true}};
   }
 
   /// What the load channel shows within the cycles.

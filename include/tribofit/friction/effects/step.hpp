@@ -32,7 +32,8 @@ struct StepChange {
                             .scope = ParameterScope::record,
                             .search = ParameterSearch::moment_of_change,
                             .decisive = true}},
-            .sketch = {.view = SketchView::time, .values = {0.03, 20}}};
+            .sketch = {.view = SketchView::time, .values = {0.03, 20}},
+            .hidden = {.sizes = {0.015, 0.03}, .either_sign = true, .others = {{.lower = 8, .upper = 32}}}};
   }
 
   /// The change takes 20 ms, shorter than a cycle, so that its time has a derivative.

@@ -21,7 +21,8 @@ struct TemperatureDependence {
                         .lower = -0.01,
                         .upper = 0.01}},
         .needs = {.temperature = true},
-        .sketch = {.view = SketchView::temperature, .values = {0.005}}};
+        .sketch = {.view = SketchView::temperature, .values = {0.005}},
+        .hidden = {.sizes = {0.003, 0.006}, .either_sign = true}};
   }
 
   template <class T>

@@ -26,6 +26,7 @@ struct Viscous {
                             .scales_with_friction = true,
                             .bound_scaling = BoundScaling::against_top_speed}},
             .sketch = {.view = SketchView::curve, .values = {0.001}},
+            .hidden = {.sizes = {0.0008, 0.0011, 0.0015}},
             .pairs = {looks_like<StribeckExponent>("run at four times the disc speed, or reach slips faster than "
                                                    "3/alpha: viscous friction keeps rising there")}};
   }

@@ -1,0 +1,112 @@
+/// The diagnosis on records of a simulation that shares nothing with the library: see independent_rig.hpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "independent_rig.hpp"
+#include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace {
+
+using namespace tribofit;
+using independent::Rig;
+
+DiagnosedTraces diagnosis_of(const Rig& rig) {
+  const TraceInput input = {"independent", {}, std::make_shared<const Trace>(independent::Simulation(rig).run())};
+  return diagnose(std::vector<TraceInput>{input}, IdentifyOptions{});
+}
+
+/// The truth within twice the 95 % interval, and the interval within a tenth of the truth.
+void expect_recovered(const FitParameter& p, double truth) {
+  const double lower = p.lower95 - 0.5 * (p.upper95 - p.lower95), upper = p.upper95 + 0.5 * (p.upper95 - p.lower95);
+  EXPECT_TRUE(lower <= truth && truth <= upper)
+      << p.parameter.name << " = " << p.value << " (" << p.lower95 << " .. " << p.upper95 << "), truth " << truth;
+  EXPECT_LT(p.upper95 - p.lower95, 0.5 * std::abs(truth)) << p.parameter.name;
+}
+
+void expect_law_recovered(const DiagnosedTraces& diagnosed, const Rig& rig) {
+  EXPECT_EQ(diagnosed.diagnosis.law, rig.fractional ? Law(FractionalLaw{}) : Law(ExponentialLaw{}));
+  ASSERT_FALSE(diagnosed.rungs.empty());
+  const Fit& last = diagnosed.rungs.back();
+  ASSERT_GE(last.parameters.size(), 3u);
+  expect_recovered(last.parameters[0], rig.mu_s);
+  expect_recovered(last.parameters[1], rig.mu_k);
+  expect_recovered(last.parameters[2], rig.decay);
+}
+
+std::string ladder(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const Rung& rung : diagnosis.ladder) {
+    text += rung.added + " ";
+    for (const std::string& other : rung.equivalent) text += "|" + other + " ";
+  }
+  return text;
+}
+
+class EmptyRecord : public testing::TestWithParam<Rig> {};
+
+TEST_P(EmptyRecord, IsSufficient) {
+  const DiagnosedTraces diagnosed = diagnosis_of(GetParam());
+  EXPECT_EQ(diagnosed.diagnosis.verdict, Verdict::sufficient) << ladder(diagnosed.diagnosis);
+  EXPECT_EQ(diagnosed.diagnosis.ladder.size(), 1u) << ladder(diagnosed.diagnosis);
+  expect_law_recovered(diagnosed, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Independent, EmptyRecord,
+                         testing::Values(Rig{.seed = 11}, Rig{.fractional = true, .decay = 80, .seed = 12},
+                                         Rig{.swing = 0.15, .duration = 24, .seed = 13}));
+
+struct Loaded {
+  const char* key;
+  double truth;  ///< of its first parameter [SI]
+  Rig rig;
+};
+
+class LoadedRecord : public testing::TestWithParam<Loaded> {};
+
+TEST_P(LoadedRecord, NamesWhatIsHidden) {
+  const Loaded& hidden = GetParam();
+  const DiagnosedTraces diagnosed = diagnosis_of(hidden.rig);
+  const Diagnosis& diagnosis = diagnosed.diagnosis;
+  EXPECT_EQ(diagnosis.verdict, Verdict::effect_found);
+  ASSERT_EQ(diagnosis.ladder.size(), 2u) << ladder(diagnosis);
+  const Rung& rung = diagnosis.ladder[1];
+  EXPECT_LE(rung.equivalent.size(), 3u) << ladder(diagnosis);
+  if (rung.added != hidden.key) {
+    EXPECT_EQ(std::count(rung.equivalent.begin(), rung.equivalent.end(), hidden.key), 1) << ladder(diagnosis);
+    return;
+  }
+  const auto found = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                  [&](const EffectFinding& f) { return f.key == hidden.key; });
+  ASSERT_NE(found, diagnosis.effects.end());
+  ASSERT_FALSE(found->parameters.empty());
+  const auto& parameters = diagnosed.rungs.back().parameters;
+  const auto own =
+      std::find_if(parameters.begin(), parameters.end(), [&](const FitParameter& p) { return p.effect == hidden.key; });
+  ASSERT_NE(own, parameters.end());
+  expect_recovered(*own, hidden.truth);
+  expect_law_recovered(diagnosed, hidden.rig);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Independent, LoadedRecord,
+    testing::Values(Loaded{"viscous", 1.3, {.viscous = 1.3, .seed = 21}},
+                    Loaded{"frictional-lag", 1.5e-3, {.lag = 1.5e-3, .seed = 22}},
+                    Loaded{"drift", 0.0015, {.drift = 0.0015, .duration = 40, .rate = 5000, .seed = 23}},
+                    Loaded{
+                        "runout", 0.05, {.runout = 0.05, .runout_phase = 1, .duration = 40, .rate = 5000, .seed = 24}},
+                    Loaded{"asymmetry", 1.12, {.swing = 0.15, .ratio = 1.12, .duration = 24, .seed = 25}},
+                    Loaded{"channel-delay", 1e-3, {.delay = 1e-3, .seed = 26}},
+                    Loaded{"force-bandwidth", 150, {.low_pass = 150, .seed = 27}}),
+    [](const auto& hidden) {
+      std::string name = hidden.param.key;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+}  // namespace

@@ -1,0 +1,187 @@
+/// Kinds of record beside those of [D]: sliding, slow and fast rigs, kinds of noise.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <stdexcept>
+
+#include "hidden_effects.hpp"
+#include "hidden_recipes.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+namespace {
+
+constexpr double kPeriod = 4;         ///< of ramps, sines and reversals [s]
+constexpr double kMeanSpeed = 0.045;  ///< of the block over the disc [m/s]
+constexpr double kSwing = 8.0 / 9;    ///< of the mean speed
+
+enum class Noise { any, white, coloured, flicker };
+
+struct RecordKind {
+  const char* name;
+  Programme programme = Programme::stick_slip;
+  double slowness = 1;
+  Noise noise = Noise::any;
+};
+
+constexpr RecordKind kRecordKinds[] = {
+    {.name = "stick-slip-white", .noise = Noise::white},
+    {.name = "stick-slip-ar1", .noise = Noise::coloured},
+    {.name = "stick-slip-flicker", .noise = Noise::flicker},
+    {.name = "steps", .programme = Programme::steps},
+    {.name = "ramps", .programme = Programme::ramps},
+    {.name = "sines", .programme = Programme::sines},
+    {.name = "reversals", .programme = Programme::reversals},
+    {.name = "slow-1000", .slowness = 1000},
+    {.name = "slow-30", .slowness = 30},
+    {.name = "fast-0.05", .slowness = 0.05},
+    {.name = "fast-0.01", .slowness = 0.01},
+};
+
+/// A piece of a period between two turns and rests is to sliding what a slip is to stick-slip.
+RelativeScales sliding_scales() {
+  const double slip_time = kPeriod / 6 * 30;
+  return {.slip_time = slip_time, .slip_length = slip_time, .duration = 60.0 / 40, .distance = 60 * kMeanSpeed / 0.25};
+}
+
+/// A rig that follows every speed without stick-slip: critically damped, 2.5 um under its load.
+Rig stiff_rig() {
+  return rig_with_damping_ratio(2, 1e7, 1);
+}
+
+void scale(Ingredient& what, const RelativeScales& scales) {
+  const EffectInfo info = describe(make_effect(what.key));
+  for (std::size_t k = 0; k < what.values.size(); ++k) {
+    what.values[k] *= growth_of(info.parameters[k].bound_scaling, scales);
+  }
+}
+
+void set_noise(Case& c, Noise noise, std::size_t number) {
+  constexpr Noise kTurn[] = {Noise::white, Noise::coloured, Noise::flicker};
+  if (noise == Noise::any) noise = kTurn[number % 3];
+  c.colour = noise == Noise::coloured ? 0.9 : 0;
+  c.flicker = noise == Noise::flicker;
+}
+
+/// Case `number` of a kind; without an effect nothing is hidden in it.
+Case make_case(const RecordKind& kind, const Recipe* of, std::size_t size, std::size_t number, std::uint64_t seed) {
+  const std::string group = fmt::format("{}/{}", kind.name, of == nullptr ? "nothing" : of->effect.key);
+  const std::uint64_t own = hash(fmt::format("{}:{}", group, number), seed);
+  Random random(own);
+  constexpr Setting kEmpty[] = {Setting::fast, Setting::slow, Setting::fast, Setting::slow, Setting::load_swings};
+  const bool slides = kind.programme != Programme::stick_slip;
+  Setting setting = of != nullptr ? of->setting : kEmpty[number % std::size(kEmpty)];
+  if (slides && setting != Setting::load_swings && setting != Setting::temperature_swings) setting = Setting::fast;
+  Case c = draw_case(group, number, of == nullptr ? Kind::nothing : Kind::single, setting, own, random);
+  c.record_kind = kind.name;
+  c.programme = kind.programme;
+  set_noise(c, kind.noise, number);
+  if (slides) {
+    c.rig = stiff_rig();
+    c.speed = kMeanSpeed / c.radius;
+  }
+  if (of != nullptr) {
+    const std::vector<double>& sizes = of->effect.hidden.sizes;
+    c.hidden = {ingredient(of->effect, sizes[size % sizes.size()], random)};
+    if (slides) scale(c.hidden[0], sliding_scales());
+  }
+  return slowed(std::move(c), kind.slowness);
+}
+
+}  // namespace
+
+SpeedProfile sliding_speed(Programme programme, double mean, Random& random) {
+  const double period = kPeriod * random.uniform(0.8, 1.2);
+  if (programme == Programme::reversals) return reversing_speed(2 * mean, 1 / period);
+  if (programme == Programme::sines) {
+    const double w = 2 * std::numbers::pi / period;
+    SpeedProfile out;
+    out.speed = [=](double t) { return mean * (1 + kSwing * std::sin(w * t)); };
+    out.acceleration = [=](double t) { return mean * kSwing * w * std::cos(w * t); };
+    out.angle = [=](double t) { return mean * (t + kSwing * (1 - std::cos(w * t)) / w); };
+    return out;
+  }
+  std::vector<double> times, speeds;
+  if (programme == Programme::ramps) {
+    for (double t = 0; t < 65; t += period / 2) {
+      times.push_back(t);
+      speeds.push_back(mean * (1 + (times.size() % 2 == 0 ? kSwing : -kSwing)));
+    }
+    return piecewise_linear_speed(std::move(times), std::move(speeds));
+  }
+  for (int k = 0; k < 12; ++k) {
+    times.push_back(5.0 * k);
+    speeds.push_back(mean * (1 + kSwing * random.uniform(-1, 1)));
+  }
+  return stepped_speed(std::move(times), std::move(speeds));
+}
+
+Case slowed(Case c, double slowness) {
+  if (slowness == 1) return c;
+  const RelativeScales scales = {.slip_time = slowness,
+                                 .stick_time = slowness,
+                                 .top_speed = 1 / slowness,
+                                 .duration = slowness,
+                                 .mass = slowness * slowness};
+  for (Ingredient& what : c.hidden) scale(what, scales);
+  c.friction[2] *= slowness;
+  c.rig.mass *= slowness * slowness;
+  c.rig.damping *= slowness;
+  c.speed /= slowness;
+  c.slowness *= slowness;
+  return c;
+}
+
+/// Sum of first-order processes of equal deviation whose times double from one to the next.
+std::vector<double> flicker_noise(std::size_t size, Random& random) {
+  std::vector<double> out(size, 0.0);
+  int octaves = 0;
+  for (double steps = 1; steps < 2 * static_cast<double>(size); steps *= 2) ++octaves;
+  double steps = 0.5;
+  for (int k = 0; k < octaves; ++k, steps *= 2) {
+    const double keep = std::exp(-1 / steps), add = std::sqrt(1 - keep * keep) / std::sqrt(octaves);
+    double x = random.normal() / std::sqrt(octaves);
+    for (double& value : out) {
+      x = keep * x + add * random.normal();
+      value += x;
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> record_kinds() {
+  std::vector<std::string> names;
+  for (const RecordKind& kind : kRecordKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::size_t empty, std::size_t loaded,
+                                    std::uint64_t seed) {
+  for (const std::string& name : kinds) {
+    const std::vector<std::string> known = record_kinds();
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw std::invalid_argument(fmt::format("there is no kind of record '{}'", name));
+    }
+  }
+  std::vector<Case> cases;
+  for (const RecordKind& kind : kRecordKinds) {
+    if (!kinds.empty() && std::find(kinds.begin(), kinds.end(), kind.name) == kinds.end()) continue;
+    for (std::size_t i = 0; i < empty; ++i) cases.push_back(make_case(kind, nullptr, 0, i, seed));
+    std::vector<const Recipe*> shown;
+    for (const Recipe& r : recipes()) {
+      const auto programme = sliding_programme(r.effect);
+      if (kind.programme == Programme::stick_slip || programme == kind.programme) shown.push_back(&r);
+    }
+    for (std::size_t i = 0; i < loaded; ++i) {
+      cases.push_back(make_case(kind, shown[i % shown.size()], i + i / shown.size(), i, seed));
+    }
+  }
+  return cases;
+}
+
+}  // namespace recovery
