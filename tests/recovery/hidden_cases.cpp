@@ -269,13 +269,17 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
 namespace {
 
 /// What the sensors do not know of: noise as 1/f; a block that is held still and not looked at; a slower rig.
-void finish(const Case& c, Trace& trace, std::uint64_t seed) {
+void finish(const Case& c, const SimulatedMotion& motion, Trace& trace, std::uint64_t seed) {
   if (c.flicker) {
     Random random(seed);
     const std::vector<double> noise = flicker_noise(trace.size(), random);
     for (std::size_t i = 0; i < noise.size(); ++i) trace.friction[i] += kFrictionNoise * noise[i];
   }
   if (c.programme != Programme::stick_slip) {
+    // A sample within the millisecond in which the spring turns round is not of the law.
+    for (std::size_t i = 1; i < trace.size(); ++i) {
+      if (motion.sticks[i] != 0) trace.friction[i] = std::copysign(trace.friction[i - 1], trace.disc_speed[i]);
+    }
     trace.velocity.clear();
     trace.velocity_kind = VelocityKind::fixed_block;
   }
@@ -306,7 +310,7 @@ Simulated simulate_case(const Case& c, const Experiment& more) {
   Simulated out{truth.model, truth.p, {}, 0, measured_by_hand(c, more.measured)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     SimulatedRecording hidden = hide_in(at_home, runs[i], simulated, i);
-    finish(c, hidden.recording.trace, (c.seed + i) ^ 0x94d049bb133111ebu);
+    finish(c, hidden.motion, hidden.recording.trace, (c.seed + i) ^ 0x94d049bb133111ebu);
     squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());
     hidden.recording.trace.path = fmt::format("{}{}", c.name, runs.size() > 1 ? fmt::format("/{}", i) : "");
     out.traces.push_back(std::make_shared<const Trace>(std::move(hidden.recording.trace)));

@@ -39,11 +39,11 @@ std::string_view to_string(Setting setting);
 enum class Programme {
   stick_slip,  ///< as the setting says, on a rig that sticks and slips
   // Speed-controlled sliding, 60 s at 200 Hz: a rig too stiff to stick, the block at rest, the speed of the disc
-  // recorded. Between 5 and 85 mm/s but for the reversals.
-  steps,     ///< twelve speeds of 5 s
-  ramps,     ///< up and down in straight lines
-  sines,     ///< about a mean speed
-  reversals  ///< about zero
+  // recorded.
+  steps,     ///< twelve speeds of 5 s between 1.5 and 90 mm/s
+  ramps,     ///< up and down between 5 and 85 mm/s in straight lines
+  sines,     ///< as sines
+  reversals  ///< sines about zero, up to 90 mm/s
 };
 
 /// What a case is meant to show.

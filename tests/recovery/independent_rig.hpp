@@ -58,6 +58,7 @@ class Simulation {
     double reading = 0, slope = 0;  // of the low-pass
     for (std::ptrdiff_t i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i - lead) * h;
+      const double speed = sticks_ ? disc_speed(t) : state_.velocity;
       double mu = step(t, h);
       if (rig_.low_pass > 0) {
         const double w = 2 * std::numbers::pi * rig_.low_pass;
@@ -66,7 +67,7 @@ class Simulation {
         mu = reading;
       }
       friction.push_back(mu);
-      velocity.push_back(state_.velocity);
+      velocity.push_back(speed);
     }
     tribofit::Trace trace;
     trace.path = "independent";

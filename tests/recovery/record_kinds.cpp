@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "hidden_effects.hpp"
 #include "hidden_recipes.hpp"
@@ -49,9 +50,9 @@ RelativeScales sliding_scales() {
   return {.slip_time = slip_time, .slip_length = slip_time, .duration = 60.0 / 40, .distance = 60 * kMeanSpeed / 0.25};
 }
 
-/// A rig that follows every speed without stick-slip: critically damped, 2.5 um under its load.
+/// A rig that follows every speed without stick-slip: critically damped, 25 nm under its load.
 Rig stiff_rig() {
-  return rig_with_damping_ratio(2, 1e7, 1);
+  return rig_with_damping_ratio(2, 1e9, 1);
 }
 
 void scale(Ingredient& what, const RelativeScales& scales) {
@@ -116,8 +117,9 @@ SpeedProfile sliding_speed(Programme programme, double mean, Random& random) {
   }
   for (int k = 0; k < 12; ++k) {
     times.push_back(5.0 * k);
-    speeds.push_back(mean * (1 + kSwing * random.uniform(-1, 1)));
+    speeds.push_back(mean / 30 * std::pow(60.0, (k + random.uniform(0, 1)) / 12));
   }
+  for (std::size_t k = 12; k > 1; --k) std::swap(speeds[k - 1], speeds[random.below(k)]);
   return stepped_speed(std::move(times), std::move(speeds));
 }
 
