@@ -24,7 +24,8 @@ void add_effects(const Command& app) {
     options.width = terminal_width();
     if (!key->empty()) {
       const Effect effect = effect_named(*key);
-      print(render_effect(describe(effect), fingerprint(effect), options));
+      const Fingerprint shown = fingerprint(effect);
+      print(render_effect(describe(effect), options, &shown));
       return ExitStatus::done;
     }
     std::vector<EffectInfo> effects;

@@ -120,4 +120,14 @@ EarlierComparison compare_with(const EarlierTable& table, std::span<const Pooled
   return out;
 }
 
+EarlierComparison::Agreement EarlierComparison::agreement() const {
+  Agreement out;
+  for (const ComparedValue& v : values) {
+    if (v.protocol == "published") continue;
+    ++out.values;
+    out.inside += v.inside95 ? 1 : 0;
+  }
+  return out;
+}
+
 }  // namespace tribofit

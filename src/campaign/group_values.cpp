@@ -56,4 +56,35 @@ std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::sp
   return mean_over_runs(values);
 }
 
+std::optional<FiguresOfRun> first_figures(const ResultReader& results, std::span<const RunResult> runs,
+                                          const PooledGroup& group) {
+  for (const std::size_t k : group.runs) {
+    if (auto figures = results.figures(runs[k].position)) return FiguresOfRun{runs[k].run.name, std::move(*figures)};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> joint_laws(std::span<const PooledGroup> groups) {
+  std::vector<std::string> laws;
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
+      if (fit.protocol == "joint" && !known) laws.push_back(fit.law);
+    }
+  }
+  return laws;
+}
+
+std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
+  std::vector<std::pair<std::string, std::string>> kinds;
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      const bool published = fit.protocol == "published";
+      const auto same = [&](const auto& k) { return k.second == fit.protocol && (published || k.first == fit.law); };
+      if (std::none_of(kinds.begin(), kinds.end(), same)) kinds.emplace_back(fit.law, fit.protocol);
+    }
+  }
+  return kinds;
+}
+
 }  // namespace tribofit

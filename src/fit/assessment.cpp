@@ -39,6 +39,23 @@ bool well_above_floor(const Fit& fit) {
   return fit.error.held_out_rmse > kWellAbove * fit.floor.rmse;
 }
 
+double residual_unit(const Fit& fit) {
+  if (fit.floor.rmse > 0) return fit.floor.rmse;
+  return fit.error.rmse > 0 ? fit.error.rmse : 1;
+}
+
+const Fit* joint_partner(std::span<const Fit> fits, const Fit& fit) {
+  if (fit.protocol != Protocol::published) return nullptr;
+  const auto at = std::find_if(fits.begin(), fits.end(), [&](const Fit& other) {
+    return other.protocol == Protocol::joint && other.model.law() == fit.model.law();
+  });
+  return at == fits.end() ? nullptr : &*at;
+}
+
+bool is_outside(const FitParameter& extreme, const FitParameter& joint) {
+  return extreme.value < joint.lower95 || extreme.value > joint.upper95;
+}
+
 bool is_fixed(const FitParameter& p) {
   return !p.at_bound && p.upper95 - p.lower95 < std::abs(p.value);
 }

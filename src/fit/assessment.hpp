@@ -33,6 +33,15 @@ inline constexpr double kAtFloor = 1.15, kFarAboveFloor = 100;
 /// The fit leaves clearly more than the noise floor, so that a mean that agrees may hide what it misses.
 bool well_above_floor(const Fit& fit);
 
+/// What residuals are measured in: the noise floor, or what they are themselves where none is known.
+double residual_unit(const Fit& fit);
+
+/// The joint fit of the same law beside one from per-cycle extremes, which know no effects; nullptr: none.
+const Fit* joint_partner(std::span<const Fit> fits, const Fit& fit);
+
+/// A parameter from the per-cycle extremes lies outside the 95 % interval of the joint fit.
+bool is_outside(const FitParameter& extreme, const FitParameter& joint);
+
 /// The data fix the parameter to better than its own size.
 bool is_fixed(const FitParameter& parameter);
 

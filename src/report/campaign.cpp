@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -68,10 +68,12 @@ Json result_json(const RunResult& result) {
                 list_of(result.fits, fit_json), "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
 }
 
-/// A row of summary.csv: values under the names of their columns.
-struct SummaryRow {
-  Json fixed, conditions = Json::object(), analysis = Json::object();
-};
+Json missing_json(const MissingRun& run) {
+  return object("name", run.name, "file", run.file, "status", "missing", "message", nullptr);
+}
+
+/// A row of summary.csv, values under the names of their columns: what every run has, further conditions, the analysis.
+using SummaryRow = std::array<Json, 3>;
 
 /// A column of a further condition; one that is called like a column of ours has a longer name.
 std::string column_of(const OtherCondition& other, const Json& fixed) {
@@ -96,22 +98,24 @@ void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) 
 }
 
 SummaryRow summary_row(const std::string& name, const std::string& file, std::string_view status) {
-  return {.fixed = object("run", name, "file", file, "status", status, "message", nullptr, "radius_mm", nullptr,
-                          "speed_rpm", nullptr, "load_N", nullptr, "repeat", nullptr)};
+  return {object("run", name, "file", file, "status", status, "message", nullptr, "radius_mm", nullptr, "speed_rpm",
+                 nullptr, "load_N", nullptr, "repeat", nullptr),
+          Json::object(), Json::object()};
 }
 
 SummaryRow summary_row(const RunResult& result) {
   const RunRecord& run = result.run;
   const Conditions& c = known_conditions(result);
   SummaryRow row = summary_row(run.name, run.file, to_string(run.status));
-  add_members(row.fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
+  auto& [fixed, conditions, analysis] = row;
+  add_members(fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
               c.speed.value / kRpm, "load_N", c.load.value, "repeat", repeat_json(run));
-  for (const OtherCondition& other : run.others) row.conditions[column_of(other, row.fixed)] = other.value;
+  for (const OtherCondition& other : run.others) conditions[column_of(other, fixed)] = other.value;
   if (!was_read(result)) return row;
-  row.analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
-  row.analysis.update(measures_json(result));
-  row.analysis["best_law"] = result.fits.empty() ? "" : result.fits[result.best].law;
-  for (const ResultFit& fit : result.fits) add_fit(fit, result.friction_unit, row.analysis);
+  analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
+  analysis.update(measures_json(result));
+  analysis["best_law"] = result.fits.empty() ? "" : result.fits[result.best].law;
+  for (const ResultFit& fit : result.fits) add_fit(fit, result.friction_unit, analysis);
   return row;
 }
 
@@ -119,49 +123,25 @@ SummaryRow summary_row(const RunResult& result) {
 class SummaryColumns {
  public:
   void declare(const SummaryRow& row) {
-    if (fixed_.empty()) fixed_ = keys(row.fixed);
-    for (const std::string& key : keys(row.conditions)) add(key, conditions_);
-    for (const std::string& key : keys(row.analysis)) add(key, analysis_);
-  }
-  std::string header() const {
-    std::vector<std::string> names;
-    for (const auto* columns : {&fixed_, &conditions_, &analysis_}) {
-      for (const std::string& column : *columns) names.push_back(cell(column));
+    for (std::size_t part = 0; part < row.size(); ++part) {
+      for (const auto& [name, value] : row[part].items()) {
+        if (known_.insert(name).second) names_[part].push_back(name);
+      }
     }
-    return csv_line(names);
   }
+  std::string header() const { return csv_line(Json(names_)); }
   std::string line(const SummaryRow& row) const {
-    std::vector<std::string> values = {cells(row.fixed)};
-    for (const std::string& column : conditions_) values.push_back(cells(row.conditions.value(column, Json())));
-    for (const std::string& column : analysis_) values.push_back(cells(row.analysis.value(column, Json())));
-    return csv_line(values);
+    CsvLine line;
+    for (std::size_t part = 0; part < row.size(); ++part) {
+      for (const std::string& name : names_[part]) line.add(row[part].value(name, Json()));
+    }
+    return line.take();
   }
 
  private:
-  static std::vector<std::string> keys(const Json& object) {
-    std::vector<std::string> names;
-    for (const auto& [key, value] : object.items()) names.push_back(key);
-    return names;
-  }
-  void add(const std::string& name, std::vector<std::string>& columns) {
-    if (known_.insert(name).second) columns.push_back(name);
-  }
-
-  std::vector<std::string> fixed_, conditions_, analysis_;
+  std::array<std::vector<std::string>, 3> names_;
   std::set<std::string> known_;
 };
-
-/// Every run of a campaign in its order, with a result or without.
-template <class WithResult, class Missing>
-void for_each_run(const ResultReader& results, WithResult&& with_result, Missing&& missing) {
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    if (const auto result = results.read(k)) {
-      with_result(*result);
-    } else {
-      missing(results.missing(k));
-    }
-  }
-}
 
 std::string error_line(const RunRecord& run) {
   return run.status == RunStatus::failed ? run.file + ": the analysis could not be done: " + run.message : run.message;
@@ -215,43 +195,34 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
   SummaryColumns columns;
   std::string friction_unit = "1";
   columns.declare(summary_row("", "", ""));
-  for_each_run(
-      results,
-      [&](const RunResult& result) {
-        columns.declare(summary_row(result));
-        if (was_read(result)) friction_unit = result.friction_unit;
-      },
-      [](const MissingRun&) {});
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const auto result = results.read(k);
+    if (!result) continue;
+    columns.declare(summary_row(*result));
+    if (was_read(*result)) friction_unit = result->friction_unit;
+  }
   csv.write(columns.header());
   CampaignSummary summary;
   ReportTable table = runs_table(friction_unit);
-  std::size_t count = 0;
-  const auto add = [&](const SummaryRow& row, const Json& run, std::vector<std::string> cells) {
-    csv.write(columns.line(row));
-    json.write((count++ == 0 ? "\n" : ",\n") + line_of(run));
-    if (table.rows.size() < kMostRows) table.rows.push_back(std::move(cells));
-  };
-  for_each_run(
-      results,
-      [&](const RunResult& result) {
-        add(summary_row(result), result_json(result), run_row(result));
-        const bool ok = result.run.status == RunStatus::ok;
-        ++(ok ? summary.fitted : summary.failed);
-        if (!ok) summary.errors.push_back(error_line(result.run));
-      },
-      [&](const MissingRun& run) {
-        add(summary_row(run.name, run.file, "missing"),
-            object("name", run.name, "file", run.file, "status", "missing", "message", nullptr), run_row(run));
-        ++summary.missing;
-        summary.errors.push_back(run.file + ": there is no result of it yet");
-      });
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const auto result = results.read(k);
+    const MissingRun missing = result ? MissingRun{} : results.missing(k);
+    csv.write(columns.line(result ? summary_row(*result) : summary_row(missing.name, missing.file, "missing")));
+    json.write((k == 0 ? "\n" : ",\n") + line_of(result ? result_json(*result) : missing_json(missing)));
+    if (k < kMostRows) table.rows.push_back(result ? run_row(*result) : run_row(missing));
+    const bool ok = result && result->run.status == RunStatus::ok;
+    ++(ok ? summary.fitted : result ? summary.failed : summary.missing);
+    if (!ok) {
+      summary.errors.push_back(result ? error_line(result->run) : missing.file + ": there is no result of it yet");
+    }
+  }
   json.write("\n],\n\"problems\": " + line_of(results.problems()));
   if (!comparison.empty()) json.write(",\n\"comparison\": " + comparison);
   json.write("}\n");
   json.finish();
   csv.commit();
   json.commit();
-  summary.table = table_text(std::move(table), count, options);
+  summary.table = table_text(std::move(table), results.size(), options);
   return summary;
 }
 

@@ -21,27 +21,10 @@ std::string protocol_text(const std::string& protocol) {
   return protocol == "published" ? "extremes" : protocol;
 }
 
-/// Values of one earlier value and law: joint fit and per-cycle extremes side by side; one of them may be missing.
-struct Pair {
-  const ComparedValue *joint = nullptr, *extremes = nullptr;
-};
-
+/// Both are ours beside the same earlier value.
 bool same_value(const ComparedValue& a, const ComparedValue& b) {
   return a.group == b.group && a.law == b.law && a.earlier.line == b.earlier.line &&
          a.earlier.column == b.earlier.column && a.earlier.name == b.earlier.name;
-}
-
-std::vector<Pair> pairs_of(const std::vector<ComparedValue>& values) {
-  std::vector<Pair> pairs;
-  for (const ComparedValue& v : values) {
-    const bool extremes = v.protocol == "published";
-    if (extremes && !pairs.empty() && pairs.back().joint != nullptr && same_value(v, *pairs.back().joint)) {
-      pairs.back().extremes = &v;
-    } else {
-      pairs.push_back(extremes ? Pair{nullptr, &v} : Pair{&v, nullptr});
-    }
-  }
-  return pairs;
 }
 
 std::string percent_text(double percent) {
@@ -59,8 +42,9 @@ std::string preference_text(const LawPreference& p) {
                      p.runs, p.runs == 1 ? "" : "s", p.other, significant(p.ratio, 4), chance);
 }
 
-ReportTable values_table(std::string caption) {
+ReportTable values_table(std::string caption, const char* file) {
   ReportTable table(std::move(caption));
+  table.file = file;
   table.text({"conditions", "value"}).text({"law", "protocol"}, 1).numbers({"mean", "95 % interval"});
   table.numbers({"statistical"}, 2).numbers({"between runs"}).numbers({"systematic"}, 2).numbers({"runs"});
   table.text({"unit"});
@@ -121,42 +105,39 @@ std::string fitted_text(const ResultParameter& p) {
   return with_error(p.value, p.std_error);
 }
 
-}  // namespace
-
-ReportTable comparison_table(const ComparisonReport& report, std::span<const PooledGroup> groups) {
-  ReportTable table("This campaign beside " + report.values.path);
+/// Earlier values beside ours, a row a value with both protocols; conditions stand in the first row of each.
+ReportTable comparison_table(const EarlierComparison& comparison, std::span<const PooledGroup> groups) {
+  ReportTable table;
+  table.file = "comparison.csv";
   table.text({"conditions", "value", "law"}).numbers({"earlier", "joint fit", "difference", "std errors"});
   table.numbers({"extremes", "difference"});
-  std::string before;
-  for (const Pair& pair : pairs_of(report.values.values)) {
-    const ComparedValue& v = *(pair.joint != nullptr ? pair.joint : pair.extremes);
-    const std::string conditions = name_of(groups[v.group]);
-    std::vector<std::string> row = {conditions == before ? "" : conditions,
-                                    with_unit(v.earlier.name, v.ours.unit),
-                                    v.law,
-                                    with_error(v.earlier.value, v.earlier.std_error),
-                                    "",
-                                    "",
-                                    "",
-                                    "",
-                                    ""};
-    before = conditions;
-    if (pair.joint != nullptr) {
+  const ComparedValue* before = nullptr;
+  for (const ComparedValue& v : comparison.values) {
+    const bool extremes = v.protocol == "published";
+    if (!extremes || before == nullptr || before->protocol == "published" || !same_value(v, *before)) {
+      const std::string conditions = name_of(groups[v.group]);
+      table.rows.push_back({before != nullptr && name_of(groups[before->group]) == conditions ? "" : conditions,
+                            with_unit(v.earlier.name, v.ours.unit), v.law,
+                            with_error(v.earlier.value, v.earlier.std_error), "", "", "", "", ""});
+    }
+    std::vector<std::string>& row = table.rows.back();
+    if (extremes) {
+      row[7] = significant(v.ours.value, 4);
+      row[8] = percent_text(v.percent);
+    } else {
       row[4] = with_error(v.ours.value, v.ours.std_error);
       row[5] = percent_text(v.percent);
       row[6] = signed_text(v.in_std_errors);
     }
-    if (pair.extremes != nullptr) {
-      row[7] = significant(pair.extremes->ours.value, 4);
-      row[8] = percent_text(pair.extremes->percent);
-    }
-    table.rows.push_back(std::move(row));
+    before = &v;
   }
   return table;
 }
 
+/// Relative errors (Eq 5) by conditions, law and protocol.
 ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
   ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r");
+  table.file = "summary.json";
   table.text({"conditions", "law", "protocol"}).numbers({"samples below 0.08", "mean", "largest"});
   table.numbers({"bins below 0.08", "largest of bins"});
   std::string before;
@@ -170,8 +151,59 @@ ReportTable error_table(const Statements& statements, std::span<const PooledGrou
   return table;
 }
 
+/// Every pooled value with the parts of its error.
+ReportTable groups_table(std::span<const PooledGroup> groups) {
+  ReportTable table =
+      values_table("Repeats together (the mean with one standard error, from run to run)", "pooled.csv");
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      for (const PooledValue& v : fit.parameters) {
+        table.rows.push_back(row_of(v, full_name(v), fit.law, fit.protocol, name_of(group)));
+      }
+    }
+    for (const PooledValue& v : group.measures) table.rows.push_back(row_of(v, full_name(v), "", "", name_of(group)));
+  }
+  return table;
+}
+
+/// Parameters that runs share, the same way.
+ReportTable shared_table(const SharedFit& fit) {
+  ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law", "shared.csv");
+  for (const SharedFit::Parameter& common : fit.common) {
+    for (std::size_t l = 0; l < common.values.size(); ++l) {
+      table.rows.push_back(row_of(common.values[l], common.name, fit.law, "joint",
+                                  common.condition.empty() ? "all runs" : common.levels[l]));
+    }
+  }
+  return table;
+}
+
+ReportTable trends_table(const Trends& trends) {
+  ReportTable table("Straight lines over the conditions");
+  table.folded = true;
+  table.file = "trends.csv";
+  table.text({"parameter", "law", "over"}).numbers({"slope", "95 % interval"}).text({"unit"});
+  table.numbers({"runs", "p", "p, corrected"});
+  for (const Trend& t : trends.trends) {
+    table.rows.push_back({t.parameter, t.law, t.condition, with_error(t.slope, t.std_error),
+                          interval_text(t.lower95, t.upper95, places_for(t.std_error)), slope_unit(t),
+                          std::to_string(t.runs), significant(t.p_value, 2), significant(t.p_corrected, 2)});
+  }
+  return table;
+}
+
+void add_shared(const Pooled& pooled, ReportSection& section) {
+  for (const SharedFit& fit : pooled.shared) {
+    section.add(shared_table(fit));
+    for (const std::string& note : fit.notes) section.soft(note);
+  }
+}
+
+}  // namespace
+
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
   ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)");
+  table.file = "pooled.csv";
   table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k"}).text({kOtherParameters});
   table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
@@ -186,44 +218,9 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
   return table;
 }
 
-ReportTable groups_table(std::span<const PooledGroup> groups) {
-  ReportTable table = values_table("Repeats together (the mean with one standard error, from run to run)");
-  for (const PooledGroup& group : groups) {
-    for (const PooledGroup::OfFit& fit : group.fits) {
-      for (const PooledValue& v : fit.parameters) {
-        table.rows.push_back(row_of(v, full_name(v), fit.law, fit.protocol, name_of(group)));
-      }
-    }
-    for (const PooledValue& v : group.measures) table.rows.push_back(row_of(v, full_name(v), "", "", name_of(group)));
-  }
-  return table;
-}
-
-ReportTable shared_table(const SharedFit& fit) {
-  ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law");
-  for (const SharedFit::Parameter& common : fit.common) {
-    for (std::size_t l = 0; l < common.values.size(); ++l) {
-      table.rows.push_back(row_of(common.values[l], common.name, fit.law, "joint",
-                                  common.condition.empty() ? "all runs" : common.levels[l]));
-    }
-  }
-  return table;
-}
-
-ReportTable trends_table(const Trends& trends) {
-  ReportTable table("Straight lines over the conditions");
-  table.text({"parameter", "law", "over"}).numbers({"slope", "95 % interval"}).text({"unit"});
-  table.numbers({"runs", "p", "p, corrected"});
-  for (const Trend& t : trends.trends) {
-    table.rows.push_back({t.parameter, t.law, t.condition, with_error(t.slope, t.std_error),
-                          interval_text(t.lower95, t.upper95, places_for(t.std_error)), slope_unit(t),
-                          std::to_string(t.runs), significant(t.p_value, 2), significant(t.p_corrected, 2)});
-  }
-  return table;
-}
-
 ReportTable runs_table(const std::string& friction_unit) {
   ReportTable table;
+  table.file = "summary.csv";
   table.text({"run", "conditions"}).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
   table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit)}).text({kOtherParameters});
   table.numbers({with_unit("held-out error", friction_unit)});
@@ -253,16 +250,6 @@ std::string runs_note() {
   return "+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE";
 }
 
-std::vector<std::string> preference_sentences(const Statements& s, std::span<const PooledGroup> groups) {
-  std::vector<std::string> out;
-  if (s.overall.runs == 0) return out;
-  out.push_back("all: " + preference_text(s.overall));
-  for (std::size_t g = 0; g < s.preference.size(); ++g) {
-    if (s.preference[g].runs > 0) out.push_back(name_of(groups[g]) + ": " + preference_text(s.preference[g]));
-  }
-  return out;
-}
-
 std::vector<std::string> trend_sentences(const Trends& trends) {
   std::vector<std::string> out;
   for (const Trend& t : significant_trends(trends)) {
@@ -274,28 +261,54 @@ std::vector<std::string> trend_sentences(const Trends& trends) {
   return out;
 }
 
+ReportSection comparison_section(const EarlierComparison& comparison, std::span<const PooledGroup> groups) {
+  ReportSection section{"comparison", "Beside " + comparison.path, {}};
+  section.add(comparison_table(comparison, groups));
+  if (!section.items.empty()) {
+    section.soft(
+        "std errors: the difference over the error of ours (statistical, between runs and systematic) and that of the "
+        "earlier value where it is stated; extremes: per-cycle extremes");
+  }
+  for (const std::string& unmatched : comparison.unmatched) section.item(unmatched);
+  return section;
+}
+
+ReportSection statements_section(const Statements& s, std::span<const PooledGroup> groups) {
+  ReportSection section{"statements", "Which law predicts better (joint fit, held-out cycles)", {}};
+  if (s.overall.runs > 0) section.item("all: " + preference_text(s.overall));
+  for (std::size_t g = 0; s.overall.runs > 0 && g < s.preference.size(); ++g) {
+    if (s.preference[g].runs > 0) section.item(name_of(groups[g]) + ": " + preference_text(s.preference[g]));
+  }
+  section.add(error_table(s, groups));
+  return section;
+}
+
+ReportSection pooled_section(const Pooled& pooled) {
+  ReportSection section{"pooled", "All values", {}};
+  section.add(groups_table(pooled.groups));
+  add_shared(pooled, section);
+  return section;
+}
+
+ReportSection trends_section(const Trends& trends) {
+  ReportSection section{"trends", "Trends", {}};
+  for (const std::string& sentence : trend_sentences(trends)) section.item(sentence);
+  section.add(trends_table(trends));
+  return section;
+}
+
 std::string pooled_table(const Pooled& pooled, const TerminalOptions& options) {
   constexpr std::size_t kMostRows = 40;
   if (pooled.groups.empty()) return "";
   TerminalText text(options);
-  const ReportTable repeats = repeats_table(pooled.groups);
-  text.heading(repeats.caption);
-  text.table(repeats, kMostRows);
-  if (repeats.rows.size() > kMostRows) {
-    text.line(fmt::format("... and {} rows more: see pooled.csv", repeats.rows.size() - kMostRows));
-  }
+  text.table(repeats_table(pooled.groups), kMostRows);
   const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
                                   [](const PooledGroup& group) { return group.runs.size() == 1; });
   if (single) text.line("* one run: what differs from run to run is not in its error");
-  for (const SharedFit& fit : pooled.shared) {
-    const ReportTable shared = shared_table(fit);
-    text.heading(shared.caption);
-    text.table(shared);
-    text.lines(fit.notes);
-  }
-  const std::vector<std::string> trends = trend_sentences(pooled.trends);
-  if (!trends.empty()) text.heading("Trends");
-  text.lines(trends, 2, 4);
+  ReportSection shared;
+  add_shared(pooled, shared);
+  text.items(shared.items);
+  text.section(trends_section(pooled.trends));
   for (const std::string& warning : pooled.trends.warnings) text.warning(warning);
   return text.take();
 }
@@ -303,22 +316,8 @@ std::string pooled_table(const Pooled& pooled, const TerminalOptions& options) {
 std::string render_comparison(const ComparisonReport& report, std::span<const PooledGroup> groups,
                               const TerminalOptions& options) {
   TerminalText text(options);
-  text.heading("Beside " + report.values.path);
-  if (!report.values.values.empty()) {
-    text.table(comparison_table(report, groups));
-    text.line(
-        "std errors: the difference over the error of ours (statistical, between runs and systematic) and that of the "
-        "earlier value where it is stated; extremes: per-cycle extremes");
-  }
-  text.lines(report.values.unmatched, 2, 4);
-  const std::vector<std::string> preference = preference_sentences(report.statements, groups);
-  if (!preference.empty()) text.heading("Which law predicts better (joint fit, held-out cycles)");
-  text.lines(preference, 2, 4);
-  const ReportTable errors = error_table(report.statements, groups);
-  if (!errors.rows.empty()) {
-    text.heading(errors.caption);
-    text.table(errors);
-  }
+  text.section(comparison_section(report.values, groups));
+  text.section(statements_section(report.statements, groups));
   text.raw("\n");
   return text.take();
 }

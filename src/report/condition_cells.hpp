@@ -23,19 +23,20 @@ class ConditionCells {
   }
 
   std::string header() const {
-    std::string text = "radius_mm,speed_rpm,load_N";
-    for (const std::string& name : names_) text += "," + cell(name);
+    std::string text = csv_line("radius_mm", "speed_rpm", "load_N", Json(names_));
+    text.pop_back();
     return text;
   }
 
-  std::string of(const Conditions& c, const std::vector<OtherCondition>& others) const {
-    std::string text = cell(c.radius.value / kMillimetre) + "," + cell(c.speed.value / kRpm) + "," + cell(c.load.value);
+  /// The cells of a row, as a list.
+  Json of(const Conditions& c, const std::vector<OtherCondition>& others) const {
+    Json row = {number(c.radius.value / kMillimetre), number(c.speed.value / kRpm), number(c.load.value)};
     for (const std::string& name : names_) {
       const auto found =
           std::find_if(others.begin(), others.end(), [&](const OtherCondition& other) { return other.name == name; });
-      text += "," + (found == others.end() ? std::string() : cell(found->value));
+      row.push_back(found == others.end() ? Json(nullptr) : Json(found->value));
     }
-    return text;
+    return row;
   }
 
  private:

@@ -2,41 +2,48 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tribofit {
 
-std::string cell(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::replace(text.begin(), text.end(), '\r', ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
+std::string CsvLine::take() {
+  has_cells_ = false;
+  return std::exchange(text_, {}) + "\n";
 }
 
-std::string cell(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : "";
+void CsvLine::begin_cell() {
+  if (std::exchange(has_cells_, true)) text_ += ',';
 }
 
-std::string cells(const Json& json) {
-  if (json.is_null()) return "";
-  if (json.is_string()) return cell(json.get<std::string>());
-  if (json.is_boolean()) return json.get<bool>() ? "1" : "0";
-  if (json.is_number_float()) return cell(json.get<double>());
-  if (!json.is_structured()) return json.dump();
-  std::string text;
-  bool first = true;
-  for (const Json& value : json) {
-    text += (first ? "" : ",") + cells(value);
-    first = false;
+void CsvLine::add_number(double value) {
+  begin_cell();
+  if (!std::isfinite(value)) return;
+  digits_ > 0 ? fmt::format_to(std::back_inserter(text_), "{:.{}g}", value, digits_)
+              : fmt::format_to(std::back_inserter(text_), "{}", value);
+}
+
+void CsvLine::add_text(std::string_view text) {
+  begin_cell();
+  const bool quoted = text.find_first_of(",\"") != std::string_view::npos;
+  if (quoted) text_ += '"';
+  for (const char c : text) {
+    if (c == '"') text_ += '"';
+    text_ += c == '\n' || c == '\r' ? ' ' : c;
   }
-  return text;
+  if (quoted) text_ += '"';
 }
 
-std::string csv_line(const std::vector<std::string>& cells) {
-  return fmt::format("{}\n", fmt::join(cells, ","));
+void CsvLine::add_values(const Json& json) {
+  if (json.is_structured()) {
+    for (const Json& value : json) add_values(value);
+  } else if (json.is_number_float()) {
+    add_number(json.get<double>());
+  } else if (json.is_boolean()) {
+    add_text(json.get<bool>() ? "1" : "0");
+  } else {
+    add_text(json.is_null() ? "" : json.is_string() ? json.get<std::string>() : json.dump());
+  }
 }
 
 }  // namespace tribofit

@@ -1,23 +1,71 @@
 #pragma once
 
 #include <string>
-#include <vector>
+#include <string_view>
+#include <type_traits>
 
+#include "campaign/whole_folder.hpp"
 #include "json_parts.hpp"
 
 namespace tribofit {
 
-/// A cell of a CSV file; quoted where it must be, line breaks become blanks.
-std::string cell(std::string text);
+/// One line of a CSV file, cell by cell. Text is quoted where it must be, and its line breaks become blanks; a number
+/// that is not known is an empty cell; truth is 1 and 0. The values of a JSON object or list are laid out in their
+/// order, null as an empty cell: so a table has the numbers of the JSON, under the names of its header.
+class CsvLine {
+ public:
+  /// digits: of numbers; 0: to the last.
+  explicit CsvLine(int digits = 0) : digits_(digits) {}
 
-/// To the last digit; empty where it is not known.
-std::string cell(double value);
+  template <class Cell>
+  void add(const Cell& cell) {
+    if constexpr (std::is_same_v<Cell, Json>) {
+      add_values(cell);
+    } else if constexpr (std::is_floating_point_v<Cell>) {
+      add_number(cell);
+    } else if constexpr (std::is_integral_v<Cell>) {
+      add_text(std::to_string(cell));
+    } else {
+      add_text(cell);
+    }
+  }
+  /// The line with its line break; what is added then is the next one.
+  std::string take();
 
-/// The values of a JSON object or list in their order, as cells: lists and objects in it are laid out, what is null is
-/// an empty cell, truth is 1 and 0. So a table has the numbers of the JSON, under the names of its header.
-std::string cells(const Json& json);
+ private:
+  void begin_cell();
+  void add_number(double value);
+  void add_text(std::string_view text);
+  void add_values(const Json& json);
 
-/// Cells that stand already in their form, and a line break.
-std::string csv_line(const std::vector<std::string>& cells);
+  int digits_;
+  bool has_cells_ = false;
+  std::string text_;
+};
+
+template <class... Cells>
+std::string csv_line(const Cells&... cells) {
+  CsvLine line;
+  (line.add(cells), ...);
+  return line.take();
+}
+
+/// A file of a folder that begins with a header.
+class CsvTable {
+ public:
+  CsvTable(WholeFolder& folder, const std::string& name, std::string_view header, int digits = 0)
+      : file_(folder.add(name)), line_(digits) {
+    file_.write(std::string(header) + "\n");
+  }
+  template <class... Cells>
+  void row(const Cells&... cells) {
+    (line_.add(cells), ...);
+    file_.write(line_.take());
+  }
+
+ private:
+  WholeFile& file_;
+  CsvLine line_;
+};
 
 }  // namespace tribofit

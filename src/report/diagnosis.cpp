@@ -159,7 +159,7 @@ void add_verdict(const DiagnosedTraces& result, TerminalText& text) {
 
 /// Parameters of the effects that were found.
 ReportTable found_table(const DiagnosedTraces& result) {
-  ReportTable table("Parameters of the effects found");
+  ReportTable table;
   table.text({"parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
   for (const Rung& rung : found_effects(result.diagnosis)) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);

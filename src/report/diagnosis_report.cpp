@@ -1,19 +1,115 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
+#include "diagnosis/conclusions.hpp"
 #include "diagnosis_sentences.hpp"
 #include "numbers.hpp"
-#include "report/charts/diagnosis_charts.hpp"
+#include "report/charts/styles.hpp"
 #include "report_parts.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t kDrawnTraces = 8;
+
+/// A chart of held-out errors beside the noise floor.
+Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
+  const bool force = !result.traces.empty() && friction_unit(result.traces.front().motion) == "N";
+  return {.id = id,
+          .title = title,
+          .note = note,
+          .panels = {{.axis = {.quantity = "held-out error", .unit = force ? "N" : "1", .from_zero = true}}},
+          .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
+}
+
+Chart ladder_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart = errors_chart(
+      result, "ladder", "The ladder: held-out error, as effects are added",
+      "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.");
+  ChartLine line{"held-out error", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
+  line.bars = true;
+  for (std::size_t k = 0; k < d.ladder.size(); ++k) {
+    const Rung& rung = d.ladder[k];
+    const auto x = static_cast<double>(k);
+    chart.x.names.push_back(rung.added.empty() ? law_text(d) : "+ " + rung.added);
+    line.add(x, rung.held_out_rmse, rung.held_out_std_error);
+    const double removed = k == 0 ? std::nan("") : removed_at(d, k);
+    if (std::isfinite(removed)) {
+      chart.labels.push_back({x, rung.held_out_rmse, share_text(removed) + " gone"});
+    }
+  }
+  if (!line.x.empty()) chart.lines.push_back(std::move(line));
+  chart.marks[0].text += " " + significant(d.floor_rmse, 3);
+  chart.half = true;
+  return chart;
+}
+
+/// Shares of the law and of the final model beside the same variables.
+Chart where_chart(const Diagnosis& d) {
+  Chart chart{.id = "where",
+              .title = "Where the error above the noise floor goes",
+              .note = where_sentence(d.where) + " Shares overlap where variables go together.",
+              .x = {"share", "%", 0, 105},
+              .height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size())),
+              .half = true};
+  ChartAxis& names = chart.panels[0].axis;
+  ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
+  for (auto share = d.where.rbegin(); share != d.where.rend(); ++share) {  // the largest on top
+    names.names.push_back(share->variable);
+    before.values.push_back(100 * share->share);
+    const auto left = std::find_if(d.remaining.begin(), d.remaining.end(),
+                                   [&](const Share& other) { return other.variable == share->variable; });
+    after.values.push_back(left == d.remaining.end() ? 0 : 100 * left->share);
+  }
+  chart.bars.push_back(std::move(before));
+  if (d.ladder.size() > 1) chart.bars.push_back(std::move(after));
+  return chart;
+}
+
+struct StatusStyle {
+  EffectStatus status;
+  Stroke stroke;
+};
+constexpr std::array<StatusStyle, 5> kStatuses = {
+    StatusStyle{EffectStatus::found, dots(Colour::red, Symbol::circle, 10)},
+    StatusStyle{EffectStatus::equivalent, dots(Colour::purple, Symbol::diamond, 10)},
+    StatusStyle{EffectStatus::possible, dots(Colour::blue, Symbol::triangle_up, 9)},
+    StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
+    StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};
+
+/// Held-out error with each candidate.
+Chart candidates_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart = errors_chart(result, "candidates", "Each candidate: held-out error with it",
+                             "At the rung where it was judged last; bars are one standard error, from cycle to cycle. "
+                             "Dashed: the noise floor; dotted: the bare law.");
+  chart.panels[0].axis.digits = 6;
+  for (const auto& [status, stroke] : kStatuses) {
+    std::vector<const EffectFinding*> own;
+    for (const EffectFinding& finding : d.effects) {
+      if (finding.status == status && std::isfinite(finding.held_out_rmse)) own.push_back(&finding);
+    }
+    if (own.empty()) continue;
+    std::stable_sort(own.begin(), own.end(), [](const EffectFinding* a, const EffectFinding* b) {
+      return a->held_out_rmse < b->held_out_rmse;
+    });
+    ChartLine line{std::string(status_text(status)), {}, {}, stroke};
+    line.bars = true;
+    for (const EffectFinding* finding : own) {
+      line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
+      chart.x.names.push_back(finding->key);
+    }
+    chart.lines.push_back(std::move(line));
+  }
+  if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
+  chart.height = 420;
+  return chart;
+}
 
 ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
@@ -42,22 +138,21 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
 ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& motion) {
   const Diagnosis& d = result.diagnosis;
   ReportSection section{"diagnosis", "Effects found", {}};
-  std::vector<Chart> charts = diagnosis_charts(result);
-  const auto wide = std::stable_partition(charts.begin(), charts.end(), [](const Chart& chart) { return chart.half; });
-  add({std::make_move_iterator(charts.begin()), std::make_move_iterator(wide)}, section);
-  section.items.emplace_back(heading_text("Next experiment"));
-  section.items.emplace_back(plain_text(d.next_experiment.empty() ? "None is needed." : d.next_experiment));
+  section.add(ladder_chart(result));
+  section.add(where_chart(d));
+  section.heading("Next experiment");
+  section.plain(d.next_experiment.empty() ? "None is needed." : d.next_experiment);
   if (!d.formula.empty()) {
-    section.items.emplace_back(heading_text("A closed form of what remains, for --formula"));
-    section.items.emplace_back(command_text(d.formula));
+    section.heading("A closed form of what remains, for --formula");
+    section.command(d.formula);
   }
-  for (const std::string& message : d.messages) section.items.emplace_back(plain_text(message));
-  if (!d.confirmations.empty()) section.items.emplace_back(heading_text("On runs that took no part"));
+  for (const std::string& message : d.messages) section.plain(message);
+  if (!d.confirmations.empty()) section.heading("On runs that took no part");
   for (const Confirmation& c : d.confirmations) {
-    section.items.emplace_back(item_text(confirmation_sentence(c, result)));
+    section.item(confirmation_sentence(c, result));
   }
-  add({std::make_move_iterator(wide), std::make_move_iterator(charts.end())}, section);
-  section.items.emplace_back(effects_table(d, motion));
+  section.add(candidates_chart(result));
+  section.add(effects_table(d, motion));
   return section;
 }
 
@@ -75,7 +170,6 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
   if (count == 1) report.facts = facts_of(result.traces.front());
-  report.sections.push_back(diagnosis_section(result, motion));
   const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
   const std::vector<DrawnModel> models = drawn_models(result.fits, result.best, 2, bare);
   const std::vector<DrawnModel> curves = drawn_curves(models, result.rungs);
@@ -84,22 +178,19 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
     const Identification& trace = result.traces[k];
     if (drawn > 1) {
       for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles}) {
-        s->items.emplace_back(heading_text(trace.path));
+        s->heading(trace.path);
       }
     }
     sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn)));
   }
   if (count > drawn) {
-    sections.trace.items.emplace_back(plain_text(fmt::format("The first {} of {} traces are drawn.", drawn, count)));
+    sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
   }
-  if (count > 0) sections.trace.items.emplace_back(health_table(result.traces));
-  if (!result.fits.empty()) {
-    add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
-    add(profile_charts(result.fits[result.best], motion, "best"), sections.law);
-  }
-  sections.move_into(report);
-  report.sections.push_back(
-      run_section(diagnose_command(result, terminal), result.traces, next_after_diagnosis(result, terminal)));
+  if (count > 0) sections.trace.add(health_table(result.traces));
+  add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
+  if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
+  report.add({diagnosis_section(result, motion), sections.trace, sections.law, sections.errors, sections.cycles,
+              run_section(diagnose_command(result, terminal), result.traces, next_after_diagnosis(result, terminal))});
   return report;
 }
 

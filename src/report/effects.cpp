@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -45,35 +46,23 @@ std::string parameters_text(std::span<const Parameter> parameters) {
 }
 
 /// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
-std::string_view scaling_text(BoundScaling scaling) {
-  switch (scaling) {
-    case BoundScaling::never:
-      return "";
-    case BoundScaling::with_slip_time:
-      return "; bounds in proportion to the slip time";
-    case BoundScaling::against_slip_time:
-      return "; bounds in inverse proportion to the slip time";
-    case BoundScaling::with_stick_time:
-      return "; bounds in proportion to the stick time";
-    case BoundScaling::with_slip_length:
-      return "; bounds in proportion to the slip length";
-    case BoundScaling::against_slip_length:
-      return "; bounds in inverse proportion to the slip length";
-    case BoundScaling::against_top_speed:
-      return "; bounds in inverse proportion to the top speed";
-    case BoundScaling::with_duration:
-      return "; bounds in proportion to the duration of the record";
-    case BoundScaling::against_duration:
-      return "; bounds in inverse proportion to the duration of the record";
-    case BoundScaling::with_distance:
-      return "; bounds in proportion to the distance slid";
-    case BoundScaling::with_mass:
-      return "; bounds in proportion to friction force over acceleration";
-    case BoundScaling::with_speed:
-    case BoundScaling::against_speed:
-      return "; bounds from the speeds of the record";
-  }
-  return "";
+std::string scaling_text(BoundScaling scaling) {
+  using enum BoundScaling;
+  constexpr std::array<std::pair<BoundScaling, const char*>, 12> kTexts = {
+      {{with_slip_time, "in proportion to the slip time"},
+       {against_slip_time, "in inverse proportion to the slip time"},
+       {with_stick_time, "in proportion to the stick time"},
+       {with_slip_length, "in proportion to the slip length"},
+       {against_slip_length, "in inverse proportion to the slip length"},
+       {against_top_speed, "in inverse proportion to the top speed"},
+       {with_duration, "in proportion to the duration of the record"},
+       {against_duration, "in inverse proportion to the duration of the record"},
+       {with_distance, "in proportion to the distance slid"},
+       {with_mass, "in proportion to friction force over acceleration"},
+       {with_speed, "from the speeds of the record"},
+       {against_speed, "from the speeds of the record"}}};
+  const auto at = std::find_if(kTexts.begin(), kTexts.end(), [&](const auto& text) { return text.first == scaling; });
+  return at == kTexts.end() ? "" : std::string("; bounds ") + at->second;
 }
 
 void add_effect(const EffectInfo& effect, TerminalText& text) {
@@ -100,20 +89,14 @@ void add_effect(const EffectInfo& effect, TerminalText& text) {
   text.raw("\n");
   for (const Parameter& p : effect.parameters) {
     const bool own = p.scope == ParameterScope::record;
-    const std::string scaling(scaling_text(p.bound_scaling));
-    text.item(p.name, p.description + (own ? "; another value in each record" : "") + scaling, kNames);
+    text.item(p.name, p.description + (own ? "; another value in each record" : "") + scaling_text(p.bound_scaling),
+              kNames);
   }
   if (!effect.pairs.empty()) text.raw("\n  looks like\n");
   for (const LookAlike& pair : effect.pairs) {
     text.raw("    " + text.bold(pair.key) + "\n");
     text.line(pair.test, 6);
   }
-}
-
-void add_next(const EffectInfo& effect, TerminalText& text) {
-  text.raw(effect.kinematic_effect
-               ? "\nNext, to look for it:\n  identify diagnose --radius 15mm trace.csv\n"
-               : "\nNext, to fit it:\n  identify --radius 15mm --effect " + effect.spelled() + " trace.csv\n");
 }
 
 }  // namespace
@@ -155,20 +138,17 @@ std::string render_effects(std::span<const EffectInfo> effects, const TerminalOp
   return text.take();
 }
 
-std::string render_effect(const EffectInfo& effect, const TerminalOptions& options) {
+std::string render_effect(const EffectInfo& effect, const TerminalOptions& options, const Fingerprint* print) {
   TerminalText text(options);
   add_effect(effect, text);
-  add_next(effect, text);
-  return text.take();
-}
-
-std::string render_effect(const EffectInfo& effect, const Fingerprint& print, const TerminalOptions& options) {
-  TerminalText text(options);
-  add_effect(effect, text);
-  text.raw("\n");
-  text.line("where it shows, simulated with " + print.conditions);
-  text.raw("\n" + render_fingerprint(print, options));
-  add_next(effect, text);
+  if (print != nullptr) {
+    text.raw("\n");
+    text.line("where it shows, simulated with " + print->conditions);
+    text.raw("\n" + render_fingerprint(*print, options));
+  }
+  text.next(effect.kinematic_effect
+                ? Suggestion{"to look for it", "identify diagnose --radius 15mm trace.csv"}
+                : Suggestion{"to fit it", "identify --radius 15mm --effect " + effect.spelled() + " trace.csv"});
   return text.take();
 }
 

@@ -84,53 +84,71 @@ ReportTable correlation_table(const Fit& fit) {
 
 void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
-  section.items.emplace_back(soft_text(
-      fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}).",
-                  level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse), level(fit.floor.noise),
-                  fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter))));
-  section.items.emplace_back(soft_text(
-      fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
-                  percent(fit.error.mean_relative), percent(fit.error.max_relative), share_text(fit.explained))));
+  section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}).",
+                           level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
+                           level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
+                           level(fit.floor.scatter)));
+  section.soft(fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
+                           percent(fit.error.mean_relative), percent(fit.error.max_relative),
+                           share_text(fit.explained)));
   if (fit.model.acts_in_stick() && std::isfinite(fit.stick_rmse)) {
-    section.items.emplace_back(
-        soft_text(fmt::format("Creep in stick: RMSE {} mm/s.", significant(fit.stick_rmse / kMillimetre, 3))));
+    section.soft(fmt::format("Creep in stick: RMSE {} mm/s.", significant(fit.stick_rmse / kMillimetre, 3)));
   }
 }
 
 void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
-  section.items.emplace_back(
-      heading_text(fmt::format("{}, {}{}", fit.model.name(), name_of(fit.protocol), best ? " (best)" : "")));
-  section.items.emplace_back(soft_text(describe(fit.model.law()).equation));
+  section.heading(fmt::format("{}, {}{}", fit.model.name(), name_of(fit.protocol), best ? " (best)" : ""));
+  section.soft(describe(fit.model.law()).equation);
   for (const Effect& effect : fit.model.effects()) {
     const EffectInfo info = describe(effect);
-    section.items.emplace_back(soft_text(info.spelled() + ": " + info.equation));
+    section.soft(info.spelled() + ": " + info.equation);
   }
-  if (!fit.converged) {
-    section.items.emplace_back(ReportText{"This fit did not converge: do not rely on it.", ReportText::Kind::warning});
-  }
+  if (!fit.converged) section.warning("This fit did not converge: do not rely on it.");
   if (has_parameters(fit)) {
-    section.items.emplace_back(parameter_table(fit, motion, instruments_declared));
+    section.add(parameter_table(fit, motion, instruments_declared));
     add_errors(fit, motion, section);
     const std::size_t n = fit.parameters.size();
-    if (n > 1 && fit.covariance.size() == n * n) section.items.emplace_back(correlation_table(fit));
+    if (n > 1 && fit.covariance.size() == n * n) section.add(correlation_table(fit));
   }
-  for (const std::string& message : fit.messages) {
-    section.items.emplace_back(ReportText{"Note: " + message, ReportText::Kind::item});
-  }
+  for (const std::string& message : fit.messages) section.item("Note: " + message);
 }
 
-/// The joint fit of the same law, which may carry effects that per-cycle extremes do not know; nullptr: none.
-const Fit* partner_of(std::span<const Fit> fits, const Fit& fit) {
-  if (fit.protocol != Protocol::published) return nullptr;
-  const auto at = std::find_if(fits.begin(), fits.end(), [&](const Fit& other) {
-    return other.protocol == Protocol::joint && other.model.law() == fit.model.law();
-  });
-  return at == fits.end() ? nullptr : &*at;
-}
-
-/// A parameter from the per-cycle extremes lies outside the 95 % interval of the joint fit.
-bool differs(const FitParameter& extreme, const FitParameter& joint) {
-  return extreme.value < joint.lower95 || extreme.value > joint.upper95;
+/// Per-cycle extremes beside the joint fit, and by how much they differ; nothing where there is no pair.
+void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSection& section) {
+  ReportTable table;
+  table.text({"law", "parameter"}).numbers({"extremes", "joint fit", "difference"}).text({"unit"}).text({"remarks"}, 1);
+  std::vector<std::string> notes;
+  bool different = false;
+  for (const Fit& fit : fits) {
+    const Fit* joint = joint_partner(fits, fit);
+    if (joint == nullptr || !joint->converged) continue;
+    if (!has_parameters(fit) || !fit.converged) {
+      for (const std::string& message : fit.messages) notes.push_back(fit.model.name() + ": " + message);
+    }
+    for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
+      const FitParameter &a = fit.parameters[k], &b = joint->parameters[k];
+      const int places = places_of(b);
+      table.rows.push_back({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
+                            fixed(shown(b, b.value), places),
+                            b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
+                            shown_unit(b, motion), is_outside(a, b) ? "outside the 95 % interval" : ""});
+      different |= is_outside(a, b);
+    }
+  }
+  if (table.rows.empty() && notes.empty()) return;
+  section.heading("Per-cycle extremes beside the joint fit");
+  const bool agree = !table.rows.empty() && !different;
+  if (!table.rows.empty()) section.add(std::move(table));
+  if (agree) {
+    section.soft("The extremes agree within the 95 % intervals of the joint fit.");
+  }
+  if (different) {
+    section.soft(
+        "Per-cycle extremes take mu_s and mu_k from the maximum and minimum of each cycle: noise widens extremes, and "
+        "the minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
+        "values, the extremes to compare with papers that used them.");
+  }
+  for (std::string& note : notes) section.soft(std::move(note));
 }
 
 }  // namespace
@@ -145,79 +163,39 @@ bool has_parameters(const Fit& fit) {
 
 void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
               ReportSection& section) {
+  if (fits.empty()) return;
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    if (which == Fits::without_compared && partner_of(fits, fits[k]) != nullptr) continue;
+    if (which == Fits::without_compared && joint_partner(fits, fits[k]) != nullptr) continue;
     add_fit(fits[k], motion, k == best && fits.size() > 1, instruments_declared, section);
   }
-  section.items.emplace_back(heading_text("Intervals and range"));
-  section.items.emplace_back(soft_text(
+  section.heading("Intervals and range");
+  section.soft(
       instruments_declared
           ? "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the declared "
             "instruments, not part of them."
           : "Intervals are statistical, from cycle to cycle; no instrument uncertainties declared (--instruments), so "
-            "there is no systematic part."));
+            "there is no systematic part.");
   if (fits[best].fastest > 0) {
-    section.items.emplace_back(
-        soft_text(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
-                              significant(fits[best].fastest / kMillimetre, 3))));
+    section.soft(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
+                             significant(fits[best].fastest / kMillimetre, 3)));
   }
 }
 
-void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSection& section) {
-  ReportTable table;
-  table.text({"law", "parameter"}).numbers({"extremes", "joint fit", "difference"}).text({"unit"}).text({"remarks"}, 1);
-  std::vector<std::string> notes;
-  bool different = false;
-  for (const Fit& fit : fits) {
-    const Fit* joint = partner_of(fits, fit);
-    if (joint == nullptr || !joint->converged) continue;
-    if (!has_parameters(fit) || !fit.converged) {
-      for (const std::string& message : fit.messages) notes.push_back(fit.model.name() + ": " + message);
-    }
-    for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
-      const FitParameter &a = fit.parameters[k], &b = joint->parameters[k];
-      const int places = places_of(b);
-      table.rows.push_back({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
-                            fixed(shown(b, b.value), places),
-                            b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
-                            shown_unit(b, motion), differs(a, b) ? "outside the 95 % interval" : ""});
-      different |= differs(a, b);
-    }
-  }
-  if (table.rows.empty() && notes.empty()) return;
-  section.items.emplace_back(heading_text("Per-cycle extremes beside the joint fit"));
-  const bool agree = !table.rows.empty() && !different;
-  if (!table.rows.empty()) section.items.emplace_back(std::move(table));
-  if (agree) {
-    section.items.emplace_back(soft_text("The extremes agree within the 95 % intervals of the joint fit."));
-  }
-  if (different) {
-    section.items.emplace_back(soft_text(
-        "Per-cycle extremes take mu_s and mu_k from the maximum and minimum of each cycle: noise widens extremes, and "
-        "the minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
-        "values, the extremes to compare with papers that used them."));
-  }
-  for (std::string& note : notes) section.items.emplace_back(soft_text(std::move(note)));
-}
-
-std::vector<std::string> comparison_sentences(std::span<const Fit> fits, std::size_t best) {
-  std::vector<std::string> sentences;
-  for (const LawComparison& c : compare_laws(fits, best)) {
+void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section) {
+  add_protocols(fits, motion, section);
+  const std::vector<LawComparison> comparisons = compare_laws(fits, best);
+  if (!comparisons.empty()) section.heading("Which law");
+  for (const LawComparison& c : comparisons) {
     const Fit &first = fits[c.first], &second = fits[c.second];
+    const Fit &ahead = c.comparison.first_better ? first : second, &behind = c.comparison.first_better ? second : first;
     const std::string figures =
         fmt::format("{} against {}, {}", significant(first.error.held_out_rmse, 3),
                     significant(second.error.held_out_rmse, 3), p_value_text(c.comparison.p_value));
-    if (c.clear) {
-      const bool ahead = c.comparison.first_better;
-      sentences.push_back(fmt::format("{} has the smaller held-out error than {} ({}).",
-                                      (ahead ? first : second).model.name(), (ahead ? second : first).model.name(),
-                                      figures));
-    } else {
-      sentences.push_back(fmt::format("{} and {} are not distinguishable with these data (held-out error {}).",
-                                      first.model.name(), second.model.name(), figures));
-    }
+    section.plain(c.clear ? fmt::format("{} has the smaller held-out error than {} ({}).", ahead.model.name(),
+                                        behind.model.name(), figures)
+                          : fmt::format("{} and {} are not distinguishable with these data (held-out error {}).",
+                                        first.model.name(), second.model.name(), figures));
   }
-  return sentences;
 }
 
 }  // namespace tribofit

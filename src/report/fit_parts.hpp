@@ -21,14 +21,12 @@ bool has_parameters(const Fit& fit);
 /// What is said of each fit: all of them, or those that the comparison of the protocols does not hold.
 enum class Fits { all, without_compared };
 
-/// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are.
+/// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are; nothing where
+/// there are no fits.
 void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
               ReportSection& section);
 
-/// Per-cycle extremes beside the joint fit, and by how much they differ; nothing where there is no pair.
-void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSection& section);
-
-/// The best law against each other one: "exponential has the smaller held-out error than fractional (...)."
-std::vector<std::string> comparison_sentences(std::span<const Fit> fits, std::size_t best);
+/// Per-cycle extremes beside the joint fit and by how much they differ, then the best law against each other one.
+void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section);
 
 }  // namespace tribofit

@@ -31,15 +31,10 @@ std::string render_terminal(const Identification& result, const TerminalOptions&
                                      significant(peak.bin_width, 3) + " Hz");
   }
   for (const std::string& note : result.segmentation.notes) text.item("note", note);
-  if (!result.fits.empty()) {
-    ReportSection section;
-    add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::without_compared, section);
-    add_protocols(result.fits, result.motion, section);
-    text.items(section.items);
-    const std::vector<std::string> sentences = comparison_sentences(result.fits, result.best);
-    if (!sentences.empty()) text.heading("Which law");
-    text.lines(sentences);
-  }
+  ReportSection laws;
+  add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::without_compared, laws);
+  add_comparisons(result.fits, result.best, result.motion, laws);
+  text.items(laws.items);
   text.result(result.warnings, verdict(result), next_command(result, options));
   return text.take();
 }
@@ -56,18 +51,12 @@ Report report_of(const Identification& result, const ReportOptions& options) {
   const std::vector<DrawnModel> curves = drawn_curves(models, result.fits);
   TraceSections sections;
   sections.add_trace(DrawnTrace(result, models, curves, "t1"));
-  sections.trace.items.emplace_back(health_table({&result, 1}));
-  if (!result.fits.empty()) {
-    add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::all, sections.law);
-    add_protocols(result.fits, result.motion, sections.law);
-    for (std::string& sentence : comparison_sentences(result.fits, result.best)) {
-      sections.law.items.emplace_back(plain_text(std::move(sentence)));
-    }
-    add(profile_charts(result.fits[result.best], result.motion, "best"), sections.law);
-  }
-  sections.move_into(report);
-  report.sections.push_back(
-      run_section(command_line(terminal, {}, result.path), {&result, 1}, next_command(result, terminal)));
+  sections.trace.add(health_table({&result, 1}));
+  add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::all, sections.law);
+  add_comparisons(result.fits, result.best, result.motion, sections.law);
+  if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
+  report.add({sections.trace, sections.law, sections.errors, sections.cycles,
+              run_section(command_line(terminal, {}, result.path), {&result, 1}, next_command(result, terminal))});
   return report;
 }
 

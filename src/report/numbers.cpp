@@ -158,6 +158,12 @@ std::string with_subscript(const std::string& name) {
   return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
 }
 
+std::vector<double> in_unit(std::span<const double> values, double unit) {
+  std::vector<double> out(values.begin(), values.end());
+  for (double& value : out) value /= unit;
+  return out;
+}
+
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
   return text;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -80,6 +81,9 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
 
 /// "mu_s" as markup: "mu_{s}".
 std::string with_subscript(const std::string& name);
+
+/// `values` in a unit.
+std::vector<double> in_unit(std::span<const double> values, double unit);
 
 /// "Most"; the rest of the text as it is.
 std::string capitalised(std::string text);

@@ -43,9 +43,9 @@ std::string pooled_csv(const Pooled& pooled) {
   const ConditionCells columns{std::span<const PooledGroup>(pooled.groups)};
   std::string text = columns.header() + ",law,protocol,name," + kValueColumns + "\n";
   for (const PooledGroup& group : pooled.groups) {
-    const std::string conditions = columns.of(group.conditions, group.others);
+    const Json conditions = columns.of(group.conditions, group.others);
     const auto add = [&](const PooledValue& value, const std::string& law, const std::string& protocol) {
-      text += csv_line({conditions, law, protocol, cell(full_name(value)), cells(numbers_json(value))});
+      text += csv_line(conditions, law, protocol, full_name(value), numbers_json(value));
     };
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& value : fit.parameters) add(value, fit.law, fit.protocol);
@@ -60,14 +60,13 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
   for (const SharedFit& fit : pooled.shared) {
     for (const SharedFit::Parameter& common : fit.common) {
       for (std::size_t l = 0; l < common.values.size(); ++l) {
-        text += csv_line({fit.law, cell(common.name), cell(common.condition), cell(common.levels[l]), "",
-                          cells(numbers_json(common.values[l]))});
+        text += csv_line(fit.law, common.name, common.condition, common.levels[l], "", numbers_json(common.values[l]));
       }
     }
     for (const SharedFit::OfRun& run : fit.runs) {
       for (std::size_t k = 0; k < fit.names.size(); ++k) {
-        text += csv_line({fit.law, cell(fit.names[k]), "", "", cell(runs[run.run].run.name), cell(fit.units[k]), "1",
-                          "", "", cell(run.value[k]), cell(run.std_error[k]), "", "", "", "", ""});
+        text += csv_line(fit.law, fit.names[k], "", "", runs[run.run].run.name, fit.units[k], 1, "", "", run.value[k],
+                         run.std_error[k], "", "", "", "", "");
       }
     }
   }
@@ -77,7 +76,7 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
 std::string trends_csv(const Trends& trends) {
   std::string text =
       "law,name,unit,condition,condition_unit,runs,slope,std_error,ci95_lower,ci95_upper,p_value,p_corrected\n";
-  for (const Trend& trend : trends.trends) text += cells(trend_json(trend)) + "\n";
+  for (const Trend& trend : trends.trends) text += csv_line(trend_json(trend));
   return text;
 }
 
@@ -169,7 +168,7 @@ std::string comparison_csv(const ComparisonReport& report, std::span<const Poole
     const PooledGroup& group = groups[v.group];
     Json conditions = group_json(group);
     conditions["others"] = group.others.empty() ? "" : conditions_text({}, group.others);
-    text += csv_line({cells(conditions), cells(compared_json(v))});
+    text += csv_line(conditions, compared_json(v));
   }
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -26,28 +27,25 @@ std::string file_name(const std::string& path) {
   return Json::parse(line_of(name.empty() ? path : name)).get<std::string>();
 }
 
-ReportText plain_text(std::string text) {
-  return {std::move(text), ReportText::Kind::plain};
+void ReportSection::add(ReportItem item) {
+  const auto* table = std::get_if<ReportTable>(&item);
+  const auto* chart = std::get_if<Chart>(&item);
+  const auto has_values = [](const ChartBars& bars) { return !bars.values.empty(); };
+  if (table != nullptr && table->rows.empty()) return;
+  if (chart != nullptr && chart->lines.empty() && !chart->map &&
+      std::none_of(chart->bars.begin(), chart->bars.end(), has_values))
+    return;
+  items.push_back(std::move(item));
 }
 
-ReportText soft_text(std::string text) {
-  return {std::move(text), ReportText::Kind::soft};
+void ReportSection::add(std::vector<Chart> charts) {
+  for (Chart& chart : charts) add(std::move(chart));
 }
 
-ReportText heading_text(std::string text) {
-  return {std::move(text), ReportText::Kind::heading};
-}
-
-ReportText item_text(std::string text) {
-  return {std::move(text), ReportText::Kind::item};
-}
-
-ReportText command_text(std::string text) {
-  return {std::move(text), ReportText::Kind::command};
-}
-
-void add(std::vector<Chart> charts, ReportSection& section) {
-  for (Chart& chart : charts) section.items.emplace_back(std::move(chart));
+void Report::add(std::vector<ReportSection> more) {
+  for (ReportSection& section : more) {
+    if (!section.items.empty()) sections.push_back(std::move(section));
+  }
 }
 
 Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead) {
@@ -93,34 +91,25 @@ std::vector<DrawnModel> drawn_curves(const std::vector<DrawnModel>& models, std:
 
 void TraceSections::add_trace(const DrawnTrace& drawn) {
   std::vector<Chart> windows = cycle_charts(drawn);
-  const bool has_cycles = !windows.empty();
   if (drawn.trace.motion.size() < 2) return;
-  if (!has_cycles) windows.push_back(record_chart(drawn));
-  add(std::move(windows), trace);
-  add(law_charts(drawn), law);
-  add(error_charts(drawn), errors);
-  add(measure_charts(drawn), cycles);
-  if (has_cycles) cycles.items.emplace_back(record_chart(drawn));
-}
-
-void TraceSections::move_into(Report& report) {
-  for (ReportSection* section : {&trace, &law, &errors, &cycles}) {
-    if (!section->items.empty()) report.sections.push_back(std::move(*section));
-  }
+  ReportSection& whole = windows.empty() ? trace : cycles;
+  trace.add(std::move(windows));
+  law.add(law_chart(drawn));
+  errors.add(error_charts(drawn));
+  cycles.add(measure_charts(drawn));
+  whole.add(record_chart(drawn));
 }
 
 ReportSection run_section(const std::string& command, const std::string& more) {
-  const std::string made = fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).", version);
-  return {"run",
-          "What was run",
-          {plain_text("This report is made by"), command_text(command),
-           soft_text(more.empty() ? made : made + " " + more)}};
+  ReportSection section{"run", "What was run", {}};
+  section.plain("This report is made by");
+  section.command(command);
+  section.soft(fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).{}", version, more));
+  return section;
 }
 
 ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next) {
   ReportSection section = run_section(command);
-  const ReportItem made = std::move(section.items.back());
-  section.items.pop_back();
   ReportTable inputs("Input");
   inputs.text({"file"}).numbers({"samples", "duration [s]"}).text({"checksum of the rows (XXH64)"});
   std::vector<std::string> notes;
@@ -129,12 +118,12 @@ ReportSection run_section(const std::string& command, std::span<const Identifica
                            fmt::format("{:016x}", trace.checksum)});
     notes.insert(notes.end(), trace.notes.begin(), trace.notes.end());
   }
-  section.items.emplace_back(std::move(inputs));
-  if (!notes.empty()) section.items.emplace_back(heading_text("How the input was read"));
-  for (std::string& note : notes) section.items.emplace_back(item_text(std::move(note)));
-  section.items.emplace_back(plain_text("Next, " + next.reason + ":"));
-  section.items.emplace_back(command_text(next.command));
-  section.items.push_back(made);
+  section.add(std::move(inputs));
+  if (!notes.empty()) section.heading("How the input was read");
+  for (std::string& note : notes) section.item(std::move(note));
+  section.plain("Next, " + next.reason + ":");
+  section.command(next.command);
+  std::rotate(section.items.begin() + 2, section.items.begin() + 3, section.items.end());  // its maker is said last
   return section;
 }
 

@@ -17,15 +17,6 @@ TerminalOptions terminal_like(const ReportOptions& options);
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
 
-ReportText plain_text(std::string text);
-ReportText soft_text(std::string text);
-ReportText heading_text(std::string text);
-ReportText item_text(std::string text);
-ReportText command_text(std::string text);
-
-/// Adds charts to a section.
-void add(std::vector<Chart> charts, ReportSection& section);
-
 /// A report that says what it is; kind: "diagnosis", made: "Diagnosis".
 Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead);
 
@@ -43,11 +34,9 @@ struct TraceSections {
   ReportSection trace{"trace", "Model and measurement", {}}, law{"law", "Friction law", {}},
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
   void add_trace(const DrawnTrace& drawn);
-  /// Adds those that hold anything.
-  void move_into(Report& report);
 };
 
-/// What was run: the command and what made the report; `more` is said beside it.
+/// What was run: the command and what made the report; `more` is said behind that.
 ReportSection run_section(const std::string& command, const std::string& more = "");
 /// The same with the inputs and their checksums, how they were read, what to do next.
 ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next);

@@ -37,6 +37,7 @@ void TerminalText::heading(std::string_view title) {
 }
 
 void TerminalText::line(std::string_view sentence, std::size_t indent, std::size_t hanging) {
+  if (sentence.empty()) return;
   const std::string text = wrapped(with_signs(sentence), width_, hanging == kAll ? indent : hanging);
   text_ += std::string(indent, ' ') + text + "\n";
 }
@@ -55,6 +56,8 @@ void TerminalText::warning(std::string_view text) {
 
 void TerminalText::table(const ReportTable& all, std::size_t most) {
   constexpr std::size_t kIndent = 2;
+  if (all.rows.empty()) return;
+  if (!all.caption.empty()) heading(all.caption);
   ReportTable table = all;
   table.rows.resize(std::min(most, table.rows.size()));
   for (std::vector<std::string>& row : table.rows) {
@@ -70,6 +73,7 @@ void TerminalText::table(const ReportTable& all, std::size_t most) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     text_ += (k == 0 ? dim(rows[k]) : rows[k]) + "\n";
   }
+  if (all.rows.size() > most) line(fmt::format("... and {} more in {}", all.rows.size() - most, all.file));
 }
 
 void TerminalText::items(const std::vector<ReportItem>& items) {
@@ -77,25 +81,17 @@ void TerminalText::items(const std::vector<ReportItem>& items) {
     if (const auto* shown = std::get_if<ReportTable>(&item); shown != nullptr && !shown->folded) table(*shown);
     const auto* text = std::get_if<ReportText>(&item);
     if (text == nullptr) continue;
-    switch (text->kind) {
-      case ReportText::Kind::heading:
-        heading(text->text);
-        break;
-      case ReportText::Kind::warning:
-        warning(text->text);
-        break;
-      case ReportText::Kind::command:
-        text_ += folded_command(text->text, width_) + "\n";
-        break;
-      case ReportText::Kind::plain:
-      case ReportText::Kind::soft:
-        line(text->text);
-        break;
-      case ReportText::Kind::item:
-        line(text->text, 2, 4);
-        break;
-    }
+    using Kind = ReportText::Kind;
+    if (text->kind == Kind::heading) heading(text->text);
+    if (text->kind == Kind::warning) warning(text->text);
+    if (text->kind == Kind::plain || text->kind == Kind::soft) line(text->text);
+    if (text->kind == Kind::item) line(text->text, 2, 4);
   }
+}
+
+void TerminalText::section(const ReportSection& section) {
+  if (!section.items.empty()) heading(section.title);
+  items(section.items);
 }
 
 void TerminalText::next(const Suggestion& next) {

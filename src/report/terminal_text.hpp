@@ -25,16 +25,19 @@ class TerminalText {
   void raw(std::string_view text) { text_ += text; }
   /// A blank line, then the title.
   void heading(std::string_view title);
-  /// A sentence; `hanging`: indentation of the lines after the first (by default that of the first).
+  /// A sentence, if there is one; `hanging`: indentation of the lines after the first (by default that of the first).
   void line(std::string_view sentence, std::size_t indent = 2, std::size_t hanging = kAll);
   void lines(const std::vector<std::string>& sentences, std::size_t indent = 2, std::size_t hanging = kAll);
   /// "  name      text", the text indented behind the name.
   void item(std::string_view name, std::string_view text, std::size_t name_width = 18);
   void warning(std::string_view text);
-  /// The first `most` rows, without the columns of most detail where the terminal is narrow.
+  /// A table with its caption as heading, if it has rows: the first `most` of them, without the columns of most detail
+  /// where the terminal is narrow.
   void table(const ReportTable& table, std::size_t most = kAll);
   /// What a page shows of a section; charts, and tables that it folds, are left out.
   void items(const std::vector<ReportItem>& items);
+  /// The same under the title of the section, if there are any.
+  void section(const ReportSection& section);
   void next(const Suggestion& next);
   /// What it comes to: warnings, the verdict and the next command.
   void result(const std::vector<std::string>& warnings, std::string_view verdict, const Suggestion& next);

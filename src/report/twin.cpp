@@ -1,19 +1,22 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "record_parts.hpp"
+#include "report/charts/motion_charts.hpp"
 #include "report_parts.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
-#include "twin_parts.hpp"
+#include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 namespace {
+
+constexpr std::size_t kBins = 400;
 
 std::string decimal(double value, const char* format = "{:+.1f}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
@@ -48,34 +51,14 @@ std::string law_text(const Fit& fit, const Motion& motion) {
   return fit.model.name() + ": " + text;
 }
 
-Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
-  const Twin& twin = result.twin;
-  const auto measure = [](const TwinMeasure& m) {
-    const auto simulated = [&](const TwinMeasure::Simulated& s) {
-      return object("value", s.value / m.si, "std_error", s.std_error / m.si, "difference_in_std_errors", s.difference);
-    };
-    return object("name", m.name, "unit", m.unit, "measured",
-                  object("value", m.measured / m.si, "std_error", m.measured_std_error / m.si), "simulated",
-                  list_of(m.simulated, simulated));
-  };
-  Json failures = Json::array();
-  for (std::size_t c = 0; c < twin.columns.size(); ++c) failures.push_back(twin.failures(c));
-  TerminalOptions known;
-  known.arguments = options.arguments;
-  return object("columns", twin.columns, "measures", list_of(twin.measures, measure), "rms_difference",
-                list_of(twin.rms_difference, number), "failures", std::move(failures), "simulations", twin.simulations,
-                "messages", twin.messages, "reason", text_or_null(twin.reason), "next",
-                next_after_twin(result, known).command);
-}
-
-}  // namespace
-
+/// The bare law by its name, the one with effects by what is added.
 std::string column_name(const Twin& twin, std::size_t c) {
   const std::string& name = twin.columns[c];
   const std::size_t plus = name.find(" + ");
   return c == 0 || plus == std::string::npos ? name : name.substr(plus + 1);
 }
 
+/// Measured and simulated measures, their differences in standard errors, and the root mean square of these.
 ReportTable twin_table(const Twin& twin) {
   ReportTable table("Measured motion and its twin");
   table.text({""}).numbers({"measured"});
@@ -99,6 +82,7 @@ ReportTable twin_table(const Twin& twin) {
   return table;
 }
 
+/// How the differences are made.
 std::string twin_note(const Twin& twin) {
   return fmt::format(
       "off by: simulated less measured, in standard errors; {} simulations with law and rig drawn within their errors, "
@@ -106,20 +90,20 @@ std::string twin_note(const Twin& twin) {
       twin.simulations);
 }
 
+/// The numbers of each law and of the rig beside it.
 ReportSection twin_model(const TwinIdentification& result) {
   ReportSection section{"model", "Law and rig", {}};
   const std::size_t count = std::min(result.trace.fits.size(), result.rigs.size());
   for (std::size_t c = 0; c < count; ++c) {
-    section.items.emplace_back(
-        item_text((c == 0 ? "Law: " : "With effects: ") + law_text(result.trace.fits[c], result.trace.motion)));
-    section.items.emplace_back(item_text("Rig beside it: " + rig_text(result.rigs[c])));
+    section.item((c == 0 ? "Law: " : "With effects: ") + law_text(result.trace.fits[c], result.trace.motion));
+    section.item("Rig beside it: " + rig_text(result.rigs[c]));
   }
   return section;
 }
 
-Suggestion next_after_twin(const TwinIdentification& result, const TerminalOptions& options) {
+Suggestion next_after_twin(const TwinIdentification& result, const std::vector<std::string>& arguments) {
   const auto of_verb = [&](std::vector<std::string> verb) {
-    return command_line(words_of(std::move(verb), options.arguments), {result.trace.path});
+    return command_line(words_of(std::move(verb), arguments), {result.trace.path});
   };
   if (!result.twin.reason.empty()) return {"to see the trace, its health and its law", of_verb({})};
   if (agrees(result.twin) && !law_falls_short(result)) {
@@ -128,6 +112,7 @@ Suggestion next_after_twin(const TwinIdentification& result, const TerminalOptio
   return {"to see where the law fails and which effect is missing", of_verb({"diagnose"})};
 }
 
+/// Whether the twin moves as the record does, and where it does not.
 std::string twin_verdict(const TwinIdentification& result) {
   const Twin& twin = result.twin;
   if (!twin.reason.empty()) return "There is no twin: " + twin.reason + ".";
@@ -156,45 +141,180 @@ std::string twin_verdict(const TwinIdentification& result) {
                     law, fmt::join(twin.failures(last), ", "));
 }
 
-std::string law_warning(const TwinIdentification& result, const TerminalOptions& options) {
-  if (!result.twin.reason.empty() || !law_falls_short(result)) return "";
+/// Said first: a law that leaves clearly more than noise has the twin of another machine.
+std::vector<std::string> warnings_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
+  std::vector<std::string> warnings = result.trace.warnings;
+  if (!result.twin.reason.empty() || !law_falls_short(result)) return warnings;
   const Fit& fit = result.trace.fits.back();
-  if (!(over_floor(fit) > 1)) return "";
-  return fmt::format(
-      "the {} law leaves {:.1f} times the noise floor of the record: its twin is that of another machine until the "
-      "missing effect is found: {}",
-      fit.model.name(), over_floor(fit), command_line(words_of({"diagnose"}, options.arguments), {result.trace.path}));
+  if (!(over_floor(fit) > 1)) return warnings;
+  warnings.insert(
+      warnings.begin(),
+      fmt::format("the {} law leaves {:.1f} times the noise floor of the record: its twin is that of another machine "
+                  "until the missing effect is found: {}",
+                  fit.model.name(), over_floor(fit),
+                  command_line(words_of({"diagnose"}, arguments), {result.trace.path})));
+  return warnings;
 }
+
+Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
+  const Twin& twin = result.twin;
+  const auto measure = [](const TwinMeasure& m) {
+    const auto simulated = [&](const TwinMeasure::Simulated& s) {
+      return object("value", s.value / m.si, "std_error", s.std_error / m.si, "difference_in_std_errors", s.difference);
+    };
+    return object("name", m.name, "unit", m.unit, "measured",
+                  object("value", m.measured / m.si, "std_error", m.measured_std_error / m.si), "simulated",
+                  list_of(m.simulated, simulated));
+  };
+  Json failures = Json::array();
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) failures.push_back(twin.failures(c));
+  return object("columns", twin.columns, "measures", list_of(twin.measures, measure), "rms_difference",
+                list_of(twin.rms_difference, number), "failures", std::move(failures), "simulations", twin.simulations,
+                "messages", twin.messages, "reason", text_or_null(twin.reason), "next",
+                next_after_twin(result, options.arguments).command);
+}
+
+/// The measured motion and those of the twins, under their names.
+std::vector<DrawnMotion> motions_of(const Twin& twin) {
+  std::vector<DrawnMotion> out;
+  if (twin.measured.size() > 0) out.emplace_back("measured", twin.measured);
+  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
+    if (twin.simulated[c].size() > 0) out.emplace_back("simulated, " + column_name(twin, c), twin.simulated[c]);
+  }
+  return out;
+}
+
+Stroke stroke_for(std::size_t k) {
+  constexpr Colour kThree[] = {Colour::black, Colour::red, Colour::blue};
+  constexpr Dash kThreeDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
+  return {.colour = kThree[k % 3], .dash = kThreeDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
+}
+
+/// Differences in standard errors; within the marks they may be chance.
+Chart differences_chart(const Twin& twin) {
+  Chart chart;
+  chart.id = "twin-differences";
+  chart.title = "Simulated less measured";
+  chart.note = "Beyond three standard errors a difference is not chance.";
+  chart.x = {.quantity = "difference", .unit = "standard errors"};
+  ChartAxis& names = chart.panels[0].axis;
+  names.falling = true;
+  for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
+  double largest = 4;
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
+    ChartLine line{column_name(twin, c), {}, {}, marked(c + 1, false)};
+    line.stroke.colour = stroke_for(c + 1).colour;
+    line.stroke.size = 8;
+    for (std::size_t k = 0; k < twin.measures.size(); ++k) {
+      const double d = twin.measures[k].simulated.at(c).difference;
+      if (!std::isfinite(d)) continue;
+      line.add(d, static_cast<double>(k));
+      largest = std::max(largest, 1.1 * std::abs(d));
+    }
+    chart.lines.push_back(std::move(line));
+  }
+  chart.x.low = -largest, chart.x.high = largest;
+  for (const double at : {-3.0, 0.0, 3.0}) {
+    chart.marks.push_back(
+        {at, true, at == 0 ? Dash::solid : Dash::dashed, at == 0 ? "" : fmt::format("{:+.0f}", at), 0});
+  }
+  chart.height = 130 + 26 * static_cast<int>(twin.measures.size());
+  return chart;
+}
+
+Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, const std::string& unit) {
+  Chart chart{
+      .id = "twin-motion",
+      .title = "Three cycles, measured and simulated",
+      .note =
+          "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within "
+          "the errors and a scatter of its own. Shaded: stick as measured.",
+      .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
+      .height = 640};
+  std::size_t k = 0;
+  for (const DrawnMotion& motion : motions) {
+    add_over_time(motion,
+                  {{{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
+                   {{.quantity = unit == "N" ? "friction" : "mu", .unit = unit}, &DrawnMotion::friction, 1},
+                   {{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre}},
+                  kBins, stroke_for(k++), chart);
+  }
+  shade_sticks({"measured", twin.measured}, chart);
+  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(twin.measured.disc_velocity));
+  return chart;
+}
+
+Chart portrait_chart(const Twin& twin, const std::vector<DrawnMotion>& motions) {
+  Chart chart = portrait_plane("twin-portrait", "Portraits, measured and simulated", twin.measured.disc_velocity);
+  std::size_t k = 0;
+  for (const DrawnMotion& motion : motions) add_loop(motion, kBins, stroke_for(k++), chart);
+  return chart;
+}
+
+Animation animation_of(const Twin& twin, const std::vector<DrawnMotion>& motions) {
+  Animation out{.id = "twin-block",
+                .title = "The block on its disc",
+                .note = "Three cycles each, from break-away to break-away.",
+                .disc_velocity = twin.measured.disc_velocity / kMillimetre};
+  for (const DrawnMotion& motion : motions) out.blocks.push_back(animated(motion));
+  return out;
+}
+
+}  // namespace
 
 std::string render_twin(const TwinIdentification& result, const TerminalOptions& options) {
   TerminalText text(options);
-  if (const std::string warning = law_warning(result, options); !warning.empty()) text.warning(warning);
+  const std::vector<std::string> warnings = warnings_of(result, options.arguments);
+  if (warnings.size() > result.trace.warnings.size()) text.warning(warnings.front());
   add_record(result.trace, text);
   if (result.twin.reason.empty()) {
-    const ReportSection model = twin_model(result);
-    text.heading(model.title);
-    text.items(model.items);
-    const ReportTable table = twin_table(result.twin);
-    text.heading(table.caption);
-    text.table(table);
+    text.section(twin_model(result));
+    text.table(twin_table(result.twin));
     text.line(twin_note(result.twin));
   }
-  text.result(result.trace.warnings, twin_verdict(result), next_after_twin(result, options));
+  text.result(result.trace.warnings, twin_verdict(result), next_after_twin(result, options.arguments));
   return text.take();
 }
 
 std::string to_json(const TwinIdentification& result, const JsonOptions& options) {
   const Identification& trace = result.trace;
   Json json = record_json(trace, options);
-  TerminalOptions known;
-  known.arguments = options.arguments;
-  std::vector<std::string> warnings = trace.warnings;
-  if (std::string warning = law_warning(result, known); !warning.empty()) warnings.push_back(std::move(warning));
   add_members(json, "fits", fits_json(trace.fits, trace.motion), "rig",
               result.rigs.empty() ? Json(nullptr) : rig_json(result.rigs.front()), "rigs",
               list_of(result.rigs, rig_json), "twin", twin_json(result, options), "analysed", trace.analysed,
-              "warnings", warnings);
+              "warnings", warnings_of(result, options.arguments));
   return text_of(json);
+}
+
+Report report_of(const TwinIdentification& result, const ReportOptions& options) {
+  const Identification& trace = result.trace;
+  const Twin& twin = result.twin;
+  Report report = titled_report("twin", file_name(trace.path),
+                                "The measured motion beside those that law and rig predict,", twin_verdict(result));
+  report.warnings = warnings_of(result, options.arguments);
+  report.facts = facts_of(trace);
+  report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
+  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
+    const double rms = twin.rms_difference[c];
+    report.facts.emplace_back("off by, " + column_name(twin, c),
+                              std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
+  }
+  if (twin.reason.empty() && !twin.columns.empty()) {
+    ReportSection motion{"motion", "Measured and simulated motion", {}};
+    if (const std::vector<DrawnMotion> motions = motions_of(twin); !motions.empty()) {
+      motion.add(motion_chart(twin, motions, friction_unit(trace.motion)));
+      motion.add(portrait_chart(twin, motions));
+      motion.add(animation_of(twin, motions));
+    }
+    ReportSection measures{"measures", "Measures in standard errors", {differences_chart(twin), twin_table(twin)}};
+    measures.soft(twin_note(twin) + ".");
+    report.add({std::move(motion), std::move(measures), twin_model(result)});
+  }
+  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
+  report.add({{"health", "Health of the data", {health_table({&trace, 1})}},
+              run_section(command_line(words_of({"twin"}, options.arguments), {path}), {&trace, 1},
+                          next_after_twin(result, options.arguments))});
+  return report;
 }
 
 }  // namespace tribofit

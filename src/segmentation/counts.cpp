@@ -33,4 +33,17 @@ std::size_t count_of_cycles(const Segmentation& segmentation) {
                     [](const Cycle& c) { return c.stick.size() > 0 && c.slip.size() > 0; }));
 }
 
+std::vector<bool> slipping_samples(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<bool> slips(motion.size());
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    slips[i] = std::abs(motion.relative_velocity[i]) > segmentation.slip_threshold;
+  }
+  const auto mark = [&](const SampleRange& samples, bool value) {
+    for (std::size_t i = samples.begin; i < std::min(samples.end, slips.size()); ++i) slips[i] = value;
+  };
+  for (const Cycle& cycle : segmentation.cycles) mark(cycle.stick, false);
+  for (const Cycle& cycle : segmentation.cycles) mark(cycle.slip, true);
+  return slips;
+}
+
 }  // namespace tribofit

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "tribofit/segmentation/cycles.hpp"
 
 namespace tribofit {
 
-/// What is counted over the cycles of a record.
+/// What the cycles of a record come to.
 
 struct Interval {
   double lower = 0, upper = 0;
@@ -27,5 +28,8 @@ bool has_uneven_sticks(const Segmentation& segmentation);
 
 /// Cycles with a stick and a slip.
 std::size_t count_of_cycles(const Segmentation& segmentation);
+
+/// Whether each sample slips. Before the first and after the last cycle only the speed shows it.
+std::vector<bool> slipping_samples(const Motion& motion, const Segmentation& segmentation);
 
 }  // namespace tribofit

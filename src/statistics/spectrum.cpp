@@ -116,6 +116,18 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
   return spectrum;
 }
 
+Spectrum spectrum_up_to(std::span<const double> signal, double step, double top) {
+  constexpr double kSamplesPerPeriod = 4;
+  if (signal.size() < 16) return {};
+  top = std::min(top, 0.5 / step);
+  const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerPeriod * top * step)));
+  const BlockMeans reduced = block_means(signal, every, step);
+  if (reduced.mean.size() < 8) return {};
+  Spectrum out = amplitude_spectrum(reduced.mean, reduced.step);
+  out.amplitude.resize(std::min(out.amplitude.size(), static_cast<std::size_t>(top / out.bin_width) + 1));
+  return out;
+}
+
 double peak_frequency(const Spectrum& spectrum, double lowest, double highest) {
   std::size_t best = 0;
   for (std::size_t k = 1; k + 1 < spectrum.amplitude.size(); ++k) {

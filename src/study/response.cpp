@@ -47,6 +47,8 @@ Response study_response(const Machine& machine, std::size_t harmonics, const Set
     }
     out.force = out.harmonics.front().force;
   }
+  out.amplitude_at_rest = out.force / rig.stiffness;
+  out.amplitude_at_natural = out.force / (rig.damping * natural);
   constexpr std::size_t kPoints = 400;
   out.frequency = spread(0.05 * out.natural_frequency, 5 * out.natural_frequency, kPoints, true);
   for (const double f : out.frequency) {

@@ -27,6 +27,12 @@ struct EarlierComparison {
   std::string path;                    ///< of the table
   std::vector<ComparedValue> values;   ///< in the order of the table; of one value by law, the joint protocol first
   std::vector<std::string> unmatched;  ///< rows and columns of the table, and conditions of ours, without a partner
+
+  /// Earlier values beside the joint fit or a measure, and how many of them lie in our 95 % interval.
+  struct Agreement {
+    std::size_t values = 0, inside = 0;
+  };
+  Agreement agreement() const;
 };
 
 /// "9 mm, 4 rpm, 50 N, lot L": what is known of the conditions.

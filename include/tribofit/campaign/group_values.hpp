@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tribofit/campaign/pool.hpp"
@@ -28,5 +30,21 @@ ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group,
 /// Amplitude of the fundamental of v_r over the runs of a group [mm/s]; none where no run has figures.
 std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
                                             const PooledGroup& group);
+
+/// What the figures of one run show.
+struct FiguresOfRun {
+  std::string run;  ///< its name
+  RunFigures figures;
+};
+
+/// The first run of a group that has figures; nothing where none has.
+std::optional<FiguresOfRun> first_figures(const ResultReader& results, std::span<const RunResult> runs,
+                                          const PooledGroup& group);
+
+/// The laws that any group has by the joint protocol, in the order in which they are met.
+std::vector<std::string> joint_laws(std::span<const PooledGroup> groups);
+
+/// Law and protocol of each estimate of the levels mu_s and mu_k; per-cycle extremes give the same whatever the law.
+std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups);
 
 }  // namespace tribofit

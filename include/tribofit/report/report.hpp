@@ -42,7 +42,8 @@ struct ReportTable {
   std::string caption;
   std::vector<ReportColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
-  bool folded = false;  ///< opened by a click; a terminal leaves it out
+  bool folded = false;    ///< opened by a click; a terminal leaves it out
+  std::string file = {};  ///< that has all rows, where only the first are shown
 
  private:
   ReportTable& add(std::initializer_list<std::string> names, bool number, int detail) {
@@ -68,6 +69,16 @@ using ReportItem = std::variant<ReportText, ReportTable, Chart, Animation>;
 struct ReportSection {
   std::string id = {}, title = {};
   std::vector<ReportItem> items = {};
+
+  /// Adds an item; tables without rows and charts that show nothing are left out.
+  void add(ReportItem item);
+  void add(std::vector<Chart> charts);
+  void plain(std::string text) { add(ReportText{std::move(text), ReportText::Kind::plain}); }
+  void soft(std::string text) { add(ReportText{std::move(text), ReportText::Kind::soft}); }
+  void warning(std::string text) { add(ReportText{std::move(text), ReportText::Kind::warning}); }
+  void command(std::string text) { add(ReportText{std::move(text), ReportText::Kind::command}); }
+  void heading(std::string text) { add(ReportText{std::move(text), ReportText::Kind::heading}); }
+  void item(std::string text) { add(ReportText{std::move(text), ReportText::Kind::item}); }
 };
 
 struct Report {
@@ -77,6 +88,9 @@ struct Report {
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> facts = {};
   std::vector<ReportSection> sections = {};
+
+  /// Adds those that hold anything.
+  void add(std::vector<ReportSection> more);
 };
 
 struct ReportOptions {

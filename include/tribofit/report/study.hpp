@@ -53,10 +53,4 @@ void write_study(const std::string& folder, const std::vector<Portrait>& study);
 void write_study(const std::string& folder, const Response& study);
 void write_study(const std::string& folder, const std::vector<Sensitivity>& study);
 
-/// One cell a line: x, y, regime, measures; to the last digit.
-std::string map_csv_header(const MapRequest& request);
-std::string map_csv_row(const MapRequest& request, std::size_t row, const std::vector<MapCell>& cells);
-/// The cells of a row as map_csv_row() wrote it; nothing where the text is not that row of this map.
-std::vector<MapCell> map_row_from_csv(const MapRequest& request, std::size_t row, const std::string& text);
-
 }  // namespace tribofit

@@ -55,15 +55,13 @@ std::string render_laws(std::span<const Law> laws, const TerminalOptions& option
 /// The catalogue of effects: key and statement, one a line.
 std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options = {});
 
-/// One effect in full: equation, source, parameters with units and bounds, channels, best experiment.
-std::string render_effect(const EffectInfo& effect, const TerminalOptions& options = {});
+/// One effect in full: equation, source, parameters with units and bounds, channels, best experiment, and its picture
+/// where there is a fingerprint.
+std::string render_effect(const EffectInfo& effect, const TerminalOptions& options = {},
+                          const Fingerprint* fingerprint = nullptr);
 
 /// A fingerprint as a picture of characters, at most 80 columns and 20 lines, with its axes in the units people read.
 std::string render_fingerprint(const Fingerprint& fingerprint, const TerminalOptions& options = {});
-
-/// One effect in full, with its picture.
-std::string render_effect(const EffectInfo& effect, const Fingerprint& fingerprint,
-                          const TerminalOptions& options = {});
 
 /// `argument` as a POSIX shell needs it to read the same word back.
 std::string shell_quoted(const std::string& argument);

@@ -21,6 +21,10 @@ struct CriticalSpeed {
   /// Nothing sticks in the range (as far as 60 speeds in it show), or something still does at the highest.
   bool below_range = false, above_range = false;
   bool stable_at_highest = false;  ///< steady sliding at the highest speed
+
+  /// Between stick_returns and stick_vanishes it depends on the past which motion is seen; closer than 0.1 % they are
+  /// one.
+  bool is_bistable() const { return stick_vanishes > 1.001 * stick_returns; }
 };
 
 struct CriticalSpeedOptions {

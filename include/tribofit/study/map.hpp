@@ -62,6 +62,13 @@ struct MapExtreme {
 };
 std::optional<MapExtreme> extreme_of(const MapRequest& request, const MapRows& rows, std::size_t measure, bool largest);
 
+/// The map as CSV, so that one that was interrupted goes on: one cell a line, x, y, regime, measures; to the last
+/// digit.
+std::string map_csv_header(const MapRequest& request);
+std::string map_csv_row(const MapRequest& request, std::size_t row, const std::vector<MapCell>& cells);
+/// The cells of a row as map_csv_row() wrote it; nothing where the text is not that row of this map.
+std::vector<MapCell> map_row_from_csv(const MapRequest& request, std::size_t row, const std::string& text);
+
 /// Cells in that regime.
 std::size_t count_of(const MapRows& rows, Regime regime);
 

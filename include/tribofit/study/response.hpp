@@ -21,6 +21,8 @@ struct Response {
   double force = 0;                     ///< F of the curve: amplitude of the fundamental of the friction force [N]
   std::vector<double> frequency;        ///< of the curve [Hz]
   std::vector<double> amplitude;        ///< A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) [C] [m]
+  double amplitude_at_rest = 0;         ///< A(0) [m]
+  double amplitude_at_natural = 0;      ///< A(sqrt(k/m)) [m]
   Settled settled;
   std::vector<ResponseLine> harmonics;  ///< fundamental first; empty where nothing vibrates
 };

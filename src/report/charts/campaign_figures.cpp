@@ -1,57 +1,72 @@
+#include "campaign_figures.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <filesystem>
 
-#include "campaign_parts.hpp"
+#include "report/charts/styles.hpp"
+#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
+#include "tribofit/campaign/group_values.hpp"
+#include "tribofit/campaign/over_conditions.hpp"
 
 namespace tribofit {
 namespace {
 
 using Maybe = std::optional<ResultMeasure>;
 
-/// The first run of a group that has figures.
-std::optional<RunFigures> figures_of_group(const DrawnCampaign& of, std::size_t group, std::string* run = nullptr) {
-  for (const std::size_t k : of.groups()[group].runs) {
-    auto figures = of.results.figures(of.runs[k].position);
-    if (!figures) continue;
-    if (run != nullptr) *run = of.runs[k].run.name;
-    return figures;
-  }
-  return std::nullopt;
-}
-
 Maybe mean_of(const PooledValue* value) {
   if (value == nullptr) return std::nullopt;
   return ResultMeasure{value->mean, value->standard_error_of_mean};
 }
 
-/// A chart over the conditions: a line of means with their standard errors for each add().
+/// A chart over the conditions, panel by panel: lines of means with their standard errors, a line for each series of
+/// conditions, and earlier values beside them.
 class MeansChart {
  public:
   MeansChart(const DrawnCampaign& of, const OverConditions& over, std::string id, std::string title)
       : of_(of), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
     chart_.note = "Means over repeats; bars: one standard error.";
-    chart_.x = axis_over(over);
+    chart_.x = {.quantity = over.quantity(), .unit = over.unit(), .names = over.names()};
     chart_.panels.clear();
   }
-  /// What add() draws from now on stands in a panel of its own.
+  /// What is added from now on stands in a panel of its own.
   MeansChart& panel(std::string quantity, std::string unit) {
     chart_.panels.push_back({.axis = {.quantity = std::move(quantity), .unit = std::move(unit)}});
     return *this;
   }
+  /// value: of a group, nothing where there is none.
   template <class Value>
   MeansChart& add(const std::string& name, std::size_t kind, Value value) {
-    add_over_conditions(over_, name, marked(kind), chart_.panels.size() - 1, value, chart_);
+    const bool alone = over_.series().size() == 1;
+    std::size_t k = 0;
+    for (const OverConditions::Series& series : over_.series()) {
+      ChartLine line = line_of(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
+      if (!alone) line.stroke.dash = stroke_of(k++).dash;
+      for (std::size_t i = 0; i < series.groups.size(); ++i) {
+        const Maybe measure = value(series.groups[i]);
+        if (measure && std::isfinite(measure->value)) line.add(series.x[i], measure->value, measure->std_error);
+      }
+      if (!line.x.empty()) chart_.lines.push_back(std::move(line));
+    }
     return *this;
   }
   MeansChart& measure(const std::string& name, const char* measure) {
-    return add(name, 0, [&](std::size_t g) { return mean_of(pooled_value(of_.groups()[g].measures, measure)); });
+    return add(name, 0, [&](std::size_t g) { return mean_of(pooled_value(of_.groups[g].measures, measure)); });
   }
+  /// The earlier values of that name, one for each of the conditions.
   MeansChart& earlier(const std::string& name) {
-    add_earlier(of_, over_, name, chart_.panels.size() - 1, chart_);
+    if (of_.earlier == nullptr) return *this;
+    ChartLine line = line_of(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
+    std::vector<bool> met(of_.groups.size(), false);
+    for (const ComparedValue& v : of_.earlier->values) {
+      if (v.earlier.name != name || met[v.group]) continue;
+      met[v.group] = true;
+      line.add(over_.x_of(v.group), v.earlier.value, v.earlier.std_error);
+    }
+    if (!line.x.empty()) chart_.lines.push_back(std::move(line));
     return *this;
   }
   Chart chart(int height, const std::string& note = "") const {
@@ -62,34 +77,25 @@ class MeansChart {
   }
 
  private:
+  ChartLine line_of(std::string name, const Stroke& stroke) const {
+    return {.name = std::move(name), .stroke = stroke, .bars = true, .panel = chart_.panels.size() - 1};
+  }
+
   const DrawnCampaign& of_;
   const OverConditions& over_;
   Chart chart_;
 };
 
-/// Law and protocol of every line of levels; per-cycle extremes give the same levels whatever the law.
-std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
-  std::vector<std::pair<std::string, std::string>> kinds;
-  for (const PooledGroup& group : groups) {
-    for (const PooledGroup::OfFit& fit : group.fits) {
-      const bool published = fit.protocol == "published";
-      const auto same = [&](const auto& k) { return k.second == fit.protocol && (published || k.first == fit.law); };
-      if (std::none_of(kinds.begin(), kinds.end(), same)) kinds.emplace_back(fit.law, fit.protocol);
-    }
-  }
-  return kinds;
-}
-
 /// Fig 9 of [D]: both protocols, as the joint one has neither bias.
 Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
   MeansChart chart(of, over, "fig09-static-kinetic", "Static and kinetic friction and their difference");
-  const auto kinds = kinds_of_levels(of.groups());
+  const auto kinds = kinds_of_levels(of.groups);
   const auto add_kinds = [&](auto value) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const auto& [law, protocol] = kinds[k];
       chart.add(protocol == "published" ? "per-cycle extremes" : law + " law", k, [&](std::size_t g) {
-        const PooledGroup::OfFit* fit = fit_of(of.groups()[g], law, protocol);
-        return fit == nullptr ? Maybe{} : value(of.groups()[g], *fit);
+        const PooledGroup::OfFit* fit = fit_of(of.groups[g], law, protocol);
+        return fit == nullptr ? Maybe{} : value(of.groups[g], *fit);
       });
     }
   };
@@ -111,7 +117,7 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
 Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over) {
   MeansChart chart(of, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::pair<std::string, std::string>> drawn;  // law and name
-  for (const PooledGroup& group : of.groups()) {
+  for (const PooledGroup& group : of.groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& v : fit.parameters) {
         const bool is_level = v.name == "mu_s" || v.name == "mu_k",
@@ -120,7 +126,7 @@ Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over
         drawn.emplace_back(fit.law, v.name);
         const auto value_by = [&](const char* protocol) {
           return [&, protocol](std::size_t g) {
-            const PooledGroup::OfFit* own = fit_of(of.groups()[g], fit.law, protocol);
+            const PooledGroup::OfFit* own = fit_of(of.groups[g], fit.law, protocol);
             return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, v.name));
           };
         };
@@ -129,32 +135,27 @@ Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over
       }
     }
   }
-  std::string note = " From top to bottom: ";
-  for (const auto& [law, name] : drawn)
-    note += (&law == &drawn.front().first ? "" : ", ") + name + " of the " + law + " law";
-  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())), note + ".");
+  std::vector<std::string> names;
+  for (const auto& [law, name] : drawn) names.push_back(fmt::format("{} of the {} law", name, law));
+  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())),
+                     fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
 }
 
 /// A chart with a panel for each of the groups shown.
 template <class AddLine>
 Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std::string& title, const ChartAxis& x,
                        const ChartAxis& y, AddLine&& add) {
-  Chart chart;
-  chart.id = id;
-  chart.title = title;
-  chart.x = x;
-  chart.panels.clear();
+  Chart chart{.id = id, .title = title, .x = x, .panels = {}};
   for (const std::size_t g : of.shown) {
-    std::string run;
-    const auto figures = figures_of_group(of, g, &run);
-    if (!figures) continue;
+    const auto drawn = first_figures(of.results, of.runs, of.groups[g]);
+    if (!drawn) continue;
     ChartLine line{of.name_of(g), {}, {}, stroke_of(chart.panels.size())};
     line.stroke.dash = Dash::solid;  // each has a panel of its own
-    add(*figures, line);
+    add(drawn->figures, line);
     if (line.x.empty()) continue;
     line.panel = chart.panels.size();
     chart.panels.push_back({.axis = y});
-    chart.note += (chart.note.empty() ? "From top to bottom: " : "; ") + of.name_of(g) + " (" + run + ")";
+    chart.note += (chart.note.empty() ? "From top to bottom: " : "; ") + of.name_of(g) + " (" + drawn->run + ")";
     chart.lines.push_back(std::move(line));
   }
   if (!chart.note.empty()) chart.note += ".";
@@ -182,36 +183,35 @@ Chart spectrum_chart(const DrawnCampaign& of) {
                           });
 }
 
-/// Over v_r in bins of a run, a line a fit; those of the per-cycle extremes are switched off at first.
-template <class Value>
-void add_fits(const RunFigures& f, bool with_symbols, Value value, Chart& chart) {
+/// A chart of values in bins of v_r, a line a fit; those of the per-cycle extremes are switched off at first.
+template <class Values>
+void add_over_bins(const RunFigures& f, bool with_symbols, Values values, Chart& chart) {
   chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
   chart.half = true;
-  std::size_t k = 1;
-  for (const ErrorCurve& curve : f.errors) {
+  std::vector<double> middles;
+  for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
+    middles.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
+  }
+  for (ChartLine& line : chart.lines) line.x = middles;
+  for (std::size_t k = 0; k < f.errors.size(); ++k) {
+    const ErrorCurve& curve = f.errors[k];
     const bool published = curve.protocol == "published";
-    ChartLine line{.name = curve.law + (published ? ", per-cycle extremes" : ""),
-                   .stroke = with_symbols ? marked(k) : stroke_of(k),
-                   .shown = !published};
-    line.stroke.size = 4;
-    for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
-      line.add((static_cast<double>(b) + 0.5) * f.bin_width, value(curve, b));
-    }
-    chart.lines.push_back(std::move(line));
-    ++k;
+    Stroke stroke = with_symbols ? marked(k + 1) : stroke_of(k + 1);
+    stroke.size = 4;
+    chart.lines.push_back({.name = curve.law + (published ? ", per-cycle extremes" : ""),
+                           .x = middles,
+                           .y = values(curve),
+                           .stroke = stroke,
+                           .shown = !published});
   }
 }
 
 /// Measured and fitted friction of a run over v_r (Fig 10 and 11 of [D]).
 Chart friction_chart(const RunFigures& f, const std::string& unit) {
-  Chart chart{.panels = {{.axis = {.quantity = "mu", .unit = unit}}}};
-  ChartLine measured{.name = "measured", .y = f.bin_friction, .stroke = dots(Colour::black, Symbol::circle)};
-  for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
-    measured.x.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
-  }
-  chart.lines.push_back(std::move(measured));
-  add_fits(
-      f, false, [](const ErrorCurve& curve, std::size_t b) { return curve.fitted[b]; }, chart);
+  Chart chart{.panels = {{.axis = {.quantity = "mu", .unit = unit}}},
+              .lines = {{.name = "measured", .y = f.bin_friction, .stroke = dots(Colour::black, Symbol::circle)}}};
+  add_over_bins(
+      f, false, [](const ErrorCurve& curve) { return curve.fitted; }, chart);
   return chart;
 }
 
@@ -220,72 +220,119 @@ Chart error_chart(const RunFigures& f) {
   Chart chart{.note = "Of the mean friction of each bin.",
               .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
               .marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]", 0}}};
-  const auto error = [&](const ErrorCurve& curve, std::size_t b) {
-    return std::abs((f.bin_friction[b] - curve.fitted[b]) / f.bin_friction[b]);
+  const auto error = [&](const ErrorCurve& curve) {
+    std::vector<double> errors;
+    for (std::size_t b = 0; b < f.bin_friction.size(); ++b) {
+      errors.push_back(std::abs((f.bin_friction[b] - curve.fitted[b]) / f.bin_friction[b]));
+    }
+    return errors;
   };
-  add_fits(f, true, error, chart);
+  add_over_bins(f, true, error, chart);
   return chart;
-}
-
-void add_drawn(Chart chart, ReportSection& section) {
-  if (!chart.lines.empty()) section.items.emplace_back(std::move(chart));
 }
 
 }  // namespace
 
+DrawnCampaign::DrawnCampaign(const ResultReader& all_results, std::span<const RunResult> all_runs, const Pooled& pooled,
+                             const std::optional<ComparisonReport>& comparison)
+    : results(all_results), runs(all_runs), groups(pooled.groups), earlier(comparison ? &comparison->values : nullptr) {
+  constexpr std::size_t kShownGroups = 6;
+  std::vector<std::size_t> order;  // as the charts over the conditions have them
+  const OverConditions over(groups);
+  for (const OverConditions::Series& series : over.series()) {
+    order.insert(order.end(), series.groups.begin(), series.groups.end());
+  }
+  for (const std::size_t k : thinned(order.size(), kShownGroups)) shown.push_back(order[k]);
+}
+
+std::string DrawnCampaign::name_of(std::size_t group) const {
+  return conditions_text(groups[group].conditions, groups[group].others);
+}
+
+std::string DrawnCampaign::earlier_name() const {
+  return earlier == nullptr ? "" : std::filesystem::path(earlier->path).filename().string();
+}
+
 ReportSection motion_figures(const DrawnCampaign& of) {
   ReportSection section{"motion", "Motion and friction under each of the conditions", {}};
-  const OverConditions over(of.groups());
-  add_drawn(MeansChart(of, over, "fig05-rms-velocity", "RMS velocity of the block")
-                .panel("RMS of v_{b}", "mm/s")
-                .measure("RMS of v_b", "rms_velocity")
-                .chart(340),
-            section);
-  add_drawn(cycles_chart(of, "fig06-velocity", "Relative velocity over three cycles",
-                         {.quantity = "v_{r}", .unit = "mm/s"}, &RunFigures::velocity),
-            section);
-  add_drawn(spectrum_chart(of), section);
+  const OverConditions over(of.groups);
+  section.add(MeansChart(of, over, "fig05-rms-velocity", "RMS velocity of the block")
+                  .panel("RMS of v_{b}", "mm/s")
+                  .measure("RMS of v_b", "rms_velocity")
+                  .chart(340));
+  section.add(cycles_chart(of, "fig06-velocity", "Relative velocity over three cycles",
+                           {.quantity = "v_{r}", .unit = "mm/s"}, &RunFigures::velocity));
+  section.add(spectrum_chart(of));
   const std::string own = "this campaign";
-  add_drawn(MeansChart(of, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
-                .panel("frequency", "Hz")
-                .measure(own, "frequency")
-                .earlier("frequency")
-                .panel("fundamental", "mm/s")
-                .add(own, 0, [&](std::size_t g) { return fundamental_of(of.results, of.runs, of.groups()[g]); })
-                .panel("peak of v_{r}", "mm/s")
-                .measure(own, "amplitude")
-                .earlier("amplitude")
-                .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."),
-            section);
-  add_drawn(cycles_chart(of, "fig08-friction", "Friction over three cycles",
-                         {.quantity = "mu", .unit = of.friction_unit()}, &RunFigures::friction),
-            section);
-  add_drawn(levels_chart(of, over), section);
-  add_drawn(other_parameters_chart(of, over), section);
+  section.add(MeansChart(of, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
+                  .panel("frequency", "Hz")
+                  .measure(own, "frequency")
+                  .earlier("frequency")
+                  .panel("fundamental", "mm/s")
+                  .add(own, 0, [&](std::size_t g) { return fundamental_of(of.results, of.runs, of.groups[g]); })
+                  .panel("peak of v_{r}", "mm/s")
+                  .measure(own, "amplitude")
+                  .earlier("amplitude")
+                  .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."));
+  section.add(cycles_chart(of, "fig08-friction", "Friction over three cycles",
+                           {.quantity = "mu", .unit = of.friction_unit()}, &RunFigures::friction));
+  section.add(levels_chart(of, over));
+  section.add(other_parameters_chart(of, over));
   return section;
 }
 
 ReportSection law_figures(const DrawnCampaign& of) {
   ReportSection section{"laws", "Measured and fitted friction, and the relative error", {}};
-  if (of.shown.size() < of.groups().size()) {
-    section.items.emplace_back(ReportText{
-        fmt::format("Runs of {} of {} conditions are drawn; the tables have all.", of.shown.size(), of.groups().size()),
-        ReportText::Kind::soft});
+  if (of.shown.size() < of.groups.size()) {
+    section.soft(
+        fmt::format("Runs of {} of {} conditions are drawn; the tables have all.", of.shown.size(), of.groups.size()));
   }
   for (std::size_t k = 0; k < of.shown.size(); ++k) {
-    std::string run;
-    const auto figures = figures_of_group(of, of.shown[k], &run);
-    if (!figures || figures->errors.empty()) continue;
-    Chart friction = friction_chart(*figures, of.friction_unit()), error = error_chart(*figures);
+    const auto drawn = first_figures(of.results, of.runs, of.groups[of.shown[k]]);
+    if (!drawn || drawn->figures.errors.empty()) continue;
+    Chart friction = friction_chart(drawn->figures, of.friction_unit()), error = error_chart(drawn->figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
     friction.title = "Friction over velocity, " + of.name_of(of.shown[k]);
-    friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + run + ", and what the laws say there.";
+    friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + drawn->run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
     error.title = "Relative error (Eq 5), " + of.name_of(of.shown[k]);
-    section.items.emplace_back(std::move(friction));
-    section.items.emplace_back(std::move(error));
+    section.add(std::move(friction));
+    section.add(std::move(error));
   }
   return section;
+}
+
+Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
+  constexpr std::size_t kMostPoints = 300;
+  Chart chart{
+      .id = "scatter-" + law,
+      .title = "The parameters of each run, " + law + " law",
+      .note =
+          "Joint protocol; bars: 95 % of the run's own error. Repeats that lie further apart differ from run to run.",
+      .x = {.quantity = "run", .digits = 7},
+      .panels = {}};
+  for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
+    std::string name, unit;
+    for (std::size_t k = 0; k < of.shown.size(); ++k) {
+      ChartLine line{.name = of.name_of(of.shown[k]), .stroke = marked(k, false), .bars = true, .panel = p};
+      const std::vector<std::size_t>& runs = of.groups[of.shown[k]].runs;
+      for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
+        const RunResult& run = of.runs[runs[i]];
+        const ResultFit* fit = run.fit(law, "joint");
+        if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;
+        const ResultParameter& value = fit->parameters[p];
+        name = value.name, unit = value.unit;
+        line.add(static_cast<double>(run.position + 1), value.value, 0);
+        if (!std::isfinite(value.lower95) || !std::isfinite(value.upper95)) continue;
+        line.low.back() = value.lower95;
+        line.high.back() = value.upper95;
+      }
+      if (!line.x.empty()) chart.lines.push_back(std::move(line));
+    }
+    if (!name.empty()) chart.panels.push_back({.axis = {.quantity = with_subscript(name), .unit = unit}});
+  }
+  chart.height = 110 + 130 * static_cast<int>(chart.panels.size());
+  return chart;
 }
 
 }  // namespace tribofit

@@ -8,11 +8,10 @@
 #include "fit/assessment.hpp"
 #include "report/charts/styles.hpp"
 #include "report/charts/trace_charts.hpp"
-#include "report/drawing.hpp"
+#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"
-#include "tribofit/segmentation/slip_branches.hpp"
 #include "tribofit/statistics/bins.hpp"
 
 namespace tribofit {
@@ -35,14 +34,12 @@ double speed_at(const Identification& trace, std::size_t i) {
 
 /// Bands of value(sample, direction) over speed, one for each branch that there is.
 template <class Value>
-std::vector<std::pair<Branch, CycleBand>> bands_over_speed(const Identification& trace,
-                                                           const std::vector<SlipBranch>& pieces, double fastest,
-                                                           Value value) {
-  std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, fastest, kSpeedBins));
-  for (const SlipBranch& piece : pieces) {
+std::vector<std::pair<Branch, CycleBand>> bands_over_speed(const DrawnTrace& d, Value value) {
+  std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, d.fastest, kSpeedBins));
+  for (const SlipBranch& piece : d.pieces) {
     BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
     for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i)
-      band.add(speed_at(trace, i), value(i, piece.direction));
+      band.add(speed_at(d.trace, i), value(i, piece.direction));
     band.end_cycle();
   }
   std::vector<std::pair<Branch, CycleBand>> out;
@@ -57,20 +54,14 @@ ChartLine band_line(std::string name, const CycleBand& band, Stroke stroke) {
   return {std::move(name), band.at, band.middle, stroke, band.low, band.high};
 }
 
-/// What residuals are measured in: the noise floor, or what they are themselves where none is known.
-double unit_of(const Fit& fit) {
-  if (fit.floor.rmse > 0) return fit.floor.rmse;
-  return fit.error.rmse > 0 ? fit.error.rmse : 1;
-}
-
 /// Residuals of each model on both branches, switched with the line of their model.
-void add_residuals(const DrawnTrace& d, const std::vector<SlipBranch>& pieces, double fastest, Chart& chart) {
+void add_residuals(const DrawnTrace& d, Chart& chart) {
   const std::vector<double>& friction = d.trace.motion.friction;
   for (std::size_t m = 0; m < d.models.size(); ++m) {
     const std::vector<double>& prediction = d.predictions[m];
-    const double unit = unit_of(*d.models[m].fit);
+    const double unit = residual_unit(*d.models[m].fit);
     const auto residual = [&](std::size_t i, int sign) { return sign * (friction[i] - prediction[i]) / unit; };
-    for (auto& [branch, band] : bands_over_speed(d.trace, pieces, fastest, residual)) {
+    for (auto& [branch, band] : bands_over_speed(d, residual)) {
       Stroke stroke = kBranches[static_cast<std::size_t>(branch)].stroke;
       stroke.width = 1.3;
       if (m > 0) {  // one band is enough to look at
@@ -106,10 +97,9 @@ void add_curves(const DrawnTrace& d, Chart& chart) {
     const bool is_beside = beside != d.models.end();
     const Curve curve = curve_of(*drawn.fit, kCurvePoints);
     ChartLine line{
-        drawn.name,    curve.velocity,
+        drawn.name,    in_unit(curve.velocity, kMillimetre),
         curve.mu,      is_beside ? model_stroke(static_cast<std::size_t>(beside - d.models.begin())) : kPublished,
         curve.lower95, curve.upper95};
-    for (double& v : line.x) v /= kMillimetre;
     line.shown = is_beside;
     chart.lines.push_back(std::move(line));
   }
@@ -128,32 +118,6 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
   chart.x.high = right;
   chart.stretches.push_back({fastest, 1.3 * fastest, Shade::beyond});
   if (slowest > 0 && slowest < fastest) chart.stretches.push_back({-fastest, slowest, Shade::beyond});
-}
-
-Chart law_chart(const DrawnTrace& d, const std::vector<SlipBranch>& pieces, double fastest) {
-  Chart chart{.id = d.id + "-law",
-              .title = "Friction over relative velocity",
-              .note =
-                  "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what "
-                  "each law leaves, in units of the noise floor. Laws are those of steady sliding at the start of "
-                  "the record, over a turn of the disc.",
-              .x = {"relative velocity |v_{r}|", "mm/s"},
-              .panels = {{friction_axis(d.trace.motion), 1.35}},
-              .height = 560};
-  const std::vector<double>& friction = d.trace.motion.friction;
-  for (const auto& [branch, band] :
-       bands_over_speed(d.trace, pieces, fastest, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
-    const BranchStyle& style = kBranches[static_cast<std::size_t>(branch)];
-    chart.lines.push_back(band_line("measured, " + std::string(style.name), band, style.stroke));
-  }
-  add_break_aways(d, chart);
-  add_curves(d, chart);
-  shade_beyond(d, chart);
-  if (d.models.empty()) return chart;
-  chart.panels.push_back({{"residual / floor", "1"}});
-  add_residuals(d, pieces, fastest, chart);
-  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
-  return chart;
 }
 
 /// Relative error ([D] Eq 5): the mean of each bin as a line, its largest as points.
@@ -186,10 +150,8 @@ void add_errors(const std::string& name, std::size_t k, const BinExtremes& error
 /// Mean residual in units of the noise floor.
 HeatMap map_of(const DrawnTrace& d, std::size_t model) {
   ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
-  const double floor = unit_of(*d.models[model].fit), most = std::max(1.0, map.usual / floor);
-  for (std::vector<double>& row : map.mean) {
-    for (double& residual : row) residual /= floor;
-  }
+  const double floor = residual_unit(*d.models[model].fit), most = std::max(1.0, map.usual / floor);
+  for (std::vector<double>& row : map.mean) row = in_unit(row, floor);
   return {map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
 }
 
@@ -208,24 +170,41 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
 
 }  // namespace
 
-std::vector<Chart> law_charts(const DrawnTrace& d) {
-  const std::vector<SlipBranch> pieces = slip_branches(d.trace.motion, d.trace.segmentation);
-  const double fastest = fastest_of(d.trace.motion, pieces) / kMillimetre;
-  if (!(fastest > 0)) return {};
-  return {law_chart(d, pieces, fastest)};
+Chart law_chart(const DrawnTrace& d) {
+  if (!(d.fastest > 0)) return {};
+  Chart chart{.id = d.id + "-law",
+              .title = "Friction over relative velocity",
+              .note =
+                  "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what "
+                  "each law leaves, in units of the noise floor. Laws are those of steady sliding at the start of "
+                  "the record, over a turn of the disc.",
+              .x = {"relative velocity |v_{r}|", "mm/s"},
+              .panels = {{friction_axis(d.trace.motion), 1.35}},
+              .height = 560};
+  const std::vector<double>& friction = d.trace.motion.friction;
+  for (const auto& [branch, band] : bands_over_speed(d, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
+    const BranchStyle& style = kBranches[static_cast<std::size_t>(branch)];
+    chart.lines.push_back(band_line("measured, " + std::string(style.name), band, style.stroke));
+  }
+  add_break_aways(d, chart);
+  add_curves(d, chart);
+  shade_beyond(d, chart);
+  if (d.models.empty()) return chart;
+  chart.panels.push_back({{"residual / floor", "1"}});
+  add_residuals(d, chart);
+  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
+  return chart;
 }
 
 std::vector<Chart> error_charts(const DrawnTrace& d) {
-  const std::vector<SlipBranch> pieces = slip_branches(d.trace.motion, d.trace.segmentation);
-  const double fastest = fastest_of(d.trace.motion, pieces) / kMillimetre;
-  if (!(fastest > 0) || d.models.empty()) return {};
+  if (!(d.fastest > 0) || d.models.empty()) return {};
   const Motion& m = d.trace.motion;
   std::vector<Chart> charts = {
       error_chart(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"}),
       error_chart(d, "error-time", "Relative error over time", {"time", "s"})};
   for (std::size_t k = 0; k < d.models.size(); ++k) {
-    ExtremesInBins speed(0, fastest, kErrorBins), time(m.time.front(), m.time.back(), kTimeBins);
-    for (const SlipBranch& piece : pieces) {
+    ExtremesInBins speed(0, d.fastest, kErrorBins), time(m.time.front(), m.time.back(), kTimeBins);
+    for (const SlipBranch& piece : d.pieces) {
       for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
         const double error = std::abs((m.friction[i] - d.predictions[k][i]) / m.friction[i]);
         speed.add(speed_at(d.trace, i), error);
@@ -245,7 +224,7 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
   std::vector<Chart> charts;
   for (const FitParameter& p : fit.parameters) {
     if (p.profile.empty()) continue;
-    const std::string name = p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
+    const std::string name = full_name(p);
     Chart chart{
         .id = id + "-profile-" + name,
         .title = "Profile likelihood of " + name,

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <set>
 
-#include "report/drawing.hpp"
+#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
 
 namespace tribofit {

@@ -1,16 +1,34 @@
 #include "report/charts/report_json.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
 #include <string_view>
-#include <utility>
 
 #include "report/charts/styles.hpp"
-#include "report/page_series.hpp"
 
 namespace tribofit {
 namespace {
 
+constexpr int kDigits = 5;  // of what is drawn: finer than any screen
+
 constexpr std::array<std::string_view, 6> kTexts = {"plain", "soft", "warning", "command", "heading", "item"};
+
+/// A number with no more digits than are drawn, so that a page stays small; null for what is not known.
+Json rounded(double value, int digits = kDigits) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 40> text = {};
+  const auto end = fmt::format_to_n(text.data(), text.size(), "{:.{}g}", value, digits).out;
+  std::from_chars(text.data(), end, value);
+  return value;
+}
+
+Json numbers_json(std::span<const double> values, int digits = kDigits) {
+  return list_of(values, [&](double value) { return rounded(value, digits); });
+}
 
 std::string rgba(const Paint& paint) {
   const auto part = [&](std::size_t at) { return std::stoi(std::string(paint.colour.substr(at, 2)), nullptr, 16); };
@@ -50,14 +68,23 @@ Json styles_json() {
   return json;
 }
 
+/// Adds what differs from its default: no false, no zero, no empty text or list, no number that is not known.
+template <class Value, class... More>
+void add_given(Json& json, const char* name, const Value& value, const More&... more) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    if (std::isfinite(value)) json[name] = value;
+  } else if constexpr (std::is_integral_v<Value>) {
+    if (value != 0) json[name] = value;
+  } else {
+    if (!value.empty()) json[name] = value;
+  }
+  if constexpr (sizeof...(more) > 0) add_given(json, more...);
+}
+
 Json axis_json(const ChartAxis& axis) {
   Json json = {{"quantity", axis.quantity}, {"unit", axis.unit}};
-  if (std::isfinite(axis.low)) json["low"] = axis.low;
-  if (std::isfinite(axis.high)) json["high"] = axis.high;
-  if (axis.from_zero) json["from_zero"] = true;
-  if (axis.logarithmic) json["logarithmic"] = true;
-  if (axis.falling) json["falling"] = true;
-  if (!axis.names.empty()) json["names"] = axis.names;
+  add_given(json, "low", axis.low, "high", axis.high, "from_zero", axis.from_zero, "logarithmic", axis.logarithmic,
+            "falling", axis.falling, "names", axis.names);
   return json;
 }
 
@@ -68,130 +95,119 @@ Json line_json(const ChartLine& line, int digits_of_x) {
                {"colour", style_of(stroke.colour, kColours).name},
                {"dash", style_of(stroke.dash, kDashes).name},
                {"width", stroke.width}};
-  if (!line.y.empty()) json["y"] = numbers_json(line.y);
+  add_given(json, "y", numbers_json(line.y), "low", numbers_json(line.low), "high", numbers_json(line.high), "bars",
+            line.bars, "panel", line.panel);
   if (stroke.symbol != Symbol::none) {
     json["symbol"] = style_of(stroke.symbol, kSymbols).name;
     json["size"] = stroke.size;
   }
   if (!stroke.joined) json["joined"] = false;
-  if (!line.low.empty()) {
-    json["low"] = numbers_json(line.low);
-    json["high"] = numbers_json(line.high);
-  }
-  if (line.bars) json["bars"] = true;
   if (!line.listed) json["listed"] = false;
   if (!line.shown) json["shown"] = false;
-  if (line.panel > 0) json["panel"] = line.panel;
   return json;
 }
 
 Json map_json(const HeatMap& map, const ChartAxis& x) {
-  Json z = Json::array();
-  for (const std::vector<double>& row : map.z) z.push_back(numbers_json(row, 4));
   Json json = {{"x", numbers_json(map.x, x.digits)},
                {"y", numbers_json(map.y)},
-               {"z", std::move(z)},
+               {"z", list_of(map.z, [](const std::vector<double>& row) { return numbers_json(row, 4); })},
                {"quantity", map.quantity},
                {"unit", map.unit}};
-  if (std::isfinite(map.low)) json["low"] = map.low;
-  if (std::isfinite(map.high)) json["high"] = map.high;
+  add_given(json, "low", map.low, "high", map.high);
   return json;
 }
 
 void add_annotations(const Chart& chart, Json& json) {
   const int digits = chart.x.digits;
-  for (const Stretch& s : chart.stretches) {
-    json["stretches"].push_back(
-        {{"from", rounded(s.from, digits)}, {"to", rounded(s.to, digits)}, {"shade", style_of(s.shade, kShades).name}});
-  }
-  for (const ChartMark& mark : chart.marks) {
-    Json one = {{"at", rounded(mark.at, kTimeDigits)}, {"dash", style_of(mark.dash, kDashes).name}};
-    if (mark.upright) one["upright"] = true;
-    if (!mark.text.empty()) one["text"] = mark.text;
-    if (mark.panel > 0) one["panel"] = mark.panel;
-    json["marks"].push_back(std::move(one));
-  }
-  for (const ChartLabel& label : chart.labels) {
-    Json one = {{"x", rounded(label.x, digits)}, {"y", rounded(label.y)}, {"text", label.text}};
-    if (label.panel > 0) one["panel"] = label.panel;
-    json["labels"].push_back(std::move(one));
-  }
+  const auto stretch = [&](const Stretch& s) {
+    return Json{
+        {"from", rounded(s.from, digits)}, {"to", rounded(s.to, digits)}, {"shade", style_of(s.shade, kShades).name}};
+  };
+  const auto mark = [](const ChartMark& m) {
+    Json one = {{"at", rounded(m.at, kTimeDigits)}, {"dash", style_of(m.dash, kDashes).name}};
+    add_given(one, "upright", m.upright, "text", m.text, "panel", m.panel);
+    return one;
+  };
+  const auto label = [&](const ChartLabel& l) {
+    Json one = {{"x", rounded(l.x, digits)}, {"y", rounded(l.y)}, {"text", l.text}};
+    add_given(one, "panel", l.panel);
+    return one;
+  };
+  add_given(json, "stretches", list_of(chart.stretches, stretch), "marks", list_of(chart.marks, mark), "labels",
+            list_of(chart.labels, label));
 }
 
-Json text_json(const ReportText& text) {
+Json item_json(const ReportText& text) {
   return {{"type", "text"}, {"kind", style_of(text.kind, kTexts)}, {"text", text.text}};
 }
 
-Json table_json(const ReportTable& table) {
-  Json header = Json::array(), numeric = Json::array();
+Json item_json(const ReportTable& table) {
+  Json json = {{"type", "table"},
+               {"caption", table.caption},
+               {"header", list_of(table.columns, [](const ReportColumn& column) { return Json(column.name); })},
+               {"rows", table.rows}};
+  Json numeric = Json::array();
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    header.push_back(table.columns[k].name);
     if (table.columns[k].number) numeric.push_back(k);
   }
-  Json json = {{"type", "table"}, {"caption", table.caption}, {"header", header}, {"rows", table.rows}};
-  if (!numeric.empty()) json["numeric"] = numeric;
-  if (table.folded) json["folded"] = true;
+  add_given(json, "numeric", numeric, "folded", table.folded);
   return json;
 }
 
-Json animation_json(const Animation& animation) {
-  Json json = {{"type", "animation"},
-               {"id", animation.id},
-               {"title", animation.title},
-               {"note", animation.note},
-               {"disc_velocity", rounded(animation.disc_velocity)},
-               {"blocks", Json::array()}};
-  for (const Animation::Block& block : animation.blocks) {
-    Json sticks = Json::array();
-    for (const bool stick : block.sticks) sticks.push_back(stick ? 1 : 0);
-    json["blocks"].push_back({{"name", block.name},
-                              {"time", numbers_json(block.time, kTimeDigits)},
-                              {"displacement", numbers_json(block.displacement)},
-                              {"friction", numbers_json(block.friction)},
-                              {"sticks", std::move(sticks)}});
-  }
-  return json;
+Json item_json(const Animation& animation) {
+  const auto block = [](const Animation::Block& b) {
+    return Json{{"name", b.name},
+                {"time", numbers_json(b.time, kTimeDigits)},
+                {"displacement", numbers_json(b.displacement)},
+                {"friction", numbers_json(b.friction)},
+                {"sticks", list_of(b.sticks, [](bool stick) { return Json(stick ? 1 : 0); })}};
+  };
+  return {{"type", "animation"},
+          {"id", animation.id},
+          {"title", animation.title},
+          {"note", animation.note},
+          {"disc_velocity", rounded(animation.disc_velocity)},
+          {"blocks", list_of(animation.blocks, block)}};
 }
 
-struct ItemJson {
-  Json operator()(const ReportText& text) const { return text_json(text); }
-  Json operator()(const ReportTable& table) const { return table_json(table); }
-  Json operator()(const Chart& chart) const { return chart_json(chart); }
-  Json operator()(const Animation& animation) const { return animation_json(animation); }
-};
-
-}  // namespace
-
-Json chart_json(const Chart& chart) {
-  Json json = {{"type", "chart"},        {"id", chart.id},          {"title", chart.title},   {"note", chart.note},
-               {"height", chart.height}, {"x", axis_json(chart.x)}, {"panels", Json::array()}};
-  if (chart.half) json["half"] = true;
-  for (const ChartPanel& panel : chart.panels) {
-    json["panels"].push_back({{"axis", axis_json(panel.axis)}, {"part", panel.part}});
-  }
-  for (const ChartLine& line : chart.lines) json["lines"].push_back(line_json(line, chart.x.digits));
-  for (const ChartBars& bars : chart.bars) {
-    json["bars"].push_back({{"name", bars.name},
-                            {"values", numbers_json(bars.values)},
-                            {"colour", style_of(bars.colour, kColours).name},
-                            {"hatched", bars.hatched}});
-  }
+Json item_json(const Chart& chart) {
+  const auto panel = [](const ChartPanel& p) { return Json{{"axis", axis_json(p.axis)}, {"part", p.part}}; };
+  const auto bars = [](const ChartBars& b) {
+    return Json{{"name", b.name},
+                {"values", numbers_json(b.values)},
+                {"colour", style_of(b.colour, kColours).name},
+                {"hatched", b.hatched}};
+  };
+  const auto line = [&](const ChartLine& l) { return line_json(l, chart.x.digits); };
+  Json json = {{"type", "chart"},
+               {"id", chart.id},
+               {"title", chart.title},
+               {"note", chart.note},
+               {"height", chart.height},
+               {"x", axis_json(chart.x)},
+               {"panels", list_of(chart.panels, panel)}};
+  add_given(json, "half", chart.half, "lines", list_of(chart.lines, line), "bars", list_of(chart.bars, bars));
   if (chart.map) json["map"] = map_json(*chart.map, chart.x);
   add_annotations(chart, json);
   return json;
 }
 
+}  // namespace
+
 Json report_json(const Report& report) {
-  Json json = {{"kind", report.kind},       {"title", report.title},       {"subtitle", report.subtitle},
-               {"lead", report.lead},       {"warnings", report.warnings}, {"facts", Json::array()},
-               {"sections", Json::array()}, {"styles", styles_json()}};
-  for (const auto& [name, value] : report.facts) json["facts"].push_back(Json::array({name, value}));
-  for (const ReportSection& section : report.sections) {
-    Json one = {{"id", section.id}, {"title", section.title}, {"items", Json::array()}};
-    for (const ReportItem& item : section.items) one["items"].push_back(std::visit(ItemJson{}, item));
-    json["sections"].push_back(std::move(one));
-  }
-  return json;
+  const auto fact = [](const auto& f) { return Json::array({f.first, f.second}); };
+  const auto item = [](const ReportItem& i) { return std::visit([](const auto& own) { return item_json(own); }, i); };
+  const auto section = [&](const ReportSection& s) {
+    return Json{{"id", s.id}, {"title", s.title}, {"items", list_of(s.items, item)}};
+  };
+  return {{"kind", report.kind},
+          {"title", report.title},
+          {"subtitle", report.subtitle},
+          {"lead", report.lead},
+          {"warnings", report.warnings},
+          {"facts", list_of(report.facts, fact)},
+          {"sections", list_of(report.sections, section)},
+          {"styles", styles_json()}};
 }
 
 }  // namespace tribofit

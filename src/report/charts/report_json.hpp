@@ -8,6 +8,5 @@ namespace tribofit {
 /// A report as the page takes it: its members under their own names, those that have their default value left out,
 /// numbers with no more digits than are drawn.
 Json report_json(const Report& report);
-Json chart_json(const Chart& chart);
 
 }  // namespace tribofit

@@ -81,6 +81,8 @@ constexpr const auto& style_of(Enum value, const Styles& styles) {
 
 // How the same thing is drawn in every chart.
 
+inline constexpr int kTimeDigits = 9;  ///< of times: 20 us are distinguishable after an hour
+
 inline constexpr Stroke kMeasured = {Colour::blue, Dash::solid, Symbol::none, 1.1};
 inline constexpr Stroke kDisc = {Colour::red, Dash::dashed, Symbol::none, 1.5};
 inline constexpr Stroke kPublished = {Colour::grey, Dash::dotted, Symbol::none, 1.3};

@@ -5,11 +5,8 @@
 #include <utility>
 
 #include "report/charts/styles.hpp"
-#include "report/drawing.hpp"
+#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
-#include "report/page_series.hpp"
-#include "statistics/reductions.hpp"
-#include "tribofit/segmentation/slip_branches.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
@@ -60,9 +57,7 @@ ChartLine disc_line(const DrawnTrace& d, const Window& w) {
   const Motion& motion = d.trace.motion;
   const std::string name = "ω r of the disc";
   if (!motion.disc_velocity.empty()) {
-    std::vector<double> level = motion.disc_velocity;
-    for (double& v : level) v /= kMillimetre;
-    return line_of(d, w, name, level, kDisc, 1);
+    return line_of(d, w, name, in_unit(motion.disc_velocity, kMillimetre), kDisc, 1);
   }
   const double level = motion.constant_disc_velocity / kMillimetre;
   const auto shown = [&](std::size_t i) { return (motion.time[i] - w.origin) / w.unit; };
@@ -105,7 +100,7 @@ void shade_left_out(const DrawnTrace& d, Chart& chart) {
 }
 
 /// Every sample within 5 ms of an event, with the event at zero.
-std::vector<Chart> zoom_chart(const DrawnTrace& d, double at, const char* id, const char* title) {
+Chart zoom_chart(const DrawnTrace& d, double at, const char* id, const char* title) {
   const std::vector<double>& time = d.trace.motion.time;
   const auto index_at = [&](double t) {
     return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), t) - time.begin());
@@ -120,25 +115,18 @@ std::vector<Chart> zoom_chart(const DrawnTrace& d, double at, const char* id, co
   chart.marks.push_back({0, true, Dash::dotted, ""});
   chart.height = 400;
   chart.half = true;
-  return {chart};
+  return chart;
 }
 
 /// Amplitudes of v_r up to twelve times the stick-slip frequency, or the whole band where nothing repeats.
-std::vector<Chart> spectrum_chart(const DrawnTrace& d) {
-  constexpr double kHarmonics = 12, kSamplesPerHarmonic = 4;
+Chart spectrum_chart(const DrawnTrace& d) {
+  constexpr double kHarmonics = 12;
   const Motion& motion = d.trace.motion;
   const std::vector<double>& v_r = motion.relative_velocity;
-  if (v_r.size() < 16) return {};
   const double peak = d.trace.spectral_peak.frequency;
-  // Means over neighbours do for what is far below the rate, and cost less.
-  const double top = peak > 0 ? std::min(kHarmonics * peak, 0.5 / motion.step) : 0.5 / motion.step;
-  const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerHarmonic * top * motion.step)));
-  BlockMeans reduced = block_means(v_r, every, motion.step);
-  if (reduced.mean.size() < 8) return {};
-  for (double& v : reduced.mean) v /= kMillimetre;
-  const Spectrum spectrum = amplitude_spectrum(reduced.mean, reduced.step);
-  std::vector<double> amplitude = spectrum.amplitude;
-  amplitude.resize(std::min(amplitude.size(), static_cast<std::size_t>(top / spectrum.bin_width) + 1));
+  const Spectrum spectrum = spectrum_up_to(v_r, motion.step, peak > 0 ? kHarmonics * peak : 0.5 / motion.step);
+  const std::vector<double> amplitude = in_unit(spectrum.amplitude, kMillimetre);
+  if (amplitude.empty()) return {};
   Chart chart{.id = d.id + "-spectrum",
               .title = "Spectrum of the relative velocity",
               .note = "Hann window over the whole record.",
@@ -155,7 +143,7 @@ std::vector<Chart> spectrum_chart(const DrawnTrace& d) {
     line.add(static_cast<double>(k) * spectrum.bin_width, amplitude[k]);
   }
   chart.lines.push_back(std::move(line));
-  return {chart};
+  return chart;
 }
 
 struct CycleMeasure {
@@ -193,6 +181,8 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
 DrawnTrace::DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside,
                        const std::vector<DrawnModel>& laws, std::string prefix, double part)
     : trace(of), models(beside), curves(laws), id(std::move(prefix)), share(part) {
+  pieces = slip_branches(trace.motion, trace.segmentation);
+  fastest = fastest_of(trace.motion, pieces) / kMillimetre;
   for (const DrawnModel& model : models) predictions.push_back(predict(*model.fit, trace.motion, trace.segmentation));
 }
 
@@ -225,10 +215,9 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   chart.height = 470;
   for (std::size_t k = first; k < first + kShownCycles; ++k) shade_phases(motion, cycles[k], chart);
   std::vector<Chart> charts = {chart};
-  const auto append = [&](const std::vector<Chart>& more) { charts.insert(charts.end(), more.begin(), more.end()); };
   const Cycle& shown = cycles[first + kShownCycles / 2];
-  if (shown.stick.size() > 0) append(zoom_chart(d, shown.break_away_time, "break-away", "Break-away"));
-  if (shown.slip_complete) append(zoom_chart(d, shown.restick_time, "restick", "Re-stick"));
+  if (shown.stick.size() > 0) charts.push_back(zoom_chart(d, shown.break_away_time, "break-away", "Break-away"));
+  if (shown.slip_complete) charts.push_back(zoom_chart(d, shown.restick_time, "restick", "Re-stick"));
   return charts;
 }
 
@@ -256,7 +245,7 @@ std::vector<Chart> measure_charts(const DrawnTrace& d) {
                            {"slip", &Cycle::slip_time, Colour::red, Symbol::triangle_up},
                            {"period", &Cycle::period, Colour::green, Symbol::square}})};
   }
-  for (Chart& chart : spectrum_chart(d)) charts.push_back(std::move(chart));
+  charts.push_back(spectrum_chart(d));
   return charts;
 }
 

@@ -5,6 +5,7 @@
 
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/chart.hpp"
+#include "tribofit/segmentation/slip_branches.hpp"
 
 namespace tribofit {
 
@@ -22,6 +23,8 @@ struct DrawnTrace {
   std::string id;                                ///< begins the ids of the charts
   double share;                                  ///< part of the points of a page that this trace may have
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
+  std::vector<SlipBranch> pieces;                ///< of the slips
+  double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
 
   DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside, const std::vector<DrawnModel>& laws,
              std::string prefix, double part = 1);
@@ -38,8 +41,8 @@ Chart record_chart(const DrawnTrace& drawn);
 std::vector<Chart> measure_charts(const DrawnTrace& drawn);
 
 /// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the noise
-/// floor.
-std::vector<Chart> law_charts(const DrawnTrace& drawn);
+/// floor. Shows nothing where nothing slips.
+Chart law_chart(const DrawnTrace& drawn);
 /// Relative errors ([D] Eq 5) over speed and time, and the map of residuals over cycle and phase of the slip.
 std::vector<Chart> error_charts(const DrawnTrace& drawn);
 /// Profile likelihoods of the parameters of a fit, where they were asked for.

@@ -25,9 +25,7 @@ std::vector<Path> thinned_runs(std::size_t count, PointAt point) {
   std::vector<Path> runs;
   Path run;
   const auto end_run = [&] {
-    Path kept;
-    for (const std::size_t k : thinned_line(run, kTolerance)) kept.push_back(run[k]);
-    if (!kept.empty()) runs.push_back(std::move(kept));
+    if (!run.empty()) runs.push_back(thinned_line(run, kTolerance));
     run.clear();
   };
   for (std::size_t k = 0; k < count; ++k) {
@@ -62,9 +60,9 @@ Path symbols_of(const PanelFrame& frame, const ChartLine& line) {
     const Point p = frame.at(line.x[k], line.y[k]);
     if (frame.holds(p)) points.push_back(p);
   }
-  const std::vector<std::size_t> apart = thinned_points(points, kSymbolCell);
+  const Path apart = thinned_points(points, kSymbolCell);
   const std::size_t every = line.stroke.joined ? 1 + apart.size() / kMostSymbols : 1;
-  for (std::size_t k = 0; k < apart.size(); k += every) kept.push_back(points[apart[k]]);
+  for (std::size_t k = 0; k < apart.size(); k += every) kept.push_back(apart[k]);
   return kept;
 }
 

@@ -1,4 +1,4 @@
-#include "report/drawing.hpp"
+#include "statistics/thinning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

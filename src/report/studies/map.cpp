@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/numbers.hpp"
-#include "study_parts.hpp"
-#include "styles.hpp"
+#include "parts.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t kMostCells = 120;  // to a side
-
-/// Values in the unit of a variable.
-std::vector<double> shown(const std::vector<double>& values, const Variable& variable) {
-  return in_unit(values, variable.si);
-}
 
 ChartAxis axis_for(const MapAxis& axis) {
   return {.quantity = axis.variable.name,
@@ -34,7 +27,8 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRo
               .height = 420,
               .half = true};
   const CoarseMap coarse = coarse_map(request, rows, measure, kMostCells);
-  HeatMap map{shown(coarse.x, request.x.variable), shown(coarse.y, request.y.variable), {}, info.name, info.unit};
+  HeatMap map{
+      in_unit(coarse.x, request.x.variable.si), in_unit(coarse.y, request.y.variable.si), {}, info.name, info.unit};
   for (const std::vector<double>& row : coarse.z) map.z.push_back(in_unit(row, info.si));
   const bool any_gap = std::any_of(map.z.begin(), map.z.end(), [](const std::vector<double>& row) {
     return std::any_of(row.begin(), row.end(), [](double z) { return !std::isfinite(z); });
@@ -85,6 +79,53 @@ ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
 
 }  // namespace
 
+std::string render_map(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+                       const MeasureInfo& measure, const TerminalOptions& options) {
+  const auto& all = measures();
+  const auto k = static_cast<std::size_t>(
+      std::find_if(all.begin(), all.end(), [&](const MeasureInfo& m) { return m.name == measure.name; }) - all.begin());
+  const Variable &x = request.x.variable, &y = request.y.variable;
+  ReportTable table(fmt::format("{} over {} (across) and {} (down)", with_unit(measure.name, measure.unit),
+                                with_unit(x.name, x.unit), with_unit(y.name, y.unit)));
+  table.text({""});
+  const std::vector<std::size_t> columns = thinned(request.x.values.size(), 8);
+  for (const std::size_t i : columns) table.numbers({significant(request.x.values[i] / x.si, 3)});
+  for (const std::size_t j : thinned(rows.size(), 12)) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row.push_back(significant(request.y.values[j] / y.si, 3));
+    for (const std::size_t i : columns) {
+      const MapCell& cell = rows[j][i];
+      row.push_back(cell.regime == Regime::sliding ? "slides" : significant(cell.values[k] / measure.si, 3));
+    }
+  }
+  TerminalText text = machine_text(of, options);
+  text.table(table);
+  const std::size_t unsettled = count_of(rows, Regime::not_settled);
+  text.line(fmt::format("{} cells", request.x.values.size() * rows.size()) +
+            (unsettled > 0 ? fmt::format(", {} of which did not settle (their regime says so)", unsettled) : ""));
+  return ended(std::move(text), "to see the speeds at which stick vanishes", "speed", options);
+}
+
+std::string map_json(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+                     const JsonOptions& options) {
+  const auto axis = [](const MapAxis& a) {
+    return object("name", a.variable.name, "unit", a.variable.unit, "values",
+                  list_of(a.values, [&](double v) { return number(v / a.variable.si); }));
+  };
+  const auto grid = [&](auto&& value) {
+    return list_of(rows, [&](const std::vector<MapCell>& row) { return list_of(row, value); });
+  };
+  Json by_measure = Json::object();
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    by_measure[measures()[k].column] =
+        grid([&](const MapCell& cell) { return number(cell.values[k] / measures()[k].si); });
+  }
+  const Json regimes = grid([](const MapCell& cell) { return Json(to_string(cell.regime)); });
+  return study_text(of, "map",
+                    object("x", axis(request.x), "y", axis(request.y), "regimes", regimes, "measures", by_measure),
+                    options);
+}
+
 Report report_of(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
                  const ReportOptions& options) {
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
@@ -93,13 +134,11 @@ Report report_of(const StudiedMachine& of, const MapRequest& request, const MapR
   if (nx > kMostCells || ny > kMostCells) {
     lead += " Where a colour stands for several cells, it is that of the largest value among them; --csv writes all.";
   }
-  Report report = study_report(of, "map", "Map of the motion", std::move(lead), options);
-  ReportSection& section = report.sections.emplace_back(ReportSection{"maps", "Maps", {}});
-  for (std::size_t k = 0; k < measures().size(); ++k) section.items.emplace_back(map_chart(of, request, rows, k));
-  section.items.emplace_back(extremes_table(request, rows));
-  section.items.emplace_back(regimes_table(rows));
-  add_machine_sections(of, "map", options, report);
-  return report;
+  ReportSection section{"maps", "Maps", {}};
+  for (std::size_t k = 0; k < measures().size(); ++k) section.add(map_chart(of, request, rows, k));
+  section.add(extremes_table(request, rows));
+  section.add(regimes_table(rows));
+  return study_report(of, "map", "Map of the motion", std::move(lead), {std::move(section)}, options);
 }
 
 }  // namespace tribofit

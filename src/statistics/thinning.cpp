@@ -1,8 +1,9 @@
-#include "drawing.hpp"
+#include "thinning.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace tribofit {
 namespace {
@@ -35,12 +36,19 @@ std::vector<std::size_t> drawn_samples(std::span<const double> values, std::size
   std::vector<std::size_t> drawn;
   if (n <= kPerBin * bins) {
     drawn.resize(n);
-    for (std::size_t i = 0; i < n; ++i) drawn[i] = i;
+    std::iota(drawn.begin(), drawn.end(), std::size_t{0});
     return drawn;
   }
   drawn.reserve(kPerBin * bins);
   for (std::size_t k = 0; k < bins; ++k) draw_stretch(values, n * k / bins, n * (k + 1) / bins, drawn);
   return drawn;
+}
+
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> kept;
+  const std::size_t shown = std::min(count, most);
+  for (std::size_t i = 0; i < shown; ++i) kept.push_back(shown < 2 ? 0 : i * (count - 1) / (shown - 1));
+  return kept;
 }
 
 }  // namespace tribofit

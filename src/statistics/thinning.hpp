@@ -6,12 +6,15 @@
 
 namespace tribofit {
 
-/// Series reduced for drawing, so that no peak is lost.
+/// Series with fewer samples, as they are drawn: no peak is lost.
 
 /// Indices of the samples to draw, in order: the first, the least, the largest and the last of each of `bins` stretches
 /// of equal length (at a bin per column of pixels the line looks as if every sample were drawn: Jugel et al. 2014, M4).
 /// A stretch with samples that are not finite keeps the first of them, so that gaps stay gaps. All samples where that
 /// is no more. Cost: one pass.
 std::vector<std::size_t> drawn_samples(std::span<const double> values, std::size_t bins);
+
+/// At most `most` of `count` things, evenly, the ends among them.
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most);
 
 }  // namespace tribofit

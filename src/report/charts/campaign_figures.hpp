@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/report/campaign.hpp"
+
+namespace tribofit {
+
+/// The campaign that is drawn.
+struct DrawnCampaign {
+  const ResultReader& results;
+  std::span<const RunResult> runs;
+  std::span<const PooledGroup> groups;
+  const EarlierComparison* earlier;  ///< null: none
+  std::vector<std::size_t> shown;    ///< groups of which single runs are drawn
+
+  DrawnCampaign(const ResultReader& all_results, std::span<const RunResult> all_runs, const Pooled& pooled,
+                const std::optional<ComparisonReport>& comparison);
+  std::string name_of(std::size_t group) const;
+  /// "1", or "N" where friction is a force.
+  std::string friction_unit() const { return runs.empty() ? "1" : runs.front().friction_unit; }
+  /// How values of the table named by --compare are called.
+  std::string earlier_name() const;
+};
+
+/// Fig 5 to 9 of [D]: a section of charts.
+ReportSection motion_figures(const DrawnCampaign& of);
+/// Fig 10 to 12 of [D].
+ReportSection law_figures(const DrawnCampaign& of);
+
+/// The parameters of every run, beside those of its repeats: what repeats scatter by.
+Chart scatter_chart(const DrawnCampaign& of, const std::string& law);
+
+}  // namespace tribofit

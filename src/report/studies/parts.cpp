@@ -1,0 +1,184 @@
+#include "parts.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tribofit/fit/identification.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "m = 0.85 kg, k = 16.2 N/mm, ...".
+std::string rig_sentence(const Machine& m) {
+  return fmt::format(
+      "m = {} kg, k = {} N/mm, c = {} N s/mm (damping ratio {}), natural frequency {} Hz; N = {} N, r = {} mm, {} rpm, "
+      "omega r = {} mm/s",
+      significant(m.rig.mass, 4), significant(1e-3 * m.rig.stiffness, 4), significant(1e-3 * m.rig.damping, 4),
+      significant(m.rig.damping_ratio(), 3), significant(natural_hertz(m), 4), brief(m.load),
+      brief(m.radius / kMillimetre), brief(m.speed / kRpm), significant(m.disc_velocity() / kMillimetre, 4));
+}
+
+/// "mu_s = 0.5090, mu_k = 0.3180, alpha = 0.05214 s/mm".
+std::string friction_sentence(const Machine& m) {
+  std::vector<std::string> parameters;
+  for (std::size_t k = 0; k < m.parameters.size(); ++k) {
+    const FrictionModel::Slot& slot = m.model.parameters()[k];
+    const Parameter& q = slot.parameter;
+    parameters.push_back(fmt::format("{}{} = {}{}", slot.effect.empty() ? "" : slot.effect + ".", q.name,
+                                     significant(m.parameters[k] / q.si, 4), unit_behind(q.unit)));
+  }
+  return fmt::format("{}", fmt::join(parameters, ", "));
+}
+
+std::string sharpness_text(const StudiedMachine& of) {
+  return fmt::format("smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
+}
+
+ReportTable machine_table(const StudiedMachine& of) {
+  ReportTable table("Numbers of the machine");
+  table.text({"number"}).numbers({"value", "std error"}).text({"unit", "meaning"});
+  for (const Variable& v : variables_of(of.machine)) {
+    const double value = value_of(of.machine, v.name) / v.si, error = std_error_of(of, v.name) / v.si;
+    const bool known = std::isfinite(error);
+    table.rows.push_back({v.name, known ? fixed(value, places_for(error)) : significant(value, 5),
+                          known ? fixed(error, places_for(error)) : "-", v.unit == "1" ? "" : v.unit, v.meaning});
+  }
+  return table;
+}
+
+/// The numbers of rig and drive, then the law.
+Facts facts_of(const StudiedMachine& of, const std::string& kind, const ReportOptions& options) {
+  Facts facts = {{"machine", of.source}};
+  for (const char* name : {"mass", "stiffness", "damping-ratio", "load", "radius", "speed", "velocity"}) {
+    const Variable v = variable_named(of.machine, name);
+    facts.emplace_back(name == std::string("velocity") ? "omega r" : v.name,
+                       significant(value_of(of.machine, v.name) / v.si, 4) + unit_behind(v.unit));
+  }
+  facts.emplace_back("natural frequency", significant(natural_hertz(of.machine), 4) + " Hz");
+  facts.emplace_back("law", of.machine.model.name() + (of.sharpness > 0 ? ", " + sharpness_text(of) : ""));
+  facts.emplace_back("friction", friction_sentence(of.machine));
+  facts.emplace_back("study", kind);
+  if (of.record || !options.inputs.empty()) {
+    facts.emplace_back("record", of.record ? of.record->path : options.inputs.front());
+  }
+  return facts;
+}
+
+Json machine_json(const StudiedMachine& of) {
+  const Machine& m = of.machine;
+  Json parameters = Json::array();
+  for (std::size_t k = 0; k < m.parameters.size(); ++k) {
+    const FrictionModel::Slot& slot = m.model.parameters()[k];
+    parameters.push_back(object("name", slot.parameter.name, "value", m.parameters[k] / slot.parameter.si, "unit",
+                                slot.parameter.unit, "effect", text_or_null(slot.effect)));
+  }
+  return object("source", of.source, "mass_kg", m.rig.mass, "damping_N_s_per_mm", 1e-3 * m.rig.damping,
+                "stiffness_N_per_mm", 1e-3 * m.rig.stiffness, "damping_ratio", m.rig.damping_ratio(), "load_N", m.load,
+                "radius_mm", m.radius / kMillimetre, "speed_rpm", m.speed / kRpm, "velocity_mm_s",
+                m.disc_velocity() / kMillimetre, "law", to_string(m.model.law()), "effects", m.model.effect_names(),
+                "parameters", parameters, "sharpness_s_per_mm", positive_or_null(1e-3 * of.sharpness), "warnings",
+                of.warnings, "notes", of.notes);
+}
+
+}  // namespace
+
+TerminalText machine_text(const StudiedMachine& of, const TerminalOptions& options) {
+  TerminalText text(options);
+  for (const std::string& warning : of.warnings) text.warning(warning);
+  text.raw(fmt::format("{}: {}\n", of.source, of.machine.model.name()));
+  text.lines({rig_sentence(of.machine), friction_sentence(of.machine)});
+  if (of.sharpness > 0) text.line(sharpness_text(of));
+  text.lines(of.notes);
+  return text;
+}
+
+std::string ended(TerminalText text, const std::string& purpose, const std::string& kind,
+                  const TerminalOptions& options, const std::vector<std::string>& more) {
+  std::vector<std::string> words = {"study", kind};
+  words.insert(words.end(), more.begin(), more.end());
+  text.next({purpose, command_line(words_of(std::move(words), options.arguments), options.inputs)});
+  return text.take();
+}
+
+Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
+                    std::vector<ReportSection> sections, const ReportOptions& options) {
+  Report report = titled_report("study", title, "Study", std::move(lead));
+  report.warnings = of.warnings;
+  report.facts = facts_of(of, kind, options);
+  report.add(std::move(sections));
+  ReportSection machine{"machine", "The machine", {machine_table(of)}};
+  for (const std::string& note : of.notes) machine.soft("Note: " + note);
+  std::vector<std::string> inputs = options.inputs;
+  if (inputs.empty() && of.record) inputs = {of.record->path};
+  const std::string checksum =
+      of.record ? fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", of.record->checksum) : "";
+  report.add(
+      {std::move(machine), run_section(command_line(words_of({"study", kind}, options.arguments), inputs), checksum)});
+  return report;
+}
+
+std::string study_text(const StudiedMachine& of, const char* kind, const Json& body, const JsonOptions& options) {
+  Json study = object("kind", kind, "machine", machine_json(of));
+  study.update(body);
+  return text_of(object("tool", tool_json(options), "study", std::move(study)));
+}
+
+Json settled_json(const Settled& settled) {
+  Json out = object("regime", to_string(settled.regime));
+  for (const MeasureInfo& measure : measures()) out[measure.column] = number(settled.*measure.value / measure.si);
+  return out;
+}
+
+Json explained_json(const Settled& settled) {
+  Json out = settled_json(settled);
+  if (!settled.seen.empty()) out["seen"] = settled.seen;
+  return out;
+}
+
+Json range_json(const Range& range, double unit) {
+  return interval_json(range.lower95 / unit, range.upper95 / unit);
+}
+
+std::string measure_columns(const std::string& before) {
+  std::string text;
+  for (const MeasureInfo& measure : measures()) text += "," + before + measure.column;
+  return text;
+}
+
+void add_measure_columns(ReportTable& table) {
+  for (const MeasureInfo& measure : measures()) {
+    table.columns.push_back({with_unit(measure.name, measure.unit), true, 0, measure.heading});
+  }
+}
+
+std::vector<std::string> row_of(std::vector<std::string> row, const Settled& settled) {
+  row.emplace_back(to_string(settled.regime));
+  for (const MeasureInfo& measure : measures()) row.push_back(measure_text(settled, measure));
+  return row;
+}
+
+std::string velocity_text(double velocity, const Machine& machine) {
+  return fmt::format("{} mm/s ({} rpm)", significant(velocity / kMillimetre, 4),
+                     significant(velocity / machine.radius / kRpm, 4));
+}
+
+std::string measure_text(const Settled& settled, const MeasureInfo& measure) {
+  return significant(settled.*measure.value / measure.si, 4);
+}
+
+std::string seen_sentence(const Settled& settled) {
+  return settled.regime == Regime::not_settled ? "did not settle: " + settled.seen : "";
+}
+
+double natural_hertz(const Machine& machine) {
+  return machine.rig.natural_frequency() / (2 * std::numbers::pi);
+}
+
+ChartAxis axis_of(const MeasureInfo& measure) {
+  return {.quantity = measure.name, .unit = measure.unit};
+}
+
+}  // namespace tribofit

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "parts.hpp"
+#include "report/charts/motion_charts.hpp"
+#include "tribofit/fit/identification.hpp"
+#include "tribofit/study/block_motion.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr std::size_t kDrawn = 8;  // portraits
+constexpr std::size_t kStartBins = 400, kCycleBins = 300;
+
+std::string speed_text(const Portrait& portrait) {
+  return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
+}
+
+/// Whether this portrait is made at the speed of the machine, at which there may be a record.
+bool is_own(const StudiedMachine& of, const Portrait& portrait) {
+  constexpr double kSame = 1e-3;
+  return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSame;
+}
+
+/// Three cycles of the record that the machine was identified from, where it was made at this speed.
+BlockMotion measured_at(const StudiedMachine& of, const Portrait& portrait) {
+  if (!of.record || !is_own(of, portrait)) return {};
+  return block_motion(of.record->motion, of.record->segmentation, of.machine.load / of.machine.rig.stiffness);
+}
+
+Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
+  Chart chart = portrait_plane(
+      fmt::format("phase-{}", number),
+      fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
+  add_loop({"from the start", portrait.start}, kStartBins, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1},
+           chart);
+  if (portrait.cycle.size() > 0) {
+    add_loop({"settled cycle", portrait.cycle}, kCycleBins, {.colour = Colour::black, .width = 2}, chart, true);
+  }
+  const BlockMotion measured = measured_at(of, portrait);
+  if (measured.size() > 0) {
+    add_loop({fmt::format("measured, {} cycles", measured.cycles), measured}, kCycleBins,
+             {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
+  }
+  chart.height = 380;
+  chart.half = true;
+  return chart;
+}
+
+Chart all_portraits(const std::vector<const Portrait*>& drawn) {
+  Chart chart = portrait_plane("phase-all", "Settled cycles at all speeds", 0);
+  chart.marks.clear();
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    const Portrait& portrait = *drawn[k];
+    if (portrait.cycle.size() == 0) continue;
+    add_loop({speed_text(portrait), portrait.cycle}, kCycleBins, stroke_of(k), chart, true);
+  }
+  return chart;
+}
+
+Chart time_chart(const Portrait& portrait, std::size_t number) {
+  Chart chart{.id = fmt::format("motion-{}", number),
+              .title = "Motion at " + speed_text(portrait) + " over time, from the start",
+              .x = {.quantity = "time", .unit = "s", .digits = 7},
+              .marks = {disc_mark(portrait.velocity, 1)},
+              .height = 520};
+  const DrawnMotion motion("motion", portrait.start);
+  add_over_time(motion,
+                {{{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre},
+                 {{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
+                 {{.quantity = "friction", .unit = "1"}, &DrawnMotion::friction, 1}},
+                kStartBins, stroke_of(0), chart);
+  shade_sticks(motion, chart);
+  return chart;
+}
+
+/// The block at one speed, and as it was measured where it was.
+Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
+  Animation out{.id = fmt::format("block-{}", number),
+                .title = "The block on its disc at " + speed_text(portrait),
+                .disc_velocity = portrait.velocity / kMillimetre};
+  const BlockMotion measured = measured_at(of, portrait);
+  if (measured.size() > 0) {
+    out.blocks.push_back(animated({"measured", measured}));
+    out.note = "Measured (three cycles) beside simulated (one settled cycle).";
+  }
+  out.blocks.push_back(animated({"simulated", portrait.cycle}));
+  return out;
+}
+
+/// "Stick-slip at 2, 6 and 10 mm/s; sliding at 500 mm/s."
+std::string regimes_sentence(const std::vector<Portrait>& study) {
+  std::vector<std::string> texts;
+  for (const Regime regime : kRegimes) {
+    std::vector<double> at;
+    for (const Portrait& p : study) {
+      if (p.settled.regime == regime) at.push_back(p.velocity / kMillimetre);
+    }
+    if (at.empty()) continue;
+    std::sort(at.begin(), at.end());
+    std::string speeds;
+    if (at.size() > 4) {
+      speeds = fmt::format("{} speeds from {} to {}", at.size(), significant(at.front(), 4), significant(at.back(), 4));
+    } else {
+      std::vector<std::string> each;
+      for (const double speed : at) each.push_back(significant(speed, 4));
+      speeds = enumerated(each);
+    }
+    texts.push_back(fmt::format("{} at {} mm/s", to_string(regime), speeds));
+  }
+  return capitalised(fmt::format("{}.", fmt::join(texts, "; ")));
+}
+
+ReportTable portraits_table(const std::vector<Portrait>& study) {
+  ReportTable table("Measures of the settled motions");
+  table.columns.push_back({"speed [mm/s]", true, 0, "mm/s"});
+  table.text({"regime"});
+  add_measure_columns(table);
+  for (const Portrait& portrait : study) {
+    table.rows.push_back(row_of({significant(portrait.velocity / kMillimetre, 4)}, portrait.settled));
+  }
+  return table;
+}
+
+Json motion_json(const SimulatedMotion& motion) {
+  const auto millimetres = [](double value) { return Json(1e3 * value); };
+  return object("time_s", motion.time, "displacement_mm", list_of(motion.displacement, millimetres),
+                "block_velocity_mm_s", list_of(motion.velocity, millimetres));
+}
+
+void write_motion(WholeFolder& files, const std::string& name, const SimulatedMotion& motion) {
+  constexpr int kDigits = 9;
+  CsvTable table(files, name, "time_s,displacement_mm,block_velocity_mm_s,relative_velocity_mm_s,friction,phase",
+                 kDigits);
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    table.row(motion.time[i], 1e3 * motion.displacement[i], 1e3 * motion.velocity[i], 1e3 * motion.relative_velocity[i],
+              motion.friction[i], motion.sticks[i] != 0 ? "stick" : "slip");
+  }
+}
+
+}  // namespace
+
+std::string render_study(const StudiedMachine& of, const std::vector<Portrait>& study, const TerminalOptions& options) {
+  TerminalText text = machine_text(of, options);
+  text.table(portraits_table(study));
+  for (const Portrait& portrait : study) text.line(seen_sentence(portrait.settled), 2, 4);
+  if (!options.csv_written) {
+    text.line(
+        "--csv FOLDER writes displacement and velocity: phase_N.csv from the start, cycle_N.csv one settled cycle");
+  }
+  return ended(std::move(text), "to see the speed at which stick vanishes", "speed", options);
+}
+
+std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& study, const JsonOptions& options) {
+  const auto portrait = [](const Portrait& p) {
+    return object("velocity_mm_s", p.velocity / kMillimetre, "settled", explained_json(p.settled), "start",
+                  motion_json(p.start), "cycle", p.cycle.size() > 0 ? motion_json(p.cycle) : Json());
+  };
+  return study_text(of, "phase", object("portraits", list_of(study, portrait)), options);
+}
+
+void write_study(const std::string& folder, const std::vector<Portrait>& study) {
+  WholeFolder files(folder);
+  CsvTable list(files, "portraits.csv", "portrait,velocity_mm_s,regime" + measure_columns());
+  for (std::size_t i = 0; i < study.size(); ++i) {
+    const Portrait& portrait = study[i];
+    const std::string name = std::to_string(i + 1);
+    list.row(name, 1e3 * portrait.velocity, settled_json(portrait.settled));
+    write_motion(files, "phase_" + name + ".csv", portrait.start);
+    if (portrait.cycle.size() > 0) write_motion(files, "cycle_" + name + ".csv", portrait.cycle);
+  }
+  files.commit();
+}
+
+Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, const ReportOptions& options) {
+  std::vector<const Portrait*> drawn;
+  for (const std::size_t i : thinned(study.size(), kDrawn)) drawn.push_back(&study[i]);
+  ReportSection portraits{"phase", "Displacement and velocity", {}};
+  ReportSection times{"time", "Over time", {}}, moving{"block", "The block in motion", {}};
+  if (drawn.size() < study.size()) {
+    portraits.soft(fmt::format("{} of {} speeds are drawn; the table has all.", drawn.size(), study.size()));
+  }
+  if (drawn.size() > 1) portraits.add(all_portraits(drawn));
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    portraits.add(portrait_chart(of, *drawn[k], k + 1));
+    times.add(time_chart(*drawn[k], k + 1));
+    if (drawn[k]->cycle.size() > 0) moving.add(animation_of(of, *drawn[k], k + 1));
+  }
+  portraits.add(portraits_table(study));
+  Report report =
+      study_report(of, "phase", "Phase portraits", regimes_sentence(study), {portraits, moving, times}, options);
+  for (const Portrait& portrait : study) {
+    const std::string seen = seen_sentence(portrait.settled);
+    if (!seen.empty()) report.warnings.push_back(speed_text(portrait) + ": " + seen);
+  }
+  return report;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "parts.hpp"
+
+namespace tribofit {
+namespace {
+
+/// A(omega) at rest and at the natural frequency.
+std::string response_sentence(const Response& study) {
+  return fmt::format(
+      "A(omega) of a force of {} N ({}): {} mm at rest, {} mm at the natural frequency", significant(study.force, 4),
+      study.harmonics.empty() ? "half the drop of friction" : "the fundamental of friction",
+      significant(study.amplitude_at_rest / kMillimetre, 4), significant(study.amplitude_at_natural / kMillimetre, 4));
+}
+
+std::string no_spectra(const Response& study) {
+  return fmt::format("There is no settled vibration, so there are no spectra ({}).", to_string(study.settled.regime));
+}
+
+ReportTable harmonics_table(const Response& study) {
+  ReportTable table("Spectra of settled motion");
+  table.numbers({"harmonic", "frequency [Hz]", "friction [N]", "displacement [mm]", "velocity [mm/s]"});
+  for (std::size_t n = 0; n < study.harmonics.size(); ++n) {
+    const ResponseLine& h = study.harmonics[n];
+    table.rows.push_back({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),
+                          significant(h.displacement / kMillimetre, 4), significant(h.velocity / kMillimetre, 4)});
+  }
+  table.folded = table.rows.size() > 30;
+  table.file = "harmonics.csv (--csv)";
+  return table;
+}
+
+Json harmonic_json(const ResponseLine& h) {
+  return object("frequency_hz", h.frequency, "force_N", h.force, "displacement_mm", h.displacement / kMillimetre,
+                "velocity_mm_s", h.velocity / kMillimetre);
+}
+
+void mark_natural(const Response& study, Chart& chart) {
+  const double f = study.damped_natural_frequency;
+  if (!(f > 0)) return;
+  chart.marks.push_back({f, true, Dash::dashed, "damped natural " + significant(f, 3) + " Hz", 0});
+}
+
+Chart curve_chart(const Response& study) {
+  Chart chart{.id = "response-curve",
+              .title = "Amplitude that a force of each frequency would give",
+              .note = fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.",
+                                  significant(study.force, 4)),
+              .x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true},
+              .panels = {{.axis = {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true}}},
+              .lines = {{"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)}},
+              .height = 400};
+  if (study.frequency.empty() || study.amplitude.empty()) return chart;
+  const double least = 0.1 * *std::min_element(study.amplitude.begin(), study.amplitude.end());  // else off the paper
+  ChartLine lines{.name = "lines of the settled motion", .stroke = marked(1, false)};
+  for (const ResponseLine& h : study.harmonics) {
+    const bool there = h.frequency >= study.frequency.front() && h.frequency <= study.frequency.back();
+    if (there && h.displacement >= least) lines.add(h.frequency, h.displacement / kMillimetre);
+  }
+  if (!lines.x.empty()) chart.lines.push_back(std::move(lines));
+  mark_natural(study, chart);
+  if (!study.harmonics.empty()) {
+    const double f = study.settled.frequency;
+    chart.marks.push_back({f, true, Dash::dotted, "response " + significant(f, 3) + " Hz", 0});
+  }
+  return chart;
+}
+
+/// Upright lines with a point at their ends.
+Chart spectrum_chart(const Response& study, const char* id, const char* title, ChartAxis axis,
+                     double ResponseLine::*amplitude, double unit) {
+  axis.from_zero = true;
+  Chart chart{.id = id,
+              .title = title,
+              .x = {.quantity = "frequency", .unit = "Hz", .from_zero = true},
+              .panels = {{std::move(axis)}},
+              .half = true};
+  ChartLine stems{.name = "lines", .stroke = {.colour = Colour::blue, .width = 2}, .listed = false};
+  ChartLine ends{.name = "amplitude", .stroke = dots(Colour::blue, Symbol::square)};
+  for (const ResponseLine& h : study.harmonics) {
+    stems.add(h.frequency, 0);
+    stems.add(h.frequency, h.*amplitude / unit);
+    stems.add(h.frequency, std::numeric_limits<double>::quiet_NaN());
+    ends.add(h.frequency, h.*amplitude / unit);
+  }
+  chart.lines = {std::move(stems), std::move(ends)};
+  mark_natural(study, chart);
+  return chart;
+}
+
+}  // namespace
+
+std::string render_study(const StudiedMachine& of, const Response& study, const TerminalOptions& options) {
+  constexpr std::size_t kHarmonics = 8;
+  TerminalText text = machine_text(of, options);
+  text.heading("Response to a force");
+  text.line(fmt::format("natural frequency {} Hz, damped {} Hz; response frequency {} Hz",
+                        significant(study.natural_frequency, 5), significant(study.damped_natural_frequency, 5),
+                        significant(study.settled.frequency, 5)));
+  text.line(response_sentence(study) + " (--csv: response.csv)");
+  text.line(seen_sentence(study.settled), 2, 4);
+  if (study.harmonics.empty()) text.line(no_spectra(study));
+  text.table(harmonics_table(study), kHarmonics);
+  return ended(std::move(text), "to see portraits of the motion", "phase", options);
+}
+
+std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options) {
+  Json curve = Json::array();
+  for (std::size_t i = 0; i < study.frequency.size(); ++i) {
+    curve.push_back(interval_json(study.frequency[i], study.amplitude[i] / kMillimetre));
+  }
+  return study_text(
+      of, "response",
+      object("natural_frequency_hz", study.natural_frequency, "damped_natural_frequency_hz",
+             study.damped_natural_frequency, "force_N", study.force, "settled", explained_json(study.settled),
+             "harmonics", list_of(study.harmonics, harmonic_json), "curve_hz_mm", curve),
+      options);
+}
+
+void write_study(const std::string& folder, const Response& study) {
+  WholeFolder files(folder);
+  CsvTable curve(files, "response.csv", "frequency_hz,displacement_amplitude_mm");
+  for (std::size_t i = 0; i < study.frequency.size(); ++i) curve.row(study.frequency[i], 1e3 * study.amplitude[i]);
+  CsvTable lines(files, "harmonics.csv", "harmonic,frequency_hz,force_N,displacement_mm,velocity_mm_s");
+  for (std::size_t n = 0; n < study.harmonics.size(); ++n) lines.row(n + 1, harmonic_json(study.harmonics[n]));
+  files.commit();
+}
+
+Report report_of(const StudiedMachine& of, const Response& study, const ReportOptions& options) {
+  const std::string frequency = study.harmonics.empty() ? "none: " + std::string(to_string(study.settled.regime))
+                                                        : significant(study.settled.frequency, 5) + " Hz";
+  std::string lead = fmt::format("Natural frequency {} Hz, damped {} Hz; response frequency {}. {}.",
+                                 significant(study.natural_frequency, 5),
+                                 significant(study.damped_natural_frequency, 5), frequency, response_sentence(study));
+  ReportSection section{"response", "Response and spectra", {curve_chart(study)}};
+  if (study.harmonics.empty()) {
+    section.soft(no_spectra(study));
+  } else {
+    section.add(spectrum_chart(study, "spectrum-force", "Spectrum of the friction force",
+                               {.quantity = "friction force", .unit = "N"}, &ResponseLine::force, 1));
+    section.add(spectrum_chart(study, "spectrum-displacement", "Spectrum of the displacement",
+                               {.quantity = "displacement", .unit = "mm"}, &ResponseLine::displacement, kMillimetre));
+    section.add(harmonics_table(study));
+  }
+  Report report = study_report(of, "response", "Response to a force", std::move(lead), {std::move(section)}, options);
+  const std::string seen = seen_sentence(study.settled);
+  if (!seen.empty()) report.warnings.push_back(seen);
+  return report;
+}
+
+}  // namespace tribofit

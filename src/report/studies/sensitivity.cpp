@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "parts.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "+0.512", "-" where there is none.
+std::string elasticity_text(double elasticity) {
+  return std::isnan(elasticity) ? std::string("-") : fmt::format("{:+.3f}", elasticity);
+}
+
+/// What matters most for one measure (an index in measures()): "stiffness (-0.512), mass (+0.5)".
+std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t measure) {
+  std::vector<std::string> list;
+  for (const std::size_t i : ranked(study, measure)) {
+    const double e = study[i].elasticities[measure];
+    if (!std::isnan(e)) list.push_back(fmt::format("{} ({})", study[i].variable.name, elasticity_text(e)));
+  }
+  return list.empty() ? "nothing can be said here" : fmt::format("{}", fmt::join(list, ", "));
+}
+
+ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
+  ReportTable table("Elasticities: per cent of a measure for one per cent of a number");
+  table.text({"number"}).numbers({"value"}).text({"unit"});
+  for (const MeasureInfo& measure : measures()) table.numbers({measure.name});
+  for (const Sensitivity& one : study) {
+    std::vector<std::string> row = {one.variable.name, significant(one.base / one.variable.si, 4),
+                                    one.variable.unit == "1" ? "" : one.variable.unit};
+    for (const double e : one.elasticities) row.push_back(elasticity_text(e));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+constexpr std::size_t kShown = 6;  // sweeps that are not switched off at first
+
+/// A measure over each variable, those that matter most first.
+Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
+  const MeasureInfo& info = measures()[measure];
+  Chart chart{.id = "sweep-" + info.name,
+              .title = "The " + info.name + " over each number of the machine",
+              .x = {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true},
+              .panels = {{axis_of(info)}},
+              .marks = {{1, true, Dash::dotted, "the machine", 0}},
+              .height = 380,
+              .half = true};
+  std::size_t k = 0;
+  for (const std::size_t i : ranked(study, measure)) {
+    const Sensitivity& one = study[i];
+    if (!(one.base != 0)) continue;
+    ChartLine line{one.variable.name, in_unit(one.values, one.base), {}, stroke_of(k)};
+    for (const Settled& s : one.settled) line.y.push_back(s.*info.value / info.si);
+    line.shown = k++ < kShown;
+    chart.lines.push_back(std::move(line));
+  }
+  return chart;
+}
+
+Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
+  const MeasureInfo& info = measures()[measure];
+  Chart chart{.id = "elasticity-" + info.name,
+              .title = "What moves the " + info.name,
+              .x = {.quantity = "change of the " + info.name + " for 1 % of the number", .unit = "%"},
+              .half = true};
+  ChartAxis& names = chart.panels[0].axis;
+  names.falling = true;  // the largest stands on top
+  ChartBars bars{info.name, {}};
+  for (const std::size_t i : ranked(study, measure)) {
+    const double e = study[i].elasticities[measure];
+    if (!std::isfinite(e)) continue;
+    names.names.push_back(study[i].variable.name);
+    bars.values.push_back(e);
+  }
+  chart.bars.push_back(std::move(bars));
+  chart.height = 110 + 26 * static_cast<int>(names.names.size());
+  return chart;
+}
+
+}  // namespace
+
+std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+                         const TerminalOptions& options) {
+  TerminalText text = machine_text(of, options);
+  text.table(elasticity_table(study));
+  text.heading("What matters most");
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    text.line(measures()[k].name + ": " + ranking_sentence(study, k), 2, 4);
+  }
+  if (!options.csv_written) text.line("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
+  return ended(std::move(text), "to vary two numbers at once", "map", options,
+               {"--x", "stiffness", "--y", "mass", "--csv", "map/"});
+}
+
+std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>& study, const JsonOptions& options) {
+  const auto variable = [](const Sensitivity& one) {
+    Json elasticities = Json::object(), sweep = Json::array();
+    for (std::size_t k = 0; k < one.elasticities.size(); ++k) {
+      elasticities[measures()[k].name] = number(one.elasticities[k]);
+    }
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      Json point = object("value", one.values[i] / one.variable.si);
+      point.update(explained_json(one.settled[i]));
+      sweep.push_back(point);
+    }
+    return object("name", one.variable.name, "unit", one.variable.unit, "value", one.base / one.variable.si,
+                  "elasticities", elasticities, "sweep", sweep);
+  };
+  Json order = Json::object();
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    order[measures()[k].name] = list_of(ranked(study, k), [&](std::size_t i) { return Json(study[i].variable.name); });
+  }
+  return study_text(of, "sensitivity", object("variables", list_of(study, variable), "ranked", order), options);
+}
+
+void write_study(const std::string& folder, const std::vector<Sensitivity>& study) {
+  WholeFolder files(folder);
+  CsvTable sweeps(files, "sensitivity.csv", "variable,unit,value,relative_value,regime" + measure_columns());
+  std::string header = "variable,unit,value";
+  for (const MeasureInfo& measure : measures()) header += "," + measure.name;
+  CsvTable table(files, "elasticities.csv", header);
+  for (const Sensitivity& one : study) {
+    const Variable& v = one.variable;
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      sweeps.row(v.name, v.unit, one.values[i] / v.si, one.values[i] / one.base, settled_json(one.settled[i]));
+    }
+    table.row(v.name, v.unit, one.base / v.si, list_of(one.elasticities, number));
+  }
+  files.commit();
+}
+
+Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study, const ReportOptions& options) {
+  std::vector<std::string> lead;
+  ReportSection bars{"elasticities", "Ranked elasticities", {}}, sweeps{"sweeps", "Each measure over each number", {}};
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    bars.add(bar_chart(study, k));
+    sweeps.add(sweep_chart(study, k));
+    const std::vector<std::size_t> order = ranked(study, k);
+    if (order.empty() || !std::isfinite(study[order.front()].elasticities[k])) continue;
+    lead.push_back(fmt::format("{} answers most to {} ({} % for 1 %)", measures()[k].name,
+                               study[order.front()].variable.name,
+                               elasticity_text(study[order.front()].elasticities[k])));
+  }
+  bars.add(elasticity_table(study));
+  return study_report(of, "sensitivity", "Which number matters",
+                      lead.empty() ? "At this machine no measure has an elasticity."
+                                   : capitalised(fmt::format("{}.", fmt::join(lead, "; "))),
+                      {std::move(bars), std::move(sweeps)}, options);
+}
+
+}  // namespace tribofit

@@ -1,0 +1,268 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "parts.hpp"
+#include "tribofit/fit/identification.hpp"
+
+namespace tribofit {
+namespace {
+
+/// "[1.2, 1.4]" in `unit`; empty where it is not known.
+std::string range_text(const Range& range, double unit) {
+  if (std::isnan(range.lower95)) return "";
+  return fmt::format("[{}, {}]", significant(range.lower95 / unit, 4), significant(range.upper95 / unit, 4));
+}
+
+/// Where sliding gains or loses its stability, where stick vanishes and comes back, with their 95 % ranges.
+std::vector<std::string> critical_sentences(const StudiedMachine& of, const SpeedStudy& study) {
+  const CriticalSpeed& c = study.critical;
+  std::vector<std::string> out;
+  const auto add = [&](const char* what, double value, const Range& range) {
+    if (std::isnan(value)) return;
+    std::string sentence = fmt::format("{} {}", what, velocity_text(value, of.machine));
+    if (!std::isnan(range.lower95)) sentence += ",  " + range_text(range, kMillimetre) + " mm/s (95 %)";
+    out.push_back(std::move(sentence));
+  };
+  for (const double v : c.linear) {
+    const bool last = v == c.linear.back();
+    const char* what =
+        c.stable_at_highest ? "steady sliding loses its stability below" : "steady sliding is unstable from";
+    add(last ? what : "steady sliding changes its stability at", v,
+        last ? study.linear_range : Range{std::nan(""), std::nan("")});
+  }
+  const std::string searched =
+      fmt::format("from {} to {} mm/s", significant(1e3 * c.lowest, 3), significant(1e3 * c.highest, 3));
+  if (c.linear.empty()) {
+    out.push_back(
+        fmt::format("steady sliding is {} at all speeds {}", c.stable_at_highest ? "stable" : "unstable", searched));
+  }
+  add("on the way up stick vanishes at", c.stick_vanishes, study.vanishes_range);
+  add("on the way down it comes back at", c.stick_returns, study.returns_range);
+  if (!std::isnan(c.stick_vanishes) && std::isnan(c.stick_returns)) {
+    out.push_back("on the way down it does not come back: sliding goes on");
+  }
+  if (c.below_range) out.push_back("nothing sticks " + searched);
+  if (c.above_range) {
+    out.push_back(
+        fmt::format("it still sticks at {} mm/s, the highest speed searched", significant(1e3 * c.highest, 3)));
+  }
+  return out;
+}
+
+/// What is between the two speeds where they differ; empty where they do not.
+std::string bistable_sentence(const CriticalSpeed& c) {
+  if (!c.is_bistable()) return "";
+  return fmt::format(
+      "Between {} and {} mm/s it depends on the past which of the two is seen: stick-slip goes on where it has begun, "
+      "sliding goes on where it has (a subcritical bifurcation).",
+      significant(1e3 * c.stick_returns, 4), significant(1e3 * c.stick_vanishes, 4));
+}
+
+/// The measures of the machine at its own speed, with their 95 % ranges.
+ReportTable own_table(const StudiedMachine& of, const SpeedStudy& study) {
+  ReportTable table(
+      fmt::format("At {}: {}", velocity_text(of.machine.disc_velocity(), of.machine), to_string(study.own.regime)));
+  table.text({"measure"}).numbers({"value", "95 % interval"}).text({"unit"}).text({"meaning"}, 1);
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    const MeasureInfo& measure = measures()[k];
+    const std::string range = range_text(study.own_ranges[k], measure.si);
+    table.rows.push_back(
+        {measure.name, measure_text(study.own, measure), range.empty() ? "-" : range, measure.unit, measure.meaning});
+  }
+  return table;
+}
+
+/// The measures over speed at `most` speeds, evenly; a second row where a motion that begins in sliding differs.
+ReportTable speed_table(const SpeedStudy& study, std::size_t most) {
+  ReportTable table("Over speed");
+  table.columns.push_back({"speed [mm/s]", true, 0, "mm/s"});
+  table.text({"begun in", "regime"});
+  add_measure_columns(table);
+  const std::vector<std::size_t> shown = thinned(study.velocity.size(), most);
+  for (const std::size_t i : shown) {
+    const std::string velocity = significant(study.velocity[i] / kMillimetre, 4);
+    std::vector<std::string> up = row_of({velocity, "stick"}, study.up[i]);
+    std::vector<std::string> down = row_of({velocity, "sliding"}, study.down[i]);
+    const bool same = std::equal(up.begin() + 2, up.end(), down.begin() + 2);
+    if (same) up[1] = "either";
+    table.rows.push_back(std::move(up));
+    if (!same) table.rows.push_back(std::move(down));
+  }
+  if (shown.size() < study.velocity.size()) {
+    table.caption += fmt::format(" ({} of {} speeds; --csv writes all)", shown.size(), study.velocity.size());
+  }
+  return table;
+}
+
+/// An upright mark at each critical speed; what happens at one speed shares a mark.
+void add_critical(const SpeedStudy& study, Chart& chart) {
+  constexpr double kSame = 1e-3;
+  const std::size_t first = chart.marks.size();
+  const auto add = [&](double at, Dash dash, const char* text) {
+    if (!std::isfinite(at)) return;
+    for (std::size_t k = first; k < chart.marks.size(); ++k) {
+      ChartMark& mark = chart.marks[k];
+      if (std::abs(mark.at * kMillimetre / at - 1) > kSame) continue;
+      mark.text += std::string(", ") + text;
+      return;
+    }
+    chart.marks.push_back({at / kMillimetre, true, dash, text, 0});
+  };
+  const CriticalSpeed& c = study.critical;
+  for (const double v : c.linear) add(v, Dash::dotted, "stability of sliding");
+  add(c.stick_vanishes, Dash::dashed, "stick vanishes");
+  add(c.stick_returns, Dash::dash_dotted, "stick returns");
+}
+
+/// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
+void add_range(const Range& range, std::size_t panel, Chart& chart) {
+  if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
+  chart.lines.push_back({.name = "95 % range of a critical speed",
+                         .x = {range.lower95 / kMillimetre, range.upper95 / kMillimetre},
+                         .y = {0, 0},
+                         .stroke = {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4},
+                         .panel = panel});
+}
+
+void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  const std::vector<double> velocity = in_unit(study.velocity, kMillimetre);
+  const auto add = [&](const char* name, const std::vector<Settled>& settled, std::size_t kind, Dash dash) {
+    ChartLine line{.name = name, .x = velocity, .stroke = marked(kind), .panel = panel};
+    line.stroke.dash = dash;
+    line.stroke.size = 5;
+    for (const Settled& s : settled) line.y.push_back(s.*measure.value / measure.si);
+    chart.lines.push_back(std::move(line));
+  };
+  add("begun in stick (way up)", study.up, 1, Dash::solid);
+  add("begun in sliding (way down)", study.down, 2, Dash::dashed);
+}
+
+/// What the record says at its own speed; nothing where it does not.
+void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  const Estimate* value = measured_value(of, measure);
+  if (value == nullptr) return;
+  ChartLine line{.name = "measured", .stroke = dots(Colour::black, Symbol::cross, 9), .bars = true, .panel = panel};
+  line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si, 1.96 * value->std_error / measure.si);
+  chart.lines.push_back(std::move(line));
+}
+
+/// Speeds in equal ratios are seen apart on a logarithmic axis.
+ChartAxis speed_axis(const SpeedStudy& study) {
+  constexpr double kWide = 20;
+  const std::vector<double>& v = study.velocity;
+  const bool wide = !v.empty() && v.front() > 0 && v.back() > kWide * v.front();
+  return {.quantity = "speed of the disc", .unit = "mm/s", .logarithmic = wide};
+}
+
+Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const char* id, const char* title,
+                 const std::vector<std::string>& names) {
+  Chart chart{.id = id,
+              .title = title,
+              .x = speed_axis(study),
+              .panels = {},
+              .height = 150 + 170 * static_cast<int>(names.size())};
+  for (const std::string& name : names) {
+    const MeasureInfo& measure = measure_named(name);
+    const std::size_t panel = chart.panels.size();
+    ChartPanel& added = chart.panels.emplace_back();
+    added.axis = axis_of(measure);
+    added.axis.from_zero = true;
+    add_sweeps(study, measure, panel, chart);
+    add_measured(of, measure, panel, chart);
+    if (name == "frequency") {
+      chart.marks.push_back({natural_hertz(of.machine), false, Dash::dotted, "natural frequency", panel});
+    }
+    if (name == "stick-time") {
+      add_range(study.vanishes_range, panel, chart);
+      add_range(study.returns_range, panel, chart);
+    }
+  }
+  add_critical(study, chart);
+  return chart;
+}
+
+Chart growth_chart(const SpeedStudy& study) {
+  Chart chart{.id = "growth-rate",
+              .title = "Growth of a small vibration about steady sliding",
+              .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
+              .x = speed_axis(study),
+              .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
+              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}}};
+  add_range(study.linear_range, 0, chart);
+  chart.marks.push_back({0, false, Dash::solid, "", 0});
+  add_critical(study, chart);
+  return chart;
+}
+
+}  // namespace
+
+std::string render_study(const StudiedMachine& of, const SpeedStudy& study, const TerminalOptions& options) {
+  constexpr std::size_t kSpeeds = 20;
+  TerminalText text = machine_text(of, options);
+  text.table(own_table(of, study));
+  text.line(seen_sentence(study.own), 2, 4);
+  text.heading("Critical speed");
+  text.lines(critical_sentences(of, study), 2, 4);
+  text.line(bistable_sentence(study.critical));
+  text.table(speed_table(study, kSpeeds));
+  return ended(std::move(text), "to see which number matters", "sensitivity", options);
+}
+
+std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const JsonOptions& options) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < study.velocity.size(); ++i) {
+    points.push_back(object("velocity_mm_s", study.velocity[i] / kMillimetre, "growth_rate_1_s", study.growth_rate[i],
+                            "up", explained_json(study.up[i]), "down", explained_json(study.down[i])));
+  }
+  Json own = explained_json(study.own);
+  for (std::size_t k = 0; k < study.own_ranges.size(); ++k) {
+    own["ci95"][measures()[k].column] = range_json(study.own_ranges[k], measures()[k].si);
+  }
+  const CriticalSpeed& c = study.critical;
+  const Json critical =
+      object("linear_mm_s", list_of(c.linear, [](double v) { return number(v / kMillimetre); }), "linear_ci95_mm_s",
+             range_json(study.linear_range, kMillimetre), "stick_vanishes_mm_s", c.stick_vanishes / kMillimetre,
+             "stick_vanishes_ci95_mm_s", range_json(study.vanishes_range, kMillimetre), "stick_returns_mm_s",
+             c.stick_returns / kMillimetre, "stick_returns_ci95_mm_s", range_json(study.returns_range, kMillimetre),
+             "searched_mm_s", interval_json(c.lowest / kMillimetre, c.highest / kMillimetre), "nothing_sticks",
+             c.below_range, "always_sticks", c.above_range);
+  return study_text(of, "speed", object("own", own, "critical_speed", critical, "points", points), options);
+}
+
+void write_study(const std::string& folder, const SpeedStudy& study) {
+  WholeFolder files(folder);
+  CsvTable table(
+      files, "speed.csv",
+      "velocity_mm_s,growth_rate_1_s,regime_up" + measure_columns("up_") + ",regime_down" + measure_columns("down_"));
+  for (std::size_t i = 0; i < study.velocity.size(); ++i) {
+    table.row(1e3 * study.velocity[i], study.growth_rate[i], settled_json(study.up[i]), settled_json(study.down[i]));
+  }
+  files.commit();
+}
+
+Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options) {
+  std::vector<std::string> lead;
+  for (const std::string& sentence : critical_sentences(of, study)) lead.push_back(capitalised(sentence) + ".");
+  const std::string between = bistable_sentence(study.critical);
+  if (!between.empty()) lead.push_back(between);
+  ReportSection section{"speed", "Over the speed of the disc", {}};
+  Chart motion = over_speed(of, study, "speed-motion", "Frequency, stick and amplitude over speed",
+                            {"frequency", "stick-time", "peak-to-peak"});
+  motion.note = "Where the two ways differ, both motions go on where they have begun.";
+  section.add(std::move(motion));
+  section.add(over_speed(of, study, "speed-energy", "Energy before break-away and fastest slip over speed",
+                         {"energy", "peak-speed"}));
+  section.add(growth_chart(study));
+  section.add(own_table(of, study));
+  constexpr std::size_t kMostRows = 200;
+  ReportTable table = speed_table(study, kMostRows);
+  table.folded = true;
+  section.add(std::move(table));
+  Report report = study_report(of, "speed", "Motion over speed", fmt::format("{}", fmt::join(lead, " ")),
+                               {std::move(section)}, options);
+  if (study.own.regime == Regime::not_settled) report.warnings.push_back(seen_sentence(study.own));
+  return report;
+}
+
+}  // namespace tribofit
