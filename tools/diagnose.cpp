@@ -21,7 +21,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDiagnoseFooter =
     "Several traces are diagnosed together, with shared parameters; a folder stands for the runs of its\n"
     "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
     "each condition is held back to confirm the finding.\n"
@@ -82,7 +82,7 @@ std::string reason_of(const DiagnosedTraces& result) {
   return "there are too few cycles to hold any out";
 }
 
-ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   const Split split = keep_for_confirmation(find_runs(s.traces, options.read).runs, s.confirm, options.read);
   check_usage(s, split);
@@ -115,7 +115,7 @@ ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
 
 void add_diagnose(const Command& app) {
   const Command verb = app.add_verb("diagnose", "Where a law fails, which effect is missing, what to measure next");
-  verb.footer(kFooter);
+  verb.footer(kDiagnoseFooter);
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   verb.add_option("--confirm", settings->confirm,
@@ -130,6 +130,6 @@ void add_diagnose(const Command& app) {
     verb.refuse_empty_values();
     check_seed(*settings);
     if (settings->traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
-    return run(*settings, verb.own_options());
+    return run_diagnose(*settings, verb.own_options());
   });
 }

@@ -27,7 +27,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kExploreFooter =
     "Serves a page on this machine (127.0.0.1) until Ctrl-C: choose the law and effects, drag starts and bounds,\n"
     "choose cycles, exclude stretches of time, type a formula; each change is fitted at once, and the ladder keeps\n"
     "every model visited. The page shows the command that fits the model shown, and saves the session as a file.\n"
@@ -183,7 +183,7 @@ void serve(WorkbenchServer& server) {
   answering.join();
 }
 
-ExitStatus run(ExploreSettings& s, const std::vector<std::string>& given) {
+ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given) {
   std::vector<std::string> arguments = given;
   std::string saved;
   if (!s.session.empty()) {
@@ -204,7 +204,7 @@ ExitStatus run(ExploreSettings& s, const std::vector<std::string>& given) {
 
 void add_explore(const Command& app) {
   const Command verb = app.add_verb("explore", "A live page: switch effects on and watch the error fall");
-  verb.footer(kFooter);
+  verb.footer(kExploreFooter);
   const auto settings = std::make_shared<ExploreSettings>();
   add_options(verb, *settings);
   verb.on_run([settings, verb] {
@@ -213,6 +213,6 @@ void add_explore(const Command& app) {
     if (!settings->session.empty()) refuse_beside_session(verb.own_options());
     if (settings->traces.empty() && settings->session.empty())
       throw UsageError("no trace given; try `identify explore --radius 15mm trace.csv`");
-    return run(*settings, verb.own_options());
+    return run_explore(*settings, verb.own_options());
   });
 }

@@ -111,7 +111,7 @@ NamePattern pattern_from(const std::string& text) {
   }
 }
 
-ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run_identify(const Settings& s, const std::vector<std::string>& arguments) {
   if (s.traces.empty()) throw UsageError("no trace given; try `identify --radius 15mm trace.csv`");
   const IdentifyOptions options = options_from(s);
   FindOptions find;
@@ -143,6 +143,6 @@ void add_identify(const Command& app) {
   app.on_run([settings, app] {
     app.refuse_empty_values();
     check_seed(*settings);
-    return run(*settings, app.own_options());
+    return run_identify(*settings, app.own_options());
   });
 }

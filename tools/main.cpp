@@ -16,7 +16,7 @@ constexpr const char* kDescription =
     "Identifies the friction law of a tribometer trace (CSV): stick-slip measures, parameters with\n"
     "uncertainties, errors against the noise floor.";
 
-constexpr const char* kFooter =
+constexpr const char* kProgramFooter =
     "Units are accepted in any usual form: 15mm, 0.015 m, 4rpm, 0.419rad/s, 50N, 20kHz.\n"
     "The command line overrides a folder's manifest.csv, which overrides the file.\n\n"
     "Examples:\n"
@@ -31,7 +31,7 @@ constexpr const char* kFooter =
     "2 wrong usage; 3 unreadable or invalid input.";
 
 ExitStatus run(int argc, char** argv) {
-  const Program program{"identify", kDescription, kFooter, "identify " + std::string(tribofit::version)};
+  const Program program{"identify", kDescription, kProgramFooter, "identify " + std::string(tribofit::version)};
   return run_program(program, argc, argv, [](const Command& identify) {
     add_identify(identify);
     add_manifest(identify);

@@ -19,7 +19,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kMergeFooter =
     "The shards of a campaign need only see the same folders:\n"
     "  identify runs/ --out results/ --shard 1/2      (on one machine)\n"
     "  identify runs/ --out results/ --shard 2/2      (on another)\n"
@@ -60,7 +60,7 @@ void add_merge(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   const auto folder = std::make_shared<std::string>();
   const Command verb = app.add_verb("merge", "Combine the results of the shards of a campaign");
-  verb.footer(kFooter);
+  verb.footer(kMergeFooter);
   verb.add_option("RESULTS", *folder, "Folder of results, as given to --out").required();
   add_pooling_options(verb, *settings);
   add_compare_option(verb, *settings);

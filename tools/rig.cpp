@@ -17,7 +17,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRigFooter =
     "Mass, damping and stiffness from N mu = m dv_b/dt + c v_b + k x, whatever the friction law is. Without\n"
     "--load (or a channel of it) they are per newton. A high-pass found on the vibrometer is undone first;\n"
     "--keep-high-pass shows what it does to the damping.\n\n"
@@ -25,7 +25,7 @@ constexpr const char* kFooter =
     "  identify rig --radius 15mm --load 50N trace.csv\n"
     "  identify rig --radius 15mm --load 50N --instruments lab.json --json rig.json trace.csv";
 
-ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run_rig(const Settings& s, const std::vector<std::string>& arguments) {
   IdentifyOptions options = options_from(s);
   options.motion.undo_high_pass = !s.keep_high_pass;
   const Input input = only_input(s, options.read, "rig");
@@ -44,7 +44,7 @@ ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
 
 void add_rig(const Command& app) {
   const Command verb = app.add_verb("rig", "Mass, damping and stiffness of the rig behind a trace");
-  verb.footer(kFooter);
+  verb.footer(kRigFooter);
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   verb.add_flag("--keep-high-pass", settings->keep_high_pass,
@@ -53,6 +53,6 @@ void add_rig(const Command& app) {
   add_result_options(verb, *settings);
   verb.on_run([settings, verb] {
     verb.refuse_empty_values();
-    return run(*settings, verb.own_options());
+    return run_rig(*settings, verb.own_options());
   });
 }

@@ -35,7 +35,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The command line as given; empty means: from the published test of the nearest radius.
-struct Request {
+struct SimulateRequest {
   MachineRequest machine;
   std::string noise_mu = "0", noise_v = "0mm/s", noise_colour = "0", scatter = "0", wander = "0";
   std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
@@ -68,7 +68,7 @@ double given_or(const std::string& text, Quantity quantity, const char* option, 
   return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
 }
 
-void plan_drive(const Request& request, Plan& plan) {
+void plan_drive(const SimulateRequest& request, Plan& plan) {
   Drive& drive = plan.drive;
   drive = plan.machine.drive();
   plan.speed = plan.machine.speed;
@@ -94,7 +94,7 @@ void plan_drive(const Request& request, Plan& plan) {
   vary_temperature(request.temperature, duration, drive);
 }
 
-Sensors plan_sensors(const Request& request) {
+Sensors plan_sensors(const SimulateRequest& request) {
   return {.mass_below = parse_quantity(request.mass_below, Quantity::mass, "--mass-below", "kg"),
           .force_bandwidth = parse_quantity(request.force_bandwidth, Quantity::frequency, "--force-bandwidth", "Hz"),
           .force_damping = number(request.force_damping, "--force-damping"),
@@ -107,7 +107,7 @@ Sensors plan_sensors(const Request& request) {
           .seed = request.seed};
 }
 
-Plan make_plan(const Request& request) {
+Plan make_plan(const SimulateRequest& request) {
   Plan plan;
   const RequestedMachine requested = machine_from(request.machine);
   plan.machine = requested.machine;
@@ -217,7 +217,7 @@ Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
 }
 
 /// The whole truth about a simulated trace.
-Json truth(const Request& request, const Plan& plan, const SimulatedMotion& motion, double floor) {
+Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMotion& motion, double floor) {
   const Sensors& sensors = plan.sensors;
   return {{"tool", {{"name", "identify simulate"}, {"version", version}}},
           {"trace",
@@ -277,7 +277,7 @@ std::string json_path(const std::string& csv) {
   return path;
 }
 
-void run(const Request& request) {
+void run_simulate(const SimulateRequest& request) {
   if (request.out == "-") {
     throw InputError("--out - is not a file", "two files are written, the trace and the truth beside it: give a name");
   }
@@ -305,7 +305,7 @@ void run(const Request& request) {
   print(text + fmt::format("next: identify {} {}\n", known, request.out));
 }
 
-void add_options(const Command& verb, Request& r) {
+void add_options(const Command& verb, SimulateRequest& r) {
   const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
     return verb.add_option(flag, value, help).group(name);
   };
@@ -349,10 +349,10 @@ void add_simulate(const Command& app) {
   verb.footer(
       "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out "
       "trace.csv");
-  auto request = std::make_shared<tribofit::Request>();
+  auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
   verb.on_run([request] {
-    tribofit::run(*request);
+    run_simulate(*request);
     return ExitStatus::done;
   });
 }

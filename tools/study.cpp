@@ -27,7 +27,7 @@ using namespace tribofit;
 namespace {
 
 /// What is typed behind `identify study KIND`.
-struct Request {
+struct StudyRequest {
   Settings settings;  // of the trace, and the outputs
   MachineRequest machine;
   std::string sharpness;
@@ -42,7 +42,7 @@ struct Request {
   bool again = false;
 };
 
-SettleOptions settle_options(const Request& r) {
+SettleOptions settle_options(const StudyRequest& r) {
   SettleOptions options;
   if (r.from == "sliding") options.start = StartFrom::sliding;
   if (r.from == "rest") options.start = StartFrom::rest;
@@ -116,7 +116,7 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
 }
 
 /// Writes and prints what was asked for of a study.
-void deliver_study(const Request& r, Outputs outputs) {
+void deliver_study(const StudyRequest& r, Outputs outputs) {
   if (!r.settings.csv.empty()) {
     outputs.text = [text = std::move(outputs.text), folder = r.settings.csv] {
       return text() + "\nTables in " + folder + "\n";
@@ -134,7 +134,7 @@ struct Begun {
   ReportOptions report;
 };
 
-Begun begin(Request& r, const Command& kind) {
+Begun begin(StudyRequest& r, const Command& kind) {
   kind.refuse_empty_values();
   refuse_overwriting(r.settings, input_files(r.settings));
   Begun out;
@@ -150,14 +150,14 @@ Begun begin(Request& r, const Command& kind) {
 }
 
 template <class Study>
-void deliver(const Request& r, const Begun& b, const Study& study) {
+void deliver(const StudyRequest& r, const Begun& b, const Study& study) {
   deliver_study(
       r, {[&] { return render_study(b.machine, study, b.terminal); },
           [&] { return study_json(b.machine, study, b.json); }, [&] { return report_of(b.machine, study, b.report); },
           [&](const std::string& folder) { write_study(folder, study); }});
 }
 
-void run_speed(Request& r, const Command& kind) {
+void run_speed(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   SpeedStudyOptions options;
   options.settle = b.settle;
@@ -169,7 +169,7 @@ void run_speed(Request& r, const Command& kind) {
   deliver(r, b, study);
 }
 
-void run_phase(Request& r, const Command& kind) {
+void run_phase(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   std::vector<double> velocities;
   if (!r.range.empty()) velocities = velocities_from(r.range, r.points, b.machine.machine);
@@ -185,13 +185,13 @@ void run_phase(Request& r, const Command& kind) {
   deliver(r, b, study);
 }
 
-void run_response(Request& r, const Command& kind) {
+void run_response(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   const Response study = study_response(b.machine.machine, r.harmonics, b.settle);
   deliver(r, b, study);
 }
 
-void run_sensitivity(Request& r, const Command& kind) {
+void run_sensitivity(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   SensitivityOptions options;
   options.variables = r.vary;
@@ -203,7 +203,7 @@ void run_sensitivity(Request& r, const Command& kind) {
   deliver(r, b, study);
 }
 
-void run_map(Request& r, const Command& kind) {
+void run_map(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   const MeasureInfo& measure = measure_named(r.measure);
   MapRequest request{b.machine.machine, axis_from(r.x, b.machine.machine, "--x"),
@@ -224,8 +224,8 @@ void run_map(Request& r, const Command& kind) {
                     [&] { return report_of(b.machine, request, file.rows(), b.report); }});
 }
 
-Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<Request>& r,
-                 void (*run)(Request&, const Command&)) {
+Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,
+                 void (*run)(StudyRequest&, const Command&)) {
   const Command kind = study.add_verb(name, help);
   kind.narrow_help();
   add_input_options(kind, r->settings);
@@ -259,7 +259,7 @@ void add_study(const Command& app) {
       "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv  # what would more damping do?\n"
       "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
       "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
-  const auto request = [] { return std::make_shared<Request>(); };
+  const auto request = [] { return std::make_shared<StudyRequest>(); };
 
   auto r = request();
   Command kind = add_kind(study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed);

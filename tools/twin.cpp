@@ -19,7 +19,7 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTwinFooter =
     "Fits the law and the rig, simulates the same conditions for as long as the record, takes the simulated\n"
     "record through the same steps and compares the motions. With --effect there is a twin of the bare\n"
     "law and one of the law with the effects.\n\n"
@@ -27,7 +27,7 @@ constexpr const char* kFooter =
     "  identify twin --radius 15mm --load 50N trace.csv\n"
     "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
 
-ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   const Input input = only_input(s, options.read, "twin");
   TwinIdentification result;
@@ -55,7 +55,7 @@ ExitStatus run(const Settings& s, const std::vector<std::string>& arguments) {
 
 void add_twin(const Command& app) {
   const Command verb = app.add_verb("twin", "The motion that law and rig predict beside the measured one");
-  verb.footer(kFooter);
+  verb.footer(kTwinFooter);
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   add_model_options(verb, *settings);
@@ -64,6 +64,6 @@ void add_twin(const Command& app) {
   verb.on_run([settings, verb] {
     verb.refuse_empty_values();
     check_seed(*settings);
-    return run(*settings, verb.own_options());
+    return run_twin(*settings, verb.own_options());
   });
 }

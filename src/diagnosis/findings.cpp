@@ -143,13 +143,15 @@ void describe_last_trial(const FindingInputs& in, const LastJudged& last, Effect
   finding.error_reduction = reduction(in, before, squared);
 }
 
-/// It would take away much of what is left above the noise, and what stands against it is chance alone.
+/// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
+/// of what is left above the noise; or it is no chance, but its values cannot be: something that acts like it is there.
 bool is_possible(const FindingInputs& in, const LastJudged& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;
+  if (!(judged.size > limits::kLeastPossible) || !(judged.fall > 0)) return false;
+  if (!judged.plausible) return judged.p_value < limits::kChance;
   const double excess = in.ladder.top().held_out_squares - in.context.noise_squares();
-  return judged.plausible && judged.p_value < limits::kChanceOfPossible && judged.size > limits::kLeastPossible &&
-         judged.fall > limits::kPossiblePart * excess;
+  return judged.p_value < limits::kChanceOfPossible && judged.fall > limits::kPossiblePart * excess;
 }
 
 /// Status and reason of a candidate that may not be on the ladder.
@@ -161,8 +163,11 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last,
   if (finding.status == EffectStatus::unsupported && is_possible(in, last)) {
     finding.status = EffectStatus::possible;
     finding.reason =
-        fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to decide: {}",
-                    last.judged->p_value, in.all[k].info.experiment);
+        last.judged->plausible
+            ? fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to decide: {}",
+                          last.judged->p_value, in.all[k].info.experiment)
+            : finding.reason + ": something that acts like it remains (p = " +
+                  fmt::format("{:.2g}); to decide: {}", last.judged->p_value, in.all[k].info.experiment);
   }
   if (!contains(in.ladder.withdrawn, k)) return;
   finding.status = EffectStatus::unsupported;

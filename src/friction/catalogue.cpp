@@ -9,6 +9,12 @@
 
 namespace tribofit {
 
+Effect::Effect(const Effect&) = default;
+Effect::Effect(Effect&&) noexcept = default;
+Effect& Effect::operator=(const Effect&) = default;
+Effect& Effect::operator=(Effect&&) noexcept = default;
+Effect::~Effect() = default;
+
 namespace {
 
 constexpr std::size_t kBesideTheCatalogue = 2;  // alternatives of Effect: the form of rate-state, and Formula
@@ -23,7 +29,7 @@ std::vector<Effect> make_catalogue(std::index_sequence<I...>) {
 
 std::span<const Effect> effect_catalogue() {
   static const std::vector<Effect> catalogue =
-      make_catalogue(std::make_index_sequence<std::variant_size_v<Effect> - kBesideTheCatalogue>());
+      make_catalogue(std::make_index_sequence<std::variant_size_v<EffectAlternatives> - kBesideTheCatalogue>());
   return catalogue;
 }
 

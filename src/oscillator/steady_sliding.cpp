@@ -1,11 +1,11 @@
 #include "tribofit/oscillator/steady_sliding.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "simulation_checks.hpp"
 #include "slip_flow.hpp"
+#include "statistics/linear_algebra.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 
@@ -47,7 +47,7 @@ SteadySliding steady_sliding(const Machine& machine) {
       jacobian(i, k) = (above[row] - below[row]) / (2 * step);
     }
   }
-  const Eigen::VectorXcd values = jacobian.eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(jacobian);
   out.eigenvalues.assign(values.data(), values.data() + n);
   std::sort(out.eigenvalues.begin(), out.eigenvalues.end(), [](const auto& a, const auto& b) {
     return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();

@@ -13,6 +13,10 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) {
+  return Eigen::EigenSolver<MatrixXd>(matrix, false).eigenvalues();
+}
+
 MatrixXd solve_symmetric(const MatrixXd& matrix, const MatrixXd& right) {
   return matrix.ldlt().solve(right);
 }

@@ -16,6 +16,9 @@ struct SymmetricEigen {
 /// Only the lower triangle is read. Cost: n^3.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
+/// Eigenvalues of a real square matrix, in no order. Cost: n^3.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
+
 /// Solution x of A x = b for a symmetric A that is positive or negative semidefinite (LDL^T with pivots); the columns
 /// of `right` are solved for one by one. Cost: n^3.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -83,11 +84,25 @@ concept ReducesSpeed = requires(const double* q) {
 
 }  // namespace hooks
 
+namespace detail {
+
+/// Comparisons instead of the table of functions of std::visit: a visitor has nothing to do with most effects, and the
+/// compiler leaves those out.
+template <class Visitor, std::size_t... I>
+void visit_effect(const Effect& effect, const Visitor& visit, std::index_sequence<I...>) {
+  const std::size_t held = effect.index();
+  (void)((held == I && (visit(*std::get_if<I>(&effect)), true)) || ...);
+}
+
+}  // namespace detail
+
 /// Calls visit(effect, parameters of that effect) for every effect of the model, in order.
 template <class T, class Visitor>
 void for_each_effect(const FrictionModel& model, const T* p, Visitor&& visit) {
+  constexpr auto kAlternatives = std::make_index_sequence<std::variant_size_v<EffectAlternatives>>();
   for (std::size_t k = 0; k < model.effects().size(); ++k) {
-    std::visit([&](const auto& effect) { visit(effect, p + model.offset(k)); }, model.effects()[k]);
+    detail::visit_effect(
+        model.effects()[k], [&](const auto& effect) { visit(effect, p + model.offset(k)); }, kAlternatives);
   }
 }
 
@@ -385,5 +400,15 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
     }
   });
 }
+
+// Compiled once, in evaluate.cpp.
+extern template LawValues<double> law_for(const FrictionModel&, const double*, const Slip&);
+extern template double steady_friction(const FrictionModel&, const double*, const LawValues<double>&,
+                                       SlidingState<double>, const double*);
+extern template void steady_friction(const FrictionModel&, const double*, const LawValues<double>&, const Slip&,
+                                     std::span<const double>, std::span<double>);
+extern template double break_away_level(const FrictionModel&, const double*, const Slip&);
+extern template void evaluate(const FrictionModel&, const double*, const Slip&, std::span<const double>,
+                              std::span<double>);
 
 }  // namespace tribofit

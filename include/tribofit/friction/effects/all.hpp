@@ -37,11 +37,22 @@ namespace tribofit {
 
 /// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
 /// memories. The last two are not part of the catalogue: a form of rate-state, and the user's own (see formula.hpp).
-using Effect =
+using EffectAlternatives =
     std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry, Heating,
                  RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout, DiscPattern, SpeedRipple,
                  LoadCoupling, Ringing, SensorInertia, SensorOffset, Crosstalk, ForceBandwidth, ChannelDelay,
                  RadiusOffset, VelocityGain, VelocityHighPass, Interference, RateStateHealing, Formula>;
+
+/// One effect of the list. What it takes to copy, move and destroy thirty types is compiled once, in catalogue.cpp.
+class Effect : public EffectAlternatives {
+ public:
+  using EffectAlternatives::EffectAlternatives;
+  Effect(const Effect&);
+  Effect(Effect&&) noexcept;
+  Effect& operator=(const Effect&);
+  Effect& operator=(Effect&&) noexcept;
+  ~Effect();
+};
 
 /// Every effect of the catalogue, in its order.
 std::span<const Effect> effect_catalogue();
