@@ -288,6 +288,7 @@ void finish(const Case& c, const SimulatedMotion& motion, Trace& trace, std::uin
     for (double& v : *speeds) v /= c.slowness;
   }
   trace.conditions.speed.value /= c.slowness;
+  for (Step& step : trace.steps) step.conditions.speed.value /= c.slowness;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hidden_recipes.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/effects/all.hpp"
 
@@ -90,6 +91,26 @@ TEST(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
   for (const Outcome& o : outcomes) EXPECT_TRUE(o.names.empty()) << o.of.name << ": " << names(o);
   // The verdict may call scatter a structure now and then.
   EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
+}
+
+/// Sliding, slow and fast rigs, noise as 1/f: one record of each with nothing hidden and one with an effect.
+TEST(HiddenEffects, AreNamedInOtherKindsOfRecord) {
+  const std::vector<Case> cases =
+      plan_record_kinds({"stick-slip-flicker", "steps", "sines", "reversals", "slow-30", "fast-0.05"}, 1, 1);
+  EXPECT_GE(count_right(run_cases(cases, 0)), cases.size() - 1);
+}
+
+/// A slow rig makes the same record with another clock.
+TEST(HiddenEffects, ASlowRigIsAnExactImage) {
+  Case c = plan_record_kinds({"stick-slip-white"}, 0, 3)[2];
+  const Simulated fast = simulate_case(c), slow = simulate_case(slowed(c, 30));
+  EXPECT_EQ(fast.traces[0]->friction, slow.traces[0]->friction);
+  EXPECT_DOUBLE_EQ(30 * fast.traces[0]->time[100], slow.traces[0]->time[100]);
+  EXPECT_DOUBLE_EQ(fast.traces[0]->velocity[100], 30 * slow.traces[0]->velocity[100]);
+  EXPECT_DOUBLE_EQ(fast.traces[0]->steps[0].conditions.speed.value,
+                   30 * slow.traces[0]->steps[0].conditions.speed.value);
+  EXPECT_DOUBLE_EQ(30 * fast.truth[2], slow.truth[2]);  // steepness of the law
+  EXPECT_DOUBLE_EQ(30 * fast.truth[3], slow.truth[3]);  // frictional lag
 }
 
 TEST(HiddenEffects, OfNoCatalogueAreCalledUnexplained) {

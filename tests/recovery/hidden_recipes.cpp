@@ -73,7 +73,6 @@ std::optional<Programme> sliding_programme(const EffectInfo& effect) {
     case SketchView::curve:
       return Programme::steps;
     case SketchView::directions:
-    case SketchView::creep:
       return Programme::reversals;
     case SketchView::time:
     case SketchView::distance:
@@ -82,7 +81,7 @@ std::optional<Programme> sliding_programme(const EffectInfo& effect) {
     case SketchView::temperature:
     case SketchView::line:
       return Programme::ramps;
-    default:
+    default:  // in stick, at break-away, or over within a sample of a turn
       return std::nullopt;
   }
 }
