@@ -92,7 +92,7 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
   const auto kinds = kinds_of_levels(of.groups);
   const auto add_kinds = [&](auto value) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
-      const auto& [law, protocol] = kinds[k];
+      const std::string &law = kinds[k].first, &protocol = kinds[k].second;
       chart.add(protocol == "published" ? "per-cycle extremes" : law + " law", k, [&](std::size_t g) {
         const PooledGroup::OfFit* fit = fit_of(of.groups[g], law, protocol);
         return fit == nullptr ? Maybe{} : value(of.groups[g], *fit);
