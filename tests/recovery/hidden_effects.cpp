@@ -122,6 +122,10 @@ void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
 double true_error(const Simulated& simulated, const DiagnosedTraces& diagnosed) {
   Fit truth;
   truth.model = simulated.model;
+  if (!diagnosed.fits.empty()) {  // what its parameters refer to
+    truth.mean_load = diagnosed.fits.front().mean_load;
+    truth.mean_temperature = diagnosed.fits.front().mean_temperature;
+  }
   for (const double value : simulated.truth) {
     truth.parameters.emplace_back();
     truth.parameters.back().value = value;

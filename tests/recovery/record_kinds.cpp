@@ -44,9 +44,9 @@ constexpr RecordKind kRecordKinds[] = {
     {.name = "fast-0.01", .slowness = 0.01},
 };
 
-/// A piece of a period between two turns and rests is to sliding what a slip is to stick-slip.
+/// An eighth of a period is to sliding what a slip is to stick-slip.
 RelativeScales sliding_scales() {
-  const double slip_time = kPeriod / 6 * 30;
+  const double slip_time = kPeriod / 8 * 30;
   return {.slip_time = slip_time, .slip_length = slip_time, .duration = 60.0 / 40, .distance = 60 * kMeanSpeed / 0.25};
 }
 
