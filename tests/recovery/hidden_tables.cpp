@@ -363,6 +363,7 @@ std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
   Outcomes all;
   for (const Outcome& o : outcomes) {
     kinds[o.of.record_kind].push_back(&o);
+    kinds[o.of.flicker ? "with 1/f noise" : o.of.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(&o);
     all.push_back(&o);
   }
   for (const auto& [name, of] : kinds) row(name, of);
