@@ -50,10 +50,10 @@ std::vector<Case> slice(Kind kind, const PlanOptions& options) {
 constexpr PlanOptions kSlice = {
     .runs = 1, .pairs = 0, .nothing = 6, .aliens = 1, .unknowable = 1, .largest_only = true};
 
-/// One in three of the cases: the whole is for scripts/hidden-effects.
-std::vector<Case> one_in_three(const std::vector<Case>& cases) {
+/// One in six of the cases: the whole is for scripts/hidden-effects.
+std::vector<Case> one_in_six(const std::vector<Case>& cases) {
   std::vector<Case> out;
-  for (std::size_t i = 1; i < cases.size(); i += 3) out.push_back(cases[i]);
+  for (std::size_t i = 1; i < cases.size(); i += 6) out.push_back(cases[i]);
   return out;
 }
 
@@ -82,7 +82,7 @@ TEST(HiddenEffects, ACaseFollowsFromItsNameAlone) {
 }
 
 TEST(HiddenEffects, AreNamed) {
-  const std::vector<Outcome> outcomes = run_cases(one_in_three(slice(Kind::single, kSlice)), 0);
+  const std::vector<Outcome> outcomes = run_cases(one_in_six(slice(Kind::single, kSlice)), 0);
   EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
 }
 
@@ -93,10 +93,9 @@ TEST(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
   EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
 }
 
-/// Sliding, slow and fast rigs, noise as 1/f: one record of each with nothing hidden and one with an effect.
+/// Sliding, a slow rig, noise as 1/f: one record of each with nothing hidden and one with an effect.
 TEST(HiddenEffects, AreNamedInOtherKindsOfRecord) {
-  const std::vector<Case> cases =
-      plan_record_kinds({"stick-slip-flicker", "steps", "sines", "reversals", "slow-30", "fast-0.05"}, 1, 1);
+  const std::vector<Case> cases = plan_record_kinds({"stick-slip-flicker", "steps", "reversals", "slow-30"}, 1, 1);
   EXPECT_GE(count_right(run_cases(cases, 0)), cases.size() - 1);
 }
 

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Loaded{"drift", 0.0015, {.drift = 0.0015, .duration = 40, .rate = 2000, .seed = 23}},
                     Loaded{
                         "runout", 0.05, {.runout = 0.05, .runout_phase = 1, .duration = 40, .rate = 2000, .seed = 24}},
-                    Loaded{"asymmetry", 1.12, {.swing = 0.15, .ratio = 1.12, .duration = 24, .seed = 25}},
+                    Loaded{"asymmetry", 1.12, {.swing = 0.15, .ratio = 1.12, .duration = 24, .rate = 5000, .seed = 25}},
                     Loaded{"channel-delay", 1e-3, {.delay = 1e-3, .seed = 26}},
                     Loaded{"force-bandwidth", 150, {.low_pass = 150, .seed = 27}}),
     [](const auto& hidden) {
