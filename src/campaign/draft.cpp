@@ -4,20 +4,14 @@
 #include <filesystem>
 #include <utility>
 
+#include "csv_table.hpp"
 #include "find_runs.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
-
-/// A cell of the manifest; quoted where its reader would see more than one cell, or a comment.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",;\t\"#") == std::string::npos) return text;
-  return "\"" + replaced(text, "\"", "\"\"") + "\"";
-}
 
 const std::string* value_of(const StatedFields& fields, const std::string& name) {
   for (const OtherCondition& other : fields.others) {
@@ -36,17 +30,17 @@ class Draft {
   ManifestDraft text() const {
     ManifestDraft draft;
     draft.runs = rows_.size();
-    std::string table = "file,radius,speed,load,repeat";
-    for (const std::string& name : others_) table += "," + cell(name);
-    table += "\n";
+    CsvLine line;
+    for (const char* name : {"file", "radius", "speed", "load", "repeat"}) line.add(name);
+    for (const std::string& name : others_) line.add(name);
+    std::string table = line.take();
     for (const auto& [file, fields] : rows_) {
-      table += fmt::format("{},{},{},{},{}", cell(file), cell(fields.radius), cell(fields.speed), cell(fields.load),
-                           fields.repeat);
+      for (const std::string& text : {file, fields.radius, fields.speed, fields.load, fields.repeat}) line.add(text);
       for (const std::string& name : others_) {
         const std::string* value = value_of(fields, name);
-        table += "," + (value ? cell(*value) : "");
+        line.add(value ? *value : std::string());
       }
-      table += "\n";
+      table += line.take();
       if (!fields.radius.empty()) ++draft.complete;
     }
     for (const std::string& remark : remarks_) draft.text += "# " + remark + "\n";

@@ -87,4 +87,20 @@ std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const
   return kinds;
 }
 
+std::vector<OtherParameter> other_parameters(std::span<const PooledGroup> groups) {
+  std::vector<OtherParameter> out;
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      for (const PooledValue& v : fit.parameters) {
+        const bool known = std::any_of(out.begin(), out.end(), [&](const OtherParameter& other) {
+          return other.law == fit.law && other.name == v.name;
+        });
+        const bool is_level = v.name == "mu_s" || v.name == "mu_k";
+        if (!known && !is_level && v.effect.empty()) out.push_back({fit.law, v.name, v.unit});
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace tribofit

@@ -17,10 +17,6 @@
 namespace tribofit {
 namespace {
 
-Json tool_only() {
-  return object("name", "tribofit", "version", version);
-}
-
 Json repeat_json(const RunRecord& run) {
   return run.repeat ? Json(*run.repeat) : Json(nullptr);
 }
@@ -51,20 +47,12 @@ Json measures_json(const RunResult& r) {
                 "slip_time_std_error_s", r.slip_time.std_error, "rms_velocity_mm_s", r.rms_velocity);
 }
 
-bool was_read(const RunResult& result) {
-  return result.run.status != RunStatus::unreadable;
-}
-
-const Conditions& known_conditions(const RunResult& result) {
-  return was_read(result) ? result.conditions : result.run.conditions;
-}
-
 Json result_json(const RunResult& result) {
   const RunRecord& run = result.run;
   return object("name", run.name, "file", run.file, "status", to_string(run.status), "message",
-                text_or_null(run.message), "conditions", conditions_json(known_conditions(result)), "repeat",
+                text_or_null(run.message), "conditions", conditions_json(result.known_conditions()), "repeat",
                 repeat_json(run), "others", others_json(run.others), "friction_unit", result.friction_unit,
-                "stick_slip", was_read(result) ? measures_json(result) : Json(nullptr), "fits",
+                "stick_slip", result.was_read() ? measures_json(result) : Json(nullptr), "fits",
                 list_of(result.fits, fit_json), "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
 }
 
@@ -105,13 +93,13 @@ SummaryRow summary_row(const std::string& name, const std::string& file, std::st
 
 SummaryRow summary_row(const RunResult& result) {
   const RunRecord& run = result.run;
-  const Conditions& c = known_conditions(result);
+  const Conditions& c = result.known_conditions();
   SummaryRow row = summary_row(run.name, run.file, to_string(run.status));
   auto& [fixed, conditions, analysis] = row;
   add_members(fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
               c.speed.value / kRpm, "load_N", c.load.value, "repeat", repeat_json(run));
   for (const OtherCondition& other : run.others) conditions[column_of(other, fixed)] = other.value;
-  if (!was_read(result)) return row;
+  if (!result.was_read()) return row;
   analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
   analysis.update(measures_json(result));
   analysis["best_law"] = result.fits.empty() ? "" : result.fits[result.best].law;
@@ -147,14 +135,6 @@ std::string error_line(const RunRecord& run) {
   return run.status == RunStatus::failed ? run.file + ": the analysis could not be done: " + run.message : run.message;
 }
 
-std::string table_text(ReportTable table, std::size_t runs, const TerminalOptions& options) {
-  TerminalText text(options);
-  text.table(table);
-  if (runs > table.rows.size()) text.line(fmt::format("... and {} more in summary.csv", runs - table.rows.size()));
-  text.line(runs_note());
-  return text.take();
-}
-
 }  // namespace
 
 std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options) {
@@ -174,24 +154,12 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
   return sealed(text);
 }
 
-std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
-  const std::string hash = options_hash(options);
-  const auto listed = [&](const Run& run) {
-    return object("name", run.name, "file", run.file, "settings", settings_hash(run, hash));
-  };
-  std::error_code ignored;
-  const std::string folder =
-      campaign.folder.empty() ? "" : std::filesystem::weakly_canonical(campaign.folder, ignored).string();
-  return sealed(text_of(object("tool", tool_only(), "folder", text_or_null(folder), "runs",
-                               list_of(campaign.runs, listed), "problems", campaign.problems)));
-}
-
 CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options,
                               const std::string& comparison) {
   constexpr std::size_t kMostRows = 40;
   const std::filesystem::path folder(results.folder());
   WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
-  json.write("{\"tool\": " + line_of(tool_only()) + ",\n\"runs\": [");
+  json.write("{\"tool\": " + line_of(object("name", "tribofit", "version", version)) + ",\n\"runs\": [");
   SummaryColumns columns;
   std::string friction_unit = "1";
   columns.declare(summary_row("", "", ""));
@@ -199,7 +167,7 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
     const auto result = results.read(k);
     if (!result) continue;
     columns.declare(summary_row(*result));
-    if (was_read(*result)) friction_unit = result->friction_unit;
+    if (result->was_read()) friction_unit = result->friction_unit;
   }
   csv.write(columns.header());
   CampaignSummary summary;
@@ -222,7 +190,13 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
   json.finish();
   csv.commit();
   json.commit();
-  summary.table = table_text(std::move(table), results.size(), options);
+  TerminalText text(options);
+  text.table(table);
+  if (table.rows.size() < results.size()) {
+    text.line(fmt::format("... and {} more in {}", results.size() - table.rows.size(), table.file));
+  }
+  text.line("+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE");
+  summary.table = text.take();
   return summary;
 }
 

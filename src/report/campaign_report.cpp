@@ -39,8 +39,7 @@ ReportSection runs_section(const DrawnCampaign& of) {
     runs.rows.push_back(there ? run_row(of.runs[next++]) : run_row(of.results.missing(k)));
   }
   section.add(std::move(runs));
-  ReportTable warnings("Warnings of the runs");
-  warnings.file = "summary.json";
+  ReportTable warnings("Warnings of the runs", "summary.json");
   warnings.text({"run", "warning"});
   for (const RunResult& r : of.runs) {
     for (const std::string& warning : r.warnings) warnings.rows.push_back({r.run.name, warning});
@@ -94,10 +93,10 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   }
   if (comparison) report.add({comparison_section(comparison->values, of.groups)});
   const Statements statements = comparison ? comparison->statements : statements_of(results, runs, of.groups);
-  report.add({motion_figures(of), law_figures(of), statements_section(statements, of.groups), pooled_section(pooled),
-              trends_section(pooled.trends), runs_section(of),
-              run_section(command_line(terminal_like(options), {}, input),
-                          " Checksums of the traces stand in the results of the runs.")});
+  report.add(
+      {motion_figures(of), law_figures(of), statements_section(statements, of.groups), pooled_section(pooled),
+       trends_section(pooled.trends), runs_section(of),
+       run_section(command_line(options, {}, input), " Checksums of the traces stand in the results of the runs.")});
   limit_tables(report);
   return report;
 }

@@ -43,16 +43,15 @@ std::string preference_text(const LawPreference& p) {
 }
 
 ReportTable values_table(std::string caption, const char* file) {
-  ReportTable table(std::move(caption));
-  table.file = file;
+  ReportTable table(std::move(caption), file);
   table.text({"conditions", "value"}).text({"law", "protocol"}, 1).numbers({"mean", "95 % interval"});
   table.numbers({"statistical"}, 2).numbers({"between runs"}).numbers({"systematic"}, 2).numbers({"runs"});
   table.text({"unit"});
   return table;
 }
 
-std::vector<std::string> row_of(const PooledValue& v, const std::string& name, const std::string& law,
-                                const std::string& protocol, const std::string& conditions) {
+std::vector<std::string> value_row(const PooledValue& v, const std::string& name, const std::string& law,
+                                   const std::string& protocol, const std::string& conditions) {
   const auto part = [&](double value) { return std::isfinite(value) && value != 0 ? significant(value, 2) : "-"; };
   const bool known = std::isfinite(v.std_error) && v.std_error > 0;
   return {conditions,
@@ -78,7 +77,7 @@ std::string pooled_text(const PooledValue& value) {
 std::string slope_unit(const Trend& t) {
   const std::string per = t.condition == "order" ? "run" : t.condition_unit;
   const std::string unit = t.unit == "1" ? "" : t.unit;
-  return unit + (per.empty() ? "" : (unit.empty() ? "per " : " per ") + per);
+  return per.empty() ? unit : unit + (unit.empty() ? "per " : " per ") + per;
 }
 
 constexpr const char* kOtherParameters = "other parameters of the law";
@@ -87,7 +86,8 @@ constexpr const char* kOtherParameters = "other parameters of the law";
 template <class Value>
 void add_law_cells(const std::vector<Value>& parameters, std::string (*text)(const Value&),
                    std::vector<std::string>& row) {
-  std::string mu_s, mu_k, others;
+  std::string mu_s, mu_k;
+  std::vector<std::string> others;
   for (const Value& p : parameters) {
     if (!p.effect.empty()) continue;
     if (p.name == "mu_s") {
@@ -95,10 +95,10 @@ void add_law_cells(const std::vector<Value>& parameters, std::string (*text)(con
     } else if (p.name == "mu_k") {
       mu_k = text(p);
     } else {
-      others += (others.empty() ? "" : ", ") + p.name + " " + text(p) + (p.unit == "1" ? "" : unit_behind(p.unit));
+      others.push_back(p.name + " " + text(p) + unit_behind(p.unit));
     }
   }
-  row.insert(row.end(), {mu_s, mu_k, others});
+  row.insert(row.end(), {mu_s, mu_k, fmt::format("{}", fmt::join(others, ", "))});
 }
 
 std::string fitted_text(const ResultParameter& p) {
@@ -107,8 +107,7 @@ std::string fitted_text(const ResultParameter& p) {
 
 /// Earlier values beside ours, a row a value with both protocols; conditions stand in the first row of each.
 ReportTable comparison_table(const EarlierComparison& comparison, std::span<const PooledGroup> groups) {
-  ReportTable table;
-  table.file = "comparison.csv";
+  ReportTable table("", "comparison.csv");
   table.text({"conditions", "value", "law"}).numbers({"earlier", "joint fit", "difference", "std errors"});
   table.numbers({"extremes", "difference"});
   const ComparedValue* before = nullptr;
@@ -136,8 +135,7 @@ ReportTable comparison_table(const EarlierComparison& comparison, std::span<cons
 
 /// Relative errors (Eq 5) by conditions, law and protocol.
 ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
-  ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r");
-  table.file = "summary.json";
+  ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r", "summary.json");
   table.text({"conditions", "law", "protocol"}).numbers({"samples below 0.08", "mean", "largest"});
   table.numbers({"bins below 0.08", "largest of bins"});
   std::string before;
@@ -158,10 +156,11 @@ ReportTable groups_table(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& v : fit.parameters) {
-        table.rows.push_back(row_of(v, full_name(v), fit.law, fit.protocol, name_of(group)));
+        table.rows.push_back(value_row(v, full_name(v), fit.law, fit.protocol, name_of(group)));
       }
     }
-    for (const PooledValue& v : group.measures) table.rows.push_back(row_of(v, full_name(v), "", "", name_of(group)));
+    for (const PooledValue& v : group.measures)
+      table.rows.push_back(value_row(v, full_name(v), "", "", name_of(group)));
   }
   return table;
 }
@@ -171,17 +170,16 @@ ReportTable shared_table(const SharedFit& fit) {
   ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law", "shared.csv");
   for (const SharedFit::Parameter& common : fit.common) {
     for (std::size_t l = 0; l < common.values.size(); ++l) {
-      table.rows.push_back(row_of(common.values[l], common.name, fit.law, "joint",
-                                  common.condition.empty() ? "all runs" : common.levels[l]));
+      table.rows.push_back(value_row(common.values[l], common.name, fit.law, "joint",
+                                     common.condition.empty() ? "all runs" : common.levels[l]));
     }
   }
   return table;
 }
 
 ReportTable trends_table(const Trends& trends) {
-  ReportTable table("Straight lines over the conditions");
+  ReportTable table("Straight lines over the conditions", "trends.csv");
   table.folded = true;
-  table.file = "trends.csv";
   table.text({"parameter", "law", "over"}).numbers({"slope", "95 % interval"}).text({"unit"});
   table.numbers({"runs", "p", "p, corrected"});
   for (const Trend& t : trends.trends) {
@@ -202,8 +200,7 @@ void add_shared(const Pooled& pooled, ReportSection& section) {
 }  // namespace
 
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
-  ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)");
-  table.file = "pooled.csv";
+  ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)", "pooled.csv");
   table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k"}).text({kOtherParameters});
   table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
@@ -219,8 +216,7 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
 }
 
 ReportTable runs_table(const std::string& friction_unit) {
-  ReportTable table;
-  table.file = "summary.csv";
+  ReportTable table("", "summary.csv");
   table.text({"run", "conditions"}).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
   table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit)}).text({kOtherParameters});
   table.numbers({with_unit("held-out error", friction_unit)});
@@ -229,25 +225,21 @@ ReportTable runs_table(const std::string& friction_unit) {
 }
 
 std::vector<std::string> run_row(const RunResult& r) {
-  const bool read = r.run.status != RunStatus::unreadable;
-  const ResultFit* best = r.run.status == RunStatus::ok && r.best < r.fits.size() ? &r.fits[r.best] : nullptr;
-  std::vector<std::string> row = {r.run.name, conditions_text(read ? r.conditions : r.run.conditions, r.run.others),
-                                  read ? std::to_string(r.cycles) : "",
-                                  read ? with_error(r.frequency.value, r.frequency.std_error) : "",
-                                  best != nullptr ? best->law : std::string(to_string(r.run.status))};
-  add_law_cells(best != nullptr ? best->parameters : std::vector<ResultParameter>(), fitted_text, row);
-  row.push_back(best != nullptr ? significant(best->held_out_rmse, 3) : "");
-  row.push_back(best != nullptr ? significant(best->floor_rmse, 3) : "");
+  const bool fitted = r.run.status == RunStatus::ok && r.best < r.fits.size();
+  const ResultFit best = fitted ? r.fits[r.best] : ResultFit{};
+  std::vector<std::string> row = {r.run.name, conditions_text(r.known_conditions(), r.run.others),
+                                  r.was_read() ? std::to_string(r.cycles) : "",
+                                  r.was_read() ? with_error(r.frequency.value, r.frequency.std_error) : "",
+                                  fitted ? best.law : std::string(to_string(r.run.status))};
+  add_law_cells(best.parameters, fitted_text, row);
+  row.push_back(fitted ? significant(best.held_out_rmse, 3) : "");
+  row.push_back(fitted ? significant(best.floor_rmse, 3) : "");
   row.push_back(r.run.message.empty() ? std::to_string(r.warnings.size()) : r.run.message);
   return row;
 }
 
 std::vector<std::string> run_row(const MissingRun& run) {
   return {run.name, "", "", "", "missing", "", "", "", "", "", ""};
-}
-
-std::string runs_note() {
-  return "+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE";
 }
 
 std::vector<std::string> trend_sentences(const Trends& trends) {

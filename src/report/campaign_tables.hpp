@@ -27,8 +27,6 @@ ReportTable repeats_table(std::span<const PooledGroup> groups);
 ReportTable runs_table(const std::string& friction_unit);
 std::vector<std::string> run_row(const RunResult& run);
 std::vector<std::string> run_row(const MissingRun& run);
-/// What the numbers of the table are.
-std::string runs_note();
 
 /// Significant trends, and what is not said in the warnings.
 std::vector<std::string> trend_sentences(const Trends& trends);

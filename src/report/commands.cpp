@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
-#include <utility>
 
 #include "terminal_text.hpp"
 
@@ -46,8 +45,7 @@ std::string command_line(const std::vector<std::string>& words, const std::vecto
   return text;
 }
 
-std::string command_line(const TerminalOptions& options, const std::vector<std::string>& more,
-                         const std::string& path) {
+std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path) {
   std::vector<std::string> words = options.arguments;
   words.insert(words.end(), more.begin(), more.end());
   return command_line(words, {path});

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
-#include "tribofit/report/terminal.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 
@@ -20,7 +19,7 @@ std::string command_line(const std::vector<std::string>& words, const std::vecto
 
 /// `identify` with the user's own options, `more` behind them, and the trace. options.arguments begins with the verb
 /// where there is one.
-std::string command_line(const TerminalOptions& options, const std::vector<std::string>& more, const std::string& path);
+std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path);
 
 /// `verb` and the user's own options; those named in `flags` are left out, and those in `valued` with their values.
 std::vector<std::string> words_of(std::vector<std::string> verb, const std::vector<std::string>& arguments,

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "csv_text.hpp"
+#include "campaign/csv_table.hpp"
+#include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/run_result.hpp"
@@ -23,9 +24,8 @@ class ConditionCells {
   }
 
   std::string header() const {
-    std::string text = csv_line("radius_mm", "speed_rpm", "load_N", Json(names_));
-    text.pop_back();
-    return text;
+    const std::string line = csv_line("radius_mm", "speed_rpm", "load_N", Json(names_));
+    return line.substr(0, line.size() - 1);
   }
 
   /// The cells of a row, as a list.

@@ -8,9 +8,8 @@
 #include <memory>
 #include <set>
 #include <span>
-#include <utility>
 
-#include "csv_text.hpp"
+#include "campaign/csv_table.hpp"
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"

@@ -67,12 +67,11 @@ void add_remarks(const DiagnosedTraces& result, TerminalText& text) {
 void add_header(const DiagnosedTraces& result, TerminalText& text) {
   const bool one = result.traces.size() == 1;
   const std::string title = one ? result.traces.front().path : fmt::format("{} traces", result.traces.size());
-  std::string facts;
-  for (const std::string& fact :
-       {condition(result, &Conditions::radius, kMillimetre, "mm"), condition(result, &Conditions::speed, kRpm, "rpm"),
-        condition(result, &Conditions::load, 1, "N"), amount_of_data(result)}) {
-    if (!fact.empty()) facts += (facts.empty() ? "" : "; ") + fact;
-  }
+  std::vector<std::string> known = {condition(result, &Conditions::radius, kMillimetre, "mm"),
+                                    condition(result, &Conditions::speed, kRpm, "rpm"),
+                                    condition(result, &Conditions::load, 1, "N"), amount_of_data(result)};
+  std::erase(known, "");
+  const std::string facts = fmt::format("{}", fmt::join(known, "; "));
   const std::string rest = wrapped(facts, text.width(), 2);
   const bool same_line = rest.find('\n') == std::string::npos && title.size() + facts.size() + 2 <= text.width();
   text.raw(text.bold(wrapped(shortened(title, text.width()), text.width(), 2)));
@@ -108,9 +107,8 @@ void add_ladder(const DiagnosedTraces& result, TerminalText& text) {
   std::size_t room = 0;
   for (const bool with_errors : {true, false}) {
     table = ladder_table(result, with_errors);
-    std::size_t used = 0;
     for (std::vector<std::string>& row : table.rows) row[2] = text.with_signs(row[2]);
-    for (const std::string& line : aligned(table, 2)) used = std::max(used, displayed(line));
+    const std::size_t used = widest(aligned(table, 2));
     room = used < text.width() ? std::min(text.width() - used, kLongest) : 0;
     if (room >= kShortest) break;
   }
@@ -165,11 +163,9 @@ ReportTable found_table(const DiagnosedTraces& result) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
     if (finding == nullptr) continue;
     for (const FitParameter& p : finding->parameters) {
-      const double error = shown(p, p.std_error);
-      const int places = std::isfinite(error) && error > 0 ? places_for(error) : 6;
-      const bool known = std::isfinite(p.lower95) && std::isfinite(p.upper95);
+      const int places = places_of(p);
       table.rows.push_back({finding->key + "." + p.parameter.name, fixed(shown(p, p.value), places),
-                            known ? interval_text(shown(p, p.lower95), shown(p, p.upper95), places) : "-",
+                            interval_text(shown(p, p.lower95), shown(p, p.upper95), places),
                             shown_unit(p, result.traces.front().motion) + (p.at_bound ? " (at bound)" : "")});
     }
   }
@@ -180,14 +176,13 @@ void add_found(const DiagnosedTraces& result, TerminalText& text) {
   const ReportTable table = found_table(result);
   if (table.rows.empty()) return;
   text.heading("Effects found");
-  const std::vector<std::string> lines = aligned(table, 2);
-  const bool fits =
-      std::all_of(lines.begin(), lines.end(), [&](const std::string& line) { return displayed(line) <= text.width(); });
-  if (fits) text.table(table);
-  for (std::size_t k = 0; !fits && k < table.rows.size(); ++k) {
-    const std::vector<std::string>& row = table.rows[k];
-    text.raw("  " + row[0] + "\n");
-    text.line(row[1] + " " + row[2] + " " + row[3], 4);
+  if (text.has_room_for(table)) {
+    text.table(table);
+  } else {
+    for (const std::vector<std::string>& row : table.rows) {
+      text.line(row[0]);
+      text.line(row[1] + " " + row[2] + " " + row[3], 4);
+    }
   }
   for (const Rung& rung : found_effects(result.diagnosis)) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);

@@ -31,7 +31,7 @@ Chart ladder_chart(const DiagnosedTraces& result) {
   Chart chart = errors_chart(
       result, "ladder", "The ladder: held-out error, as effects are added",
       "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.");
-  ChartLine line{"held-out error", {}, {}, {Colour::blue, Dash::solid, Symbol::circle, 2, 10}};
+  ChartLine& line = chart.line("held-out error", {Colour::blue, Dash::solid, Symbol::circle, 2, 10});
   line.bars = true;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
@@ -43,7 +43,6 @@ Chart ladder_chart(const DiagnosedTraces& result) {
       chart.labels.push_back({x, rung.held_out_rmse, share_text(removed) + " gone"});
     }
   }
-  if (!line.x.empty()) chart.lines.push_back(std::move(line));
   chart.marks[0].text += " " + significant(d.floor_rmse, 3);
   chart.half = true;
   return chart;
@@ -94,17 +93,15 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     for (const EffectFinding& finding : d.effects) {
       if (finding.status == status && std::isfinite(finding.held_out_rmse)) own.push_back(&finding);
     }
-    if (own.empty()) continue;
     std::stable_sort(own.begin(), own.end(), [](const EffectFinding* a, const EffectFinding* b) {
       return a->held_out_rmse < b->held_out_rmse;
     });
-    ChartLine line{std::string(status_text(status)), {}, {}, stroke};
+    ChartLine& line = chart.line(std::string(status_text(status)), stroke);
     line.bars = true;
     for (const EffectFinding* finding : own) {
       line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
       chart.x.names.push_back(finding->key);
     }
-    chart.lines.push_back(std::move(line));
   }
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
   chart.height = 420;
@@ -159,7 +156,6 @@ ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& mot
 }  // namespace
 
 Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
-  const TerminalOptions terminal = terminal_like(options);
   const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
@@ -171,8 +167,8 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   }
   if (count == 1) report.facts = facts_of(result.traces.front());
   const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
-  const std::vector<DrawnModel> models = drawn_models(result.fits, result.best, 2, bare);
-  const std::vector<DrawnModel> curves = drawn_curves(models, result.rungs);
+  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
+  const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
   TraceSections sections;
   for (std::size_t k = 0; k < drawn; ++k) {
     const Identification& trace = result.traces[k];
@@ -190,7 +186,7 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
   report.add({diagnosis_section(result, motion), sections.trace, sections.law, sections.errors, sections.cycles,
-              run_section(diagnose_command(result, terminal), result.traces, next_after_diagnosis(result, terminal))});
+              run_section(diagnose_command(result, options), result.traces, next_after_diagnosis(result, options))});
   return report;
 }
 

@@ -65,9 +65,10 @@ class Sentences {
   std::string verdict() const {
     switch (d_.verdict) {
       case Verdict::sufficient:
-        return fmt::format("The {} is enough: its held-out error is {}, {}. These data show no further effect{}.",
-                           law_text(d_), level(last()), floor_clause(),
-                           any(EffectStatus::untestable) ? "; the effects that they cannot show are listed below" : "");
+        return fmt::format(
+            "The {} is enough: its held-out error is {}, {}. These data show no further effect{}.", law_text(d_),
+            level(last()), floor_clause(),
+            keys_of(EffectStatus::untestable).empty() ? "" : "; the effects that they cannot show are listed below");
       case Verdict::effect_found:
         return fmt::format("{} With {} {}.", found_sentence(result_), found_effects(d_).size() > 1 ? "them" : "it",
                            fall());
@@ -94,26 +95,28 @@ class Sentences {
 
   std::string level(double value) const { return significant(value, 3) + level_unit(result_); }
   double last() const { return d_.ladder.empty() ? std::nan("") : d_.ladder.back().held_out_rmse; }
-  bool any(EffectStatus status) const {
-    return std::any_of(d_.effects.begin(), d_.effects.end(),
-                       [&](const EffectFinding& e) { return e.status == status; });
+  std::vector<std::string> keys_of(EffectStatus status) const {
+    std::vector<std::string> keys;
+    for (const EffectFinding& e : d_.effects) {
+      if (e.status == status) keys.push_back(e.key);
+    }
+    return keys;
   }
 
   /// How the error stands to the noise floor: "at the noise floor (0.0030)".
   std::string floor_clause() const {
+    const std::string floor = level(d_.floor_rmse);
     switch (against_floor(last(), d_.floor_rmse)) {
       case FloorComparison::unknown:
         return "and no noise floor is known";
       case FloorComparison::below:
-        return fmt::format("less than the noise floor of {}, so the noise floor is overestimated here",
-                           level(d_.floor_rmse));
+        return fmt::format("less than the noise floor of {}, so the noise floor is overestimated here", floor);
       case FloorComparison::at:
-        return fmt::format("at the noise floor ({})", level(d_.floor_rmse));
+        return fmt::format("at the noise floor ({})", floor);
       case FloorComparison::above:
         break;
     }
-    return fmt::format("still {} times the noise floor of {}", significant(last() / d_.floor_rmse, 2),
-                       level(d_.floor_rmse));
+    return fmt::format("still {} times the noise floor of {}", significant(last() / d_.floor_rmse, 2), floor);
   }
 
   /// "the held-out error falls from 0.0088 to 0.0030, ..."
@@ -125,11 +128,7 @@ class Sentences {
 
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
-    if (any(EffectStatus::possible)) {
-      std::vector<std::string> keys;
-      for (const EffectFinding& e : d_.effects) {
-        if (e.status == EffectStatus::possible) keys.push_back(e.key);
-      }
+    if (const std::vector<std::string> keys = keys_of(EffectStatus::possible); !keys.empty()) {
       return fmt::format("{} What remains may be explained by {}, but these data do not prove it: {}.",
                          found_effects(d_).empty() ? "No effect is proven." : found_sentence(result_),
                          fmt::join(keys, " or "), fall());
@@ -146,7 +145,7 @@ class Sentences {
   const Diagnosis& d_;
 };
 
-std::string command(const std::vector<std::string>& words, const TerminalOptions& options,
+std::string command(const std::vector<std::string>& words, const ReportOptions& options,
                     const DiagnosedTraces& result) {
   std::vector<std::string> inputs = options.inputs;
   if (inputs.empty()) {
@@ -156,41 +155,32 @@ std::string command(const std::vector<std::string>& words, const TerminalOptions
 }
 
 /// The user's own options for `identify`, then the effects of the final model and `more`.
-std::string final_model_command(const DiagnosedTraces& result, const TerminalOptions& options,
+std::string final_model_command(const DiagnosedTraces& result, const ReportOptions& options,
                                 const std::vector<std::string>& more = {}) {
-  std::vector<std::string> effects;
-  bool formulas = false;
+  // Options that only `diagnose` knows go, and effects that the command names itself.
+  std::vector<std::string> dropped = {"--confirm", "--effect", "--formula"}, words;
   if (!result.fits.empty()) {
     const FrictionModel& model = result.fits[result.best].model;
     const std::vector<std::string> names = model.effect_names();
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (std::holds_alternative<Formula>(model.effects()[k])) {
-        formulas = true;  // as the user wrote it
+        std::erase(dropped, "--formula");  // it stays as the user wrote it
       } else {
-        effects.insert(effects.end(), {"--effect", names[k]});
+        words.insert(words.end(), {"--effect", names[k]});
       }
     }
   }
-  // Options that only `diagnose` knows go, and effects that the command names itself.
-  std::vector<std::string> dropped = {"--confirm", "--effect"};
-  if (!formulas) dropped.emplace_back("--formula");
-  std::vector<std::string> words = words_of({}, options.arguments, {}, dropped);
-  words.insert(words.end(), effects.begin(), effects.end());
   words.insert(words.end(), more.begin(), more.end());
-  return command(words, options, result);
+  std::vector<std::string> all = words_of({}, options.arguments, {}, dropped);
+  all.insert(all.end(), words.begin(), words.end());
+  return command(all, options, result);
 }
 
 }  // namespace
 
 std::string_view status_text(EffectStatus status) {
-  switch (status) {
-    case EffectStatus::found:
-      return "found";
-    case EffectStatus::unsupported:
-      return "not supported by the data";
-    default:
-      return to_string(status);
-  }
+  if (status == EffectStatus::found) return "found";
+  return status == EffectStatus::unsupported ? "not supported by the data" : to_string(status);
 }
 
 std::string level_unit(const DiagnosedTraces& result) {
@@ -214,15 +204,12 @@ std::string diagnosis_verdict(const DiagnosedTraces& result) {
 }
 
 EffectInfo info_of(const DiagnosedTraces& result, std::string_view key) {
-  for (const Fit& fit : result.fits) {
-    for (const Effect& effect : fit.model.effects()) {
-      EffectInfo info = describe(effect);
-      if (info.key == key) return info;
-    }
-  }
-  for (const Effect& effect : effect_catalogue()) {
-    EffectInfo info = describe(effect);
-    if (info.key == key) return info;
+  std::vector<Effect> known;
+  for (const Fit& fit : result.fits) known.insert(known.end(), fit.model.effects().begin(), fit.model.effects().end());
+  const auto catalogue = effect_catalogue();
+  known.insert(known.end(), catalogue.begin(), catalogue.end());
+  for (const Effect& effect : known) {
+    if (const EffectInfo info = describe(effect); info.key == key) return info;
   }
   return {};
 }
@@ -233,14 +220,14 @@ std::string spelled(const DiagnosedTraces& result, const std::string& key) {
 }
 
 std::string equivalence_sentence(const Diagnosis& diagnosis) {
-  std::string text;
+  std::vector<std::string> sentences;
   for (const Rung& rung : found_effects(diagnosis)) {
     if (rung.equivalent.empty()) continue;
-    std::vector<std::string> group = {rung.added};
-    group.insert(group.end(), rung.equivalent.begin(), rung.equivalent.end());
-    text += (text.empty() ? "" : " ") + enumerated(group) + " fit these data equally well.";
+    std::vector<std::string> group = rung.equivalent;
+    group.insert(group.begin(), rung.added);
+    sentences.push_back(enumerated(group) + " fit these data equally well.");
   }
-  return text;
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 std::string confirmation_sentence(const Confirmation& c, const DiagnosedTraces& result) {
@@ -256,15 +243,16 @@ std::string confirmation_sentence(const Confirmation& c, const DiagnosedTraces& 
                      is_confirmed(c) ? "confirmed" : "not confirmed");
 }
 
-std::string diagnose_command(const DiagnosedTraces& result, const TerminalOptions& options) {
+std::string diagnose_command(const DiagnosedTraces& result, const ReportOptions& options) {
   return command(words_of({"diagnose"}, options.arguments), options, result);
 }
 
-Suggestion next_after_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options) {
+Suggestion next_after_diagnosis(const DiagnosedTraces& result, const ReportOptions& options) {
   const Verdict verdict = result.diagnosis.verdict;
-  if (result.traces.size() == 1) {
+  const bool one = result.traces.size() == 1;
+  const std::vector<std::string> csv = {"--csv", one ? csv_folder_for(result.traces.front().path) : "diagnosis-csv"};
+  if (one) {
     const bool added = !result.fits.empty() && !result.fits[result.best].model.effects().empty();
-    const std::string csv = csv_folder_for(result.traces.front().path);
     if (verdict == Verdict::unexplained && !result.diagnosis.formula.empty()) {
       return {"to fit the law with a formula for what remains",
               final_model_command(result, options, {"--formula", result.diagnosis.formula})};
@@ -276,13 +264,12 @@ Suggestion next_after_diagnosis(const DiagnosedTraces& result, const TerminalOpt
       return {"to fit the law with the effects found", final_model_command(result, options)};
     }
     if (verdict == Verdict::sufficient && !options.csv_written) {
-      return {"to plot the curve, the residuals and the cycles", final_model_command(result, options, {"--csv", csv})};
+      return {"to plot the curve, the residuals and the cycles", final_model_command(result, options, csv)};
     }
   }
   if (!options.csv_written && verdict != Verdict::not_enough_data) {
     std::vector<std::string> words = words_of({"diagnose"}, options.arguments);
-    const bool one = result.traces.size() == 1;
-    words.insert(words.end(), {"--csv", one ? csv_folder_for(result.traces.front().path) : "diagnosis-csv"});
+    words.insert(words.end(), csv.begin(), csv.end());
     return {"to plot the samples beside the final model", command(words, options, result)};
   }
   return {"to see the effects that a trace can show", "identify effects"};

@@ -39,9 +39,9 @@ std::string confirmation_sentence(const Confirmation& confirmation, const Diagno
 std::string level_unit(const DiagnosedTraces& result);
 
 /// The command to type next, with the user's own options.
-Suggestion next_after_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options);
+Suggestion next_after_diagnosis(const DiagnosedTraces& result, const ReportOptions& options);
 
 /// The diagnosis itself as a command, with the user's own options.
-std::string diagnose_command(const DiagnosedTraces& result, const TerminalOptions& options);
+std::string diagnose_command(const DiagnosedTraces& result, const ReportOptions& options);
 
 }  // namespace tribofit

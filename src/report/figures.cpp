@@ -1,10 +1,9 @@
 #include "tribofit/report/figures.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <string>
-#include <vector>
 
 #include "condition_cells.hpp"
 #include "tribofit/campaign/group_values.hpp"
@@ -38,52 +37,48 @@ void write_groups(WholeFolder& files, const ConditionCells& conditions, std::spa
   }
 }
 
-/// The files with rows of single runs.
-class RunFiles {
- public:
-  RunFiles(WholeFolder& files, const std::string& front)
-      : cycles_(files, "06-08-three-cycles.csv", front + ",time_s,v_r_mm_s,friction,unit"),
-        spectrum_(files, "07-spectrum.csv", front + ",frequency_hz,amplitude_mm_s", kDigits),
-        harmonics_(files, "07-harmonics.csv", front + ",harmonic,frequency_hz,amplitude_mm_s", kDigits),
-        bins_(files, "10-12-over-velocity.csv",
-              front +
-                  ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
-                  "relative_error_of_mean,mean_relative_error,largest_relative_error",
-              kDigits),
-        errors_(files, "12-relative-error.csv",
+void write_runs(WholeFolder& files, const ConditionCells& conditions, const ResultReader& results,
+                std::span<const RunResult> runs) {
+  const std::string front = "run," + conditions.header();
+  CsvTable cycles(files, "06-08-three-cycles.csv", front + ",time_s,v_r_mm_s,friction,unit");
+  CsvTable spectrum(files, "07-spectrum.csv", front + ",frequency_hz,amplitude_mm_s", kDigits);
+  CsvTable harmonics(files, "07-harmonics.csv", front + ",harmonic,frequency_hz,amplitude_mm_s", kDigits);
+  CsvTable bins(files, "10-12-over-velocity.csv",
                 front +
-                    ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
-                    "mean_relative_error,largest_relative_error",
-                kDigits) {}
-
-  /// run: its name and conditions, as cells.
-  void write(const RunFigures& f, const Json& run, const std::string& unit) {
-    for (std::size_t k = 0; k < f.time.size(); ++k) cycles_.row(run, f.time[k], f.velocity[k], f.friction[k], unit);
-    for (std::size_t k = 0; k < f.spectrum.size(); ++k) {
-      spectrum_.row(run, static_cast<double>(k) * f.spectrum_step, f.spectrum[k]);
+                    ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
+                    "relative_error_of_mean,mean_relative_error,largest_relative_error",
+                kDigits);
+  CsvTable errors(files, "12-relative-error.csv",
+                  front +
+                      ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
+                      "mean_relative_error,largest_relative_error",
+                  kDigits);
+  for (const RunResult& run : runs) {
+    const auto f = results.figures(run.position);
+    if (!f) continue;
+    const Json of_run = {run.run.name, conditions.of(run.conditions, run.run.others)};
+    for (std::size_t k = 0; k < f->time.size(); ++k) {
+      cycles.row(of_run, f->time[k], f->velocity[k], f->friction[k], run.friction_unit);
     }
-    for (std::size_t k = 0; k < f.harmonics.size(); ++k) {
-      harmonics_.row(run, k + 1, f.harmonics[k].frequency, f.harmonics[k].amplitude);
+    for (std::size_t k = 0; k < f->spectrum.size(); ++k) {
+      spectrum.row(of_run, static_cast<double>(k) * f->spectrum_step, f->spectrum[k]);
     }
-    for (const ErrorCurve& curve : f.errors) write_curve(f, curve, run, unit);
+    for (std::size_t k = 0; k < f->harmonics.size(); ++k) {
+      harmonics.row(of_run, k + 1, f->harmonics[k].frequency, f->harmonics[k].amplitude);
+    }
+    const std::size_t samples = std::accumulate(f->bin_samples.begin(), f->bin_samples.end(), std::size_t{0});
+    for (const ErrorCurve& curve : f->errors) {
+      for (std::size_t k = 0; k < f->bin_samples.size(); ++k) {
+        const double from = static_cast<double>(k) * f->bin_width;
+        bins.row(of_run, curve.law, curve.protocol, run.friction_unit, from, from + f->bin_width, f->bin_samples[k],
+                 f->bin_friction[k], curve.fitted[k], f->error_of_mean(curve, k), curve.bin_mean_relative[k],
+                 curve.bin_max_relative[k]);
+      }
+      errors.row(of_run, curve.law, curve.protocol, samples, curve.below_limit, curve.bins_below_limit,
+                 curve.largest_of_bins, curve.mean_relative, curve.max_relative);
+    }
   }
-
- private:
-  void write_curve(const RunFigures& f, const ErrorCurve& curve, const Json& run, const std::string& unit) {
-    std::size_t samples = 0;
-    for (std::size_t k = 0; k < f.bin_samples.size(); ++k) {
-      const double from = static_cast<double>(k) * f.bin_width;
-      samples += f.bin_samples[k];
-      const double of_mean = std::abs((f.bin_friction[k] - curve.fitted[k]) / f.bin_friction[k]);
-      bins_.row(run, curve.law, curve.protocol, unit, from, from + f.bin_width, f.bin_samples[k], f.bin_friction[k],
-                curve.fitted[k], of_mean, curve.bin_mean_relative[k], curve.bin_max_relative[k]);
-    }
-    errors_.row(run, curve.law, curve.protocol, samples, curve.below_limit, curve.bins_below_limit,
-                curve.largest_of_bins, curve.mean_relative, curve.max_relative);
-  }
-
-  CsvTable cycles_, spectrum_, harmonics_, bins_, errors_;
-};
+}
 
 }  // namespace
 
@@ -93,12 +88,7 @@ void write_figures(const ResultReader& results, std::span<const RunResult> runs,
   remove_abandoned_files(folder);
   const ConditionCells conditions(runs);
   write_groups(files, conditions, runs, groups);
-  RunFiles of_runs(files, "run," + conditions.header());
-  for (const RunResult& run : runs) {
-    const auto figures = results.figures(run.position);
-    if (!figures) continue;
-    of_runs.write(*figures, {run.run.name, conditions.of(run.conditions, run.run.others)}, run.friction_unit);
-  }
+  write_runs(files, conditions, results, runs);
   files.commit();
 }
 

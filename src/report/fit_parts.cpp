@@ -1,5 +1,3 @@
-#include "fit_parts.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -152,14 +150,6 @@ void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSectio
 }
 
 }  // namespace
-
-std::string curve_name(const Fit& fit) {
-  return fit.model.name() + (fit.protocol == Protocol::published ? ", per-cycle extremes" : "");
-}
-
-bool has_parameters(const Fit& fit) {
-  return !fit.parameters.empty();
-}
 
 void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
               ReportSection& section) {

@@ -1,9 +1,78 @@
+#include <fmt/format.h>
+
+#include "fit/assessment.hpp"
 #include "numbers.hpp"
 #include "report_parts.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 #include "verdict.hpp"
 
 namespace tribofit {
 namespace {
+
+std::string verdict_on(const Identification& r, const Fit& fit) {
+  const auto level = [&](double value) { return significant(value, 2) + (friction_unit(r.motion) == "N" ? " N" : ""); };
+  const bool bare = fit.model.effects().empty();
+  const std::string name = (bare ? "The " : "The law ") + fit.model.name() + (bare ? " law" : "");
+  const std::string held_out = level(fit.error.held_out_rmse), floor = level(fit.floor.rmse);
+  const std::string typical = percent(fit.error.mean_relative);
+  std::string remains = "its held-out error is " + held_out;
+  const double ratio = over_floor(fit);
+  if (ratio > kFarAboveFloor) {
+    remains += ", far above the noise floor of " + floor;
+  } else if (ratio <= kFarAboveFloor) {
+    remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
+  }
+  switch (quality_of(fit)) {
+    case FitQuality::floor_too_high:
+      return fmt::format(
+          "{} has a held-out error of {}, less than the noise floor of {}: the noise floor is overestimated here, so "
+          "the data do not say whether an effect is missing.",
+          name, held_out, floor);
+    case FitQuality::not_transferable:
+      return fmt::format(
+          "{} does not carry over to held-out cycles: its error there is {}, and {} on the cycles it was fitted to. Do "
+          "not rely on its values.",
+          name, held_out, level(fit.error.rmse));
+    case FitQuality::at_floor:
+      return fmt::format(
+          "{} describes this trace as well as its noise allows: the held-out error is {}, the noise floor {}.", name,
+          held_out, floor);
+    case FitQuality::close:
+      return fmt::format("{} is close (typically {} off), but {}: it lacks a small effect.", name, typical, remains);
+    case FitQuality::outline:
+      return fmt::format("{} gives the outline only (typically {} off): {}, so it lacks an effect.", name, typical,
+                         remains);
+    case FitQuality::poor:
+    case FitQuality::unusable:
+      break;
+  }
+  return fmt::format("{} does not describe this trace (typically {} off): {}. Do not rely on its values.", name,
+                     typical, remains);
+}
+
+/// Parameters that these data do not fix, as a sentence; empty where all are fixed.
+std::string undetermined(const Fit& fit) {
+  std::vector<std::string> names;
+  for (const FitParameter& p : fit.parameters) {
+    if (!is_fixed(p)) names.push_back((p.effect.empty() ? "" : p.effect + " ") + p.parameter.name);
+  }
+  return names.empty() ? "" : fmt::format(" Not determined by these data: {}.", fmt::join(names, ", "));
+}
+
+/// Checks of the data that bear on the values and are not in order.
+std::string open_problems(const Identification& r) {
+  std::vector<std::string> names;
+  for (const HealthItem& item : r.motion.health) {
+    if (item.status != HealthItem::Status::ok && health_check::bears_on_values(item.check)) names.push_back(item.check);
+  }
+  return names.empty() ? ""
+                       : fmt::format(" The values depend on what the health check says of {}.", fmt::join(names, ", "));
+}
+
+/// No fit that could be relied on.
+bool is_unusable(const Identification& r) {
+  return r.fits.empty() || quality_of(r.fits[r.best]) == FitQuality::unusable;
+}
 
 /// The best law and its parameters: what a reader looks for first.
 Facts result_facts(const Identification& result) {
@@ -16,6 +85,34 @@ Facts result_facts(const Identification& result) {
 }
 
 }  // namespace
+
+std::string verdict(const Identification& result) {
+  if (!result.analysed) return "No law was fitted; what the trace does show stands above.";
+  if (is_unusable(result)) return "No fit can be trusted here; the notes at the fits say why.";
+  const Fit& best = result.fits[result.best];
+  return verdict_on(result, best) + undetermined(best) + open_problems(result);
+}
+
+Suggestion next_command(const Identification& result, const ReportOptions& options) {
+  const auto same_with = [&](const std::vector<std::string>& more) { return command_line(options, more, result.path); };
+  const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
+  if (!result.analysed || is_unusable(result)) {
+    if (result.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim")) {
+      return {"to see whether the run-up that was left out shows more", same_with({"--no-trim"})};
+    }
+    if (!options.csv_written) return {"to look at the trace sample by sample", same_with(csv)};
+    return {"to see which options there are", "identify --help"};
+  }
+  if (over_floor(result.fits[result.best]) > kAtFloor) {
+    return {"to see where the law fails and which effect is missing",
+            command_line(words_of({"diagnose"}, options.arguments, {"--profile"}, {"--protocol"}), {result.path})};
+  }
+  if (!options.csv_written) return {"to plot the curve, the residuals and the cycles", same_with(csv)};
+  if (!has_option(options.arguments, "--profile")) {
+    return {"to check the intervals by profile likelihood", same_with({"--profile"})};
+  }
+  return {"to see which effects can be added", "identify effects"};
+}
 
 std::string render_terminal(const Identification& result, const TerminalOptions& options) {
   TerminalText text(options);
@@ -41,14 +138,14 @@ std::string render_terminal(const Identification& result, const TerminalOptions&
 
 Report report_of(const Identification& result, const ReportOptions& options) {
   constexpr std::size_t kDrawnModels = 3;
-  const TerminalOptions terminal = terminal_like(options);
   Report report = titled_report("friction law", file_name(result.path), "Friction law", verdict(result));
   report.warnings = result.warnings;
-  report.facts = result_facts(result);
-  for (auto& fact : facts_of(result)) report.facts.push_back(std::move(fact));
+  report.facts = facts_of(result);
+  const Facts best = result_facts(result);
+  report.facts.insert(report.facts.begin(), best.begin(), best.end());
   const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
-  const std::vector<DrawnModel> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
-  const std::vector<DrawnModel> curves = drawn_curves(models, result.fits);
+  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
+  const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
   TraceSections sections;
   sections.add_trace(DrawnTrace(result, models, curves, "t1"));
   sections.trace.add(health_table({&result, 1}));
@@ -56,7 +153,7 @@ Report report_of(const Identification& result, const ReportOptions& options) {
   add_comparisons(result.fits, result.best, result.motion, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
   report.add({sections.trace, sections.law, sections.errors, sections.cycles,
-              run_section(command_line(terminal, {}, result.path), {&result, 1}, next_command(result, terminal))});
+              run_section(command_line(options, {}, result.path), {&result, 1}, next_command(result, options))});
   return report;
 }
 

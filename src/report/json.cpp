@@ -77,6 +77,38 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
                 d.messages);
 }
 
+Json health_json(const Motion& motion) {
+  return list_of(motion.health, [](const HealthItem& item) {
+    return object("check", item.check, "status", kStatus.at(static_cast<std::size_t>(item.status)), "message",
+                  item.message);
+  });
+}
+
+Json stick_slip_json(const Identification& result) {
+  const Segmentation& s = result.segmentation;
+  const Interval ci = interval_of(s.frequency);
+  const SpectralPeak& peak = result.spectral_peak;
+  return object(
+      "cycles", count_of_cycles(s), "frequency_hz",
+      object("value", s.frequency.value, "std_error", s.frequency.std_error, "ci95", interval_json(ci.lower, ci.upper)),
+      "amplitude_mm_s", s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre,
+      "stick_time_s", s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
+      "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
+      s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip", samples_in_slip(s), "sticks_over_1_s",
+      long_sticks(s).count, "longest_stick_s", long_sticks(s).longest, "branch_difference", s.branch_difference.value,
+      "branch_difference_std_error", s.branch_difference.std_error, "motion",
+      kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes, "spectrum",
+      object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
+             peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
+}
+
+Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
+  return list_of(compare_laws(fits, best), [](const LawComparison& c) {
+    return object("first", c.first, "second", c.second, "difference", c.comparison.difference, "std_error",
+                  c.comparison.std_error, "p_value", c.comparison.p_value, "first_better", c.comparison.first_better);
+  });
+}
+
 /// What several traces are: lists of what each is.
 void add_traces(const std::vector<Identification>& traces, Json& json) {
   const auto of_motion = [](Json make(const Motion&)) {
@@ -130,31 +162,6 @@ Json conditions_of(const Motion& motion) {
   return json;
 }
 
-Json health_json(const Motion& motion) {
-  return list_of(motion.health, [](const HealthItem& item) {
-    return object("check", item.check, "status", kStatus.at(static_cast<std::size_t>(item.status)), "message",
-                  item.message);
-  });
-}
-
-Json stick_slip_json(const Identification& result) {
-  const Segmentation& s = result.segmentation;
-  const Interval ci = interval_of(s.frequency);
-  const SpectralPeak& peak = result.spectral_peak;
-  return object(
-      "cycles", count_of_cycles(s), "frequency_hz",
-      object("value", s.frequency.value, "std_error", s.frequency.std_error, "ci95", interval_json(ci.lower, ci.upper)),
-      "amplitude_mm_s", s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre,
-      "stick_time_s", s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
-      "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
-      s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip", samples_in_slip(s), "sticks_over_1_s",
-      long_sticks(s).count, "longest_stick_s", long_sticks(s).longest, "branch_difference", s.branch_difference.value,
-      "branch_difference_std_error", s.branch_difference.std_error, "motion",
-      kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes, "spectrum",
-      object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
-             peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
-}
-
 Json parameter_json(const FitParameter& p, const Motion& motion) {
   const auto in_unit = [&](double si) { return shown(p, si); };
   return object("name", p.parameter.name, "value", in_unit(p.value), "std_error", in_unit(p.std_error), "ci95",
@@ -167,13 +174,6 @@ Json parameter_json(const FitParameter& p, const Motion& motion) {
 
 Json fits_json(std::span<const Fit> fits, const Motion& motion) {
   return list_of(fits, [&](const Fit& fit) { return fit_json(fit, motion); });
-}
-
-Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
-  return list_of(compare_laws(fits, best), [](const LawComparison& c) {
-    return object("first", c.first, "second", c.second, "difference", c.comparison.difference, "std_error",
-                  c.comparison.std_error, "p_value", c.comparison.p_value, "first_better", c.comparison.first_better);
-  });
 }
 
 std::string line_of(const Json& json) {
@@ -197,7 +197,7 @@ Json identification_json(const Identification& r, const JsonOptions& options) {
   return json;
 }
 
-Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options) {
+std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
   const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const bool one = result.traces.size() == 1;
@@ -215,15 +215,11 @@ Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options) {
     mark_as_shared(json["fits"]);
     mark_as_shared(json["diagnosis"]["effects"]);
   }
-  return json;
+  return text_of(json);
 }
 
 std::string to_json(const Identification& result, const JsonOptions& options) {
   return text_of(identification_json(result, options));
-}
-
-std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
-  return text_of(diagnosed_json(result, options));
 }
 
 }  // namespace tribofit

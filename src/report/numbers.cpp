@@ -54,13 +54,10 @@ std::string with_error(double value, double std_error) {
 
 std::string percent(double share) {
   if (!std::isfinite(share)) return "-";
-  const double value = 100 * share;
-  const double size = std::abs(value);
-  if (size >= 10) return fmt::format("{:.0f} %", value);
-  if (size >= 1) return fmt::format("{:.1f} %", value);
-  if (size >= 0.01) return fmt::format("{:.2f} %", value);
-  if (size >= 0.001) return fmt::format("{:.3f} %", value);
-  return value == 0 ? "0 %" : "< 0.001 %";
+  const double value = 100 * share, size = std::abs(value);
+  if (value != 0 && size < 0.001) return "< 0.001 %";
+  const int places = value == 0 || size >= 10 ? 0 : size >= 1 ? 1 : size >= 0.01 ? 2 : 3;
+  return fmt::format("{:.{}f} %", value, places);
 }
 
 std::string share_text(double share) {
@@ -87,11 +84,10 @@ std::string friction_unit(const Motion& motion) {
 
 std::string shown_unit(const FitParameter& parameter, const Motion& motion) {
   const std::string& unit = parameter.parameter.unit;
-  const bool level = parameter.parameter.scales_with_friction;
-  const bool in_newtons = unit.rfind('N', 0) == 0;  // a fit to forces says so itself
-  if (!level || in_newtons || motion.friction_kind != FrictionKind::force) return unit;
+  const bool in_newtons = unit.starts_with('N');  // a fit to forces says so itself
+  if (!parameter.parameter.scales_with_friction || in_newtons || friction_unit(motion) != "N") return unit;
   if (unit == "1") return "N";
-  return unit.rfind("1/", 0) == 0 ? "N" + unit.substr(1) : "N " + unit;
+  return unit.starts_with("1/") ? "N" + unit.substr(1) : "N " + unit;
 }
 
 double shown(const FitParameter& parameter, double value_in_si) {
@@ -100,6 +96,14 @@ double shown(const FitParameter& parameter, double value_in_si) {
 
 std::string full_name(const FitParameter& p) {
   return p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
+}
+
+std::string curve_name(const Fit& fit) {
+  return fit.model.name() + (fit.protocol == Protocol::published ? ", per-cycle extremes" : "");
+}
+
+bool has_parameters(const Fit& fit) {
+  return !fit.parameters.empty();
 }
 
 std::string limits_text(const FitParameter& p) {
@@ -112,12 +116,9 @@ std::string limits_text(const FitParameter& p) {
 }
 
 std::string value_text(const FitParameter& p, const Motion& motion) {
-  if (!p.determined) {
-    const std::string limits = limits_text(p);
-    return limits.empty() ? "not determined"
-                          : fmt::format("not determined ({}{})", limits, unit_behind(shown_unit(p, motion)));
-  }
-  return with_error(shown(p, p.value), shown(p, p.std_error)) + unit_behind(shown_unit(p, motion));
+  const std::string unit = unit_behind(shown_unit(p, motion)), limits = limits_text(p);
+  if (p.determined) return with_error(shown(p, p.value), shown(p, p.std_error)) + unit;
+  return "not determined" + (limits.empty() ? "" : fmt::format(" ({}{})", limits, unit));
 }
 
 int places_of(const FitParameter& p) {
@@ -145,17 +146,8 @@ std::string unit_behind(const std::string& unit) {
 }
 
 std::string enumerated(const std::vector<std::string>& names, std::string_view last) {
-  std::string text;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (k > 0) text += k + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
-    text += names[k];
-  }
-  return text;
-}
-
-std::string with_subscript(const std::string& name) {
-  const std::size_t at = name.find('_');
-  return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
+  if (names.size() < 2) return names.empty() ? "" : names.front();
+  return fmt::format("{} {} {}", fmt::join(names.begin(), names.end() - 1, ", "), last, names.back());
 }
 
 std::vector<double> in_unit(std::span<const double> values, double unit) {

@@ -64,6 +64,10 @@ std::string value_text(const FitParameter& parameter, const Motion& motion);
 /// Decimal places of a parameter's value: those its standard error allows, else five significant digits.
 int places_of(const FitParameter& parameter);
 
+/// A curve as a legend names it: "exponential + viscous, per-cycle extremes".
+std::string curve_name(const Fit& fit);
+bool has_parameters(const Fit& fit);
+
 /// "[0.507, 0.511]"; "-" where neither end is known.
 std::string interval_text(double lower, double upper, int places);
 
@@ -78,9 +82,6 @@ std::string unit_behind(const std::string& unit);
 
 /// "a", "a and b", "a, b and c".
 std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
-
-/// "mu_s" as markup: "mu_{s}".
-std::string with_subscript(const std::string& name);
 
 /// `values` in a unit.
 std::vector<double> in_unit(std::span<const double> values, double unit);

@@ -1,31 +1,14 @@
 #include "tribofit/report/page.hpp"
 
-#include <algorithm>
-#include <initializer_list>
 #include <string_view>
-#include <utility>
 
 #include "page_parts.hpp"
 #include "report/charts/report_json.hpp"
+#include "report/pictures/text.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 namespace {
-
-/// The text with some of its characters replaced.
-std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> by) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    const auto at = std::find_if(by.begin(), by.end(), [&](const auto& one) { return one.first == c; });
-    if (at == by.end()) {
-      out += c;
-    } else {
-      out += at->second;
-    }
-  }
-  return out;
-}
 
 std::string assembled(const std::string& title, const Json& data) {
   const PageParts parts = page_parts();
@@ -33,13 +16,14 @@ std::string assembled(const std::string& title, const Json& data) {
     throw InputError("this build leaves the report page out",
                      "build it where npm is installed (scripts/setup page), or use --json or --csv");
   }
+  std::string text;
   // No name in a string ends the script element or begins a comment.
-  const std::string text = replaced(line_of(data), {{'<', "\\u003c"}});
+  for (const char c : line_of(data)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   constexpr std::size_t kPage = std::size_t{1} << 21;
   std::string page;
   page.reserve(kPage + text.size());
   for (const std::string_view piece : parts.head) page += piece;
-  page += replaced(title, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}});
+  page += escaped(title);
   for (const std::string_view piece : parts.middle) page += piece;
   page += text;
   for (const std::string_view piece : parts.tail) page += piece;

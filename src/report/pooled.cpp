@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "campaign/csv_table.hpp"
 #include "condition_cells.hpp"
-#include "csv_text.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
 #include "tribofit/campaign/whole_file.hpp"
@@ -27,10 +27,6 @@ Json value_json(const PooledValue& v) {
   Json json = object("name", v.name, "effect", text_or_null(v.effect));
   json.update(numbers_json(v));
   return json;
-}
-
-Json values_json(const std::vector<PooledValue>& values) {
-  return list_of(values, value_json);
 }
 
 Json trend_json(const Trend& t) {
@@ -83,7 +79,7 @@ std::string trends_csv(const Trends& trends) {
 Json shared_json(const SharedFit& fit, std::span<const RunResult> runs) {
   const auto common = [](const SharedFit::Parameter& p) {
     return object("name", p.name, "condition", text_or_null(p.condition), "levels", p.levels, "values",
-                  values_json(p.values));
+                  list_of(p.values, value_json));
   };
   const auto each = [&](const SharedFit::OfRun& run) {
     Json parameters = Json::array();
@@ -99,12 +95,13 @@ Json shared_json(const SharedFit& fit, std::span<const RunResult> runs) {
 
 std::string pooled_json(const Pooled& pooled, std::span<const RunResult> runs) {
   const auto fit = [](const PooledGroup::OfFit& f) {
-    return object("law", f.law, "protocol", f.protocol, "parameters", values_json(f.parameters), "best_in", f.best_in);
+    return object("law", f.law, "protocol", f.protocol, "parameters", list_of(f.parameters, value_json), "best_in",
+                  f.best_in);
   };
   const auto group = [&](const PooledGroup& g) {
     return object("conditions", conditions_json(g.conditions), "others", others_json(g.others), "runs",
                   list_of(g.runs, [&](std::size_t r) { return Json(runs[r].run.name); }), "fits", list_of(g.fits, fit),
-                  "measures", values_json(g.measures));
+                  "measures", list_of(g.measures, value_json));
   };
   const auto confounded = [](const Confounded& c) { return object("a", c.a, "b", c.b, "correlation", c.correlation); };
   return text_of(object("tool", object("name", "tribofit", "version", version), "groups", list_of(pooled.groups, group),
@@ -182,8 +179,8 @@ std::string comparison_json(const ComparisonReport& report, std::span<const Pool
   const Statements& s = report.statements;
   Json preference = Json::array();
   for (std::size_t g = 0; g < s.preference.size(); ++g) {
-    if (s.preference[g].runs == 0) continue;
-    preference.push_back(object("conditions", group_json(groups[g]), "laws", preference_json(s.preference[g])));
+    const LawPreference& p = s.preference[g];
+    if (p.runs > 0) preference.push_back(object("conditions", group_json(groups[g]), "laws", preference_json(p)));
   }
   const auto error = [&](const ErrorStatement& e) { return error_json(e, groups[e.group]); };
   return line_of(object("path", report.values.path, "values", list_of(report.values.values, value), "unmatched",

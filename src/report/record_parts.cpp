@@ -1,5 +1,3 @@
-#include "record_parts.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cmath>
 
 #include "numbers.hpp"
+#include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/version.hpp"
@@ -20,16 +19,17 @@ std::string condition(const Motion& motion, Condition Conditions::*which, double
   const auto with_source = [](std::string text, const std::string& source) {
     return source.empty() ? text : text + " (" + source + ")";
   };
-  if (whole.known()) return with_source(brief(whole.value / unit) + " " + std::string(name), whole.source);
-  std::string list, source;
+  if (whole.known()) return with_source(fmt::format("{} {}", brief(whole.value / unit), name), whole.source);
+  std::vector<std::string> values;
+  std::string source;
   for (const Step& step : motion.steps) {
     const Condition& own = step.conditions.*which;
     if (!own.known()) continue;
-    list += (list.empty() ? "" : ", ") + brief(own.value / unit);
+    values.push_back(brief(own.value / unit));
     source = own.source;
   }
-  if (list.empty()) return "not known";
-  return with_source(list + " " + std::string(name) + " by step", source);
+  if (values.empty()) return "not known";
+  return with_source(fmt::format("{} {} by step", fmt::join(values, ", "), name), source);
 }
 
 std::string speed_text(const Motion& motion) {
@@ -39,17 +39,12 @@ std::string speed_text(const Motion& motion) {
 }
 
 std::string cycles_text(const Segmentation& s) {
-  switch (s.kind) {
-    case MotionKind::always_slipping:
-      return "none: the block never sticks, friction is fitted over the whole slip";
-    case MotionKind::always_sticking:
-      return "none: the block never slips, there is no sliding friction to fit";
-    case MotionKind::stick_slip:
-      break;
+  if (s.kind == MotionKind::always_slipping) {
+    return "none: the block never sticks, friction is fitted over the whole slip";
   }
-  const std::size_t both = count_of_cycles(s);
-  if (both == s.cycles.size()) return fmt::format("{} with a stick and a slip", both);
-  return fmt::format("{} with a stick and a slip ({} slips in all)", both, s.cycles.size());
+  if (s.kind == MotionKind::always_sticking) return "none: the block never slips, there is no sliding friction to fit";
+  const std::size_t both = count_of_cycles(s), all = s.cycles.size();
+  return fmt::format("{} with a stick and a slip", both) + (both < all ? fmt::format(" ({} slips in all)", all) : "");
 }
 
 /// How many samples carry the law, and why the others do not.
@@ -62,6 +57,12 @@ std::string slip_text(const Identification& r) {
   return text + (r.segmentation.kind == MotionKind::always_slipping
                      ? fmt::format("; the others are at rest{} and take no part in the fit", below)
                      : fmt::format("; the others stick{} and take no part in the law of sliding", below));
+}
+
+Facts condition_facts(const Motion& motion) {
+  return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
+          {"disc speed", speed_text(motion)},
+          {"load", condition(motion, &Conditions::load, 1, "N")}};
 }
 
 void add_health(const Motion& motion, TerminalText& text) {
@@ -81,12 +82,6 @@ void add_health(const Motion& motion, TerminalText& text) {
 
 std::string record_sentence(const Identification& r) {
   return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
-}
-
-Facts condition_facts(const Motion& motion) {
-  return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
-          {"disc speed", speed_text(motion)},
-          {"load", condition(motion, &Conditions::load, 1, "N")}};
 }
 
 Facts stick_slip_facts(const Identification& r) {
@@ -116,6 +111,14 @@ Facts stick_slip_facts(const Identification& r) {
                     unit_behind(friction_unit(r.motion))));
   }
   if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
+  return facts;
+}
+
+Facts facts_of(const Identification& r) {
+  Facts facts = {{"record", record_sentence(r)}};
+  for (const Facts& more : {condition_facts(r.motion), stick_slip_facts(r)}) {
+    facts.insert(facts.end(), more.begin(), more.end());
+  }
   return facts;
 }
 

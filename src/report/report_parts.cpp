@@ -7,34 +7,24 @@
 #include <set>
 #include <utility>
 
-#include "json_parts.hpp"
 #include "numbers.hpp"
+#include "report/pictures/text.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
 
-TerminalOptions terminal_like(const ReportOptions& options) {
-  TerminalOptions terminal;
-  terminal.arguments = options.arguments;
-  terminal.inputs = options.inputs;
-  terminal.instruments_declared = options.instruments_declared;
-  return terminal;
-}
-
 std::string file_name(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
-  // Names of files need not be valid UTF-8; reports are.
-  return Json::parse(line_of(name.empty() ? path : name)).get<std::string>();
+  return one_line(name.empty() ? path : name);
 }
 
 void ReportSection::add(ReportItem item) {
-  const auto* table = std::get_if<ReportTable>(&item);
-  const auto* chart = std::get_if<Chart>(&item);
-  const auto has_values = [](const ChartBars& bars) { return !bars.values.empty(); };
-  if (table != nullptr && table->rows.empty()) return;
-  if (chart != nullptr && chart->lines.empty() && !chart->map &&
-      std::none_of(chart->bars.begin(), chart->bars.end(), has_values))
-    return;
+  if (const auto* table = std::get_if<ReportTable>(&item); table != nullptr && table->rows.empty()) return;
+  if (auto* chart = std::get_if<Chart>(&item)) {
+    std::erase_if(chart->lines, [](const ChartLine& line) { return line.x.empty(); });
+    std::erase_if(chart->bars, [](const ChartBars& bars) { return bars.values.empty(); });
+    if (chart->lines.empty() && chart->bars.empty() && !chart->map) return;
+  }
   items.push_back(std::move(item));
 }
 
@@ -58,34 +48,28 @@ Report titled_report(const std::string& kind, const std::string& title, const st
   return report;
 }
 
-Facts facts_of(const Identification& r) {
-  Facts facts = {{"record", record_sentence(r)}};
-  for (auto& fact : condition_facts(r.motion)) facts.push_back(std::move(fact));
-  for (auto& fact : stick_slip_facts(r)) facts.push_back(std::move(fact));
-  return facts;
-}
-
-std::vector<DrawnModel> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
+std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
                                      const std::function<bool(const Fit&)>& wanted) {
-  std::vector<DrawnModel> models;
-  if (fits.empty()) return models;
-  if (has_parameters(fits[best])) models.push_back({curve_name(fits[best]), &fits[best]});
+  std::vector<const Fit*> models;
   for (const Fit& fit : fits) {
-    if (&fit == &fits[best] || !wanted(fit) || !has_parameters(fit) || models.size() == most) continue;
-    models.push_back({curve_name(fit), &fit});
+    if (!has_parameters(fit)) continue;
+    if (&fit == &fits[best]) {
+      models.insert(models.begin(), &fit);
+    } else if (wanted(fit)) {
+      models.push_back(&fit);
+    }
   }
+  models.resize(std::min(models.size(), most));
   return models;
 }
 
-std::vector<DrawnModel> drawn_curves(const std::vector<DrawnModel>& models, std::span<const Fit> others) {
-  std::vector<DrawnModel> curves;
+std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std::span<const Fit> others) {
+  std::vector<const Fit*> curves, all = models;
+  for (const Fit& fit : others) all.push_back(&fit);
   std::set<std::string> names;
-  const auto draw = [&](const Fit& fit) {
-    const bool known = has_parameters(fit) && fit.fastest > 0;
-    if (known && names.insert(curve_name(fit)).second) curves.push_back({curve_name(fit), &fit});
-  };
-  for (const DrawnModel& model : models) draw(*model.fit);
-  for (const Fit& fit : others) draw(fit);
+  for (const Fit* fit : all) {
+    if (has_parameters(*fit) && fit->fastest > 0 && names.insert(curve_name(*fit)).second) curves.push_back(fit);
+  }
   return curves;
 }
 

@@ -5,29 +5,44 @@
 #include <string>
 #include <vector>
 
-#include "fit_parts.hpp"
-#include "record_parts.hpp"
 #include "report/charts/trace_charts.hpp"
+#include "terminal_text.hpp"
 
 namespace tribofit {
 
-/// Parts that several kinds of report have.
+/// What several kinds of text and page have in common.
 
-TerminalOptions terminal_like(const ReportOptions& options);
+/// "100 000 samples, 5.000 s at 20 kHz".
+std::string record_sentence(const Identification& record);
+/// Cycles, frequency, amplitude, stick and slip time, branches, RMS.
+Facts stick_slip_facts(const Identification& record);
+/// That sentence, radius, disc speed and load with where each comes from, and those facts.
+Facts facts_of(const Identification& record);
+/// Checks, the worst first; with the trace each belongs to where there are several.
+ReportTable health_table(std::span<const Identification> traces);
+/// Name, size and reading of the trace, conditions and health: how the text of identify, rig and twin begins.
+void add_record(const Identification& record, TerminalText& text);
+
+/// What is said of each fit: all of them, or those that the comparison of the protocols does not hold.
+enum class Fits { all, without_compared };
+/// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are; nothing where
+/// there are no fits.
+void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
+              ReportSection& section);
+/// Per-cycle extremes beside the joint fit and by how much they differ, then the best law against each other one.
+void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section);
+
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
 
 /// A report that says what it is; kind: "diagnosis", made: "Diagnosis".
 Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead);
 
-/// Length, conditions and stick-slip of one trace.
-Facts facts_of(const Identification& trace);
-
 /// The best fit, then others that are wanted beside it; at most `most`.
-std::vector<DrawnModel> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
+std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
                                      const std::function<bool(const Fit&)>& wanted);
 /// Laws that are drawn over speed: of the models beside the samples, then of others, each name once.
-std::vector<DrawnModel> drawn_curves(const std::vector<DrawnModel>& models, std::span<const Fit> others);
+std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std::span<const Fit> others);
 
 /// Charts of one trace in the sections that a report has once.
 struct TraceSections {

@@ -5,7 +5,7 @@
 
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "record_parts.hpp"
+#include "report_parts.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/terminal.hpp"
 

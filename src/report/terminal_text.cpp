@@ -8,6 +8,11 @@
 #include <variant>
 
 namespace tribofit {
+namespace {
+
+constexpr std::size_t kIndent = 2;  // of tables
+
+}  // namespace
 
 TerminalText::TerminalText(const TerminalOptions& options)
     : width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {
@@ -54,8 +59,11 @@ void TerminalText::warning(std::string_view text) {
   text_ += "  " + in_yellow("warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
 }
 
+bool TerminalText::has_room_for(const ReportTable& table) const {
+  return widest(aligned(table, kIndent)) <= width_;
+}
+
 void TerminalText::table(const ReportTable& all, std::size_t most) {
-  constexpr std::size_t kIndent = 2;
   if (all.rows.empty()) return;
   if (!all.caption.empty()) heading(all.caption);
   ReportTable table = all;
@@ -68,7 +76,7 @@ void TerminalText::table(const ReportTable& all, std::size_t most) {
   std::vector<std::string> rows;
   for (; detail >= 0; --detail) {
     rows = aligned(table, kIndent, detail);
-    if (std::all_of(rows.begin(), rows.end(), [&](const std::string& row) { return displayed(row) <= width_; })) break;
+    if (widest(rows) <= width_) break;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
     text_ += (k == 0 ? dim(rows[k]) : rows[k]) + "\n";
@@ -108,6 +116,12 @@ void TerminalText::result(const std::vector<std::string>& warnings, std::string_
 std::size_t displayed(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::size_t widest(const std::vector<std::string>& lines) {
+  std::size_t width = 0;
+  for (const std::string& line : lines) width = std::max(width, displayed(line));
+  return width;
 }
 
 std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +33,8 @@ class TerminalText {
   /// A table with its caption as heading, if it has rows: the first `most` of them, without the columns of most detail
   /// where the terminal is narrow.
   void table(const ReportTable& table, std::size_t most = kAll);
+  /// Whether the columns that a table never goes without have room side by side.
+  bool has_room_for(const ReportTable& table) const;
   /// What a page shows of a section; charts, and tables that it folds, are left out.
   void items(const std::vector<ReportItem>& items);
   /// The same under the title of the section, if there are any.
@@ -64,6 +65,8 @@ class TerminalText {
 
 /// Columns a text takes: bytes that continue a UTF-8 character take none.
 std::size_t displayed(std::string_view text);
+
+std::size_t widest(const std::vector<std::string>& lines);
 
 /// `sentence` broken at blanks to `width` columns, continuation lines indented by `indent`.
 std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent);

@@ -202,7 +202,7 @@ Chart differences_chart(const Twin& twin) {
   for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
   double largest = 4;
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    ChartLine line{column_name(twin, c), {}, {}, marked(c + 1, false)};
+    ChartLine& line = chart.line(column_name(twin, c), marked(c + 1, false));
     line.stroke.colour = stroke_for(c + 1).colour;
     line.stroke.size = 8;
     for (std::size_t k = 0; k < twin.measures.size(); ++k) {
@@ -211,7 +211,6 @@ Chart differences_chart(const Twin& twin) {
       line.add(d, static_cast<double>(k));
       largest = std::max(largest, 1.1 * std::abs(d));
     }
-    chart.lines.push_back(std::move(line));
   }
   chart.x.low = -largest, chart.x.high = largest;
   for (const double at : {-3.0, 0.0, 3.0}) {
@@ -306,7 +305,9 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
       motion.add(portrait_chart(twin, motions));
       motion.add(animation_of(twin, motions));
     }
-    ReportSection measures{"measures", "Measures in standard errors", {differences_chart(twin), twin_table(twin)}};
+    ReportSection measures{"measures", "Measures in standard errors", {}};
+    measures.add(differences_chart(twin));
+    measures.add(twin_table(twin));
     measures.soft(twin_note(twin) + ".");
     report.add({std::move(motion), std::move(measures), twin_model(result)});
   }

@@ -10,6 +10,6 @@ namespace tribofit {
 std::string verdict(const Identification& result);
 
 /// What to do next with a trace and its fits.
-Suggestion next_command(const Identification& result, const TerminalOptions& options);
+Suggestion next_command(const Identification& result, const ReportOptions& options);
 
 }  // namespace tribofit

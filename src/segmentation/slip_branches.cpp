@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <utility>
 
 namespace tribofit {
 
@@ -39,6 +39,25 @@ double fastest_of(const Motion& motion, const std::vector<SlipBranch>& branches)
     }
   }
   return fastest;
+}
+
+std::vector<BranchBand> bands_over_speed(const Motion& motion, const std::vector<SlipBranch>& branches,
+                                         std::span<const double> values, std::size_t bins) {
+  const double fastest = fastest_of(motion, branches);
+  std::vector<BandOverCycles> bands(3, BandOverCycles(0, fastest, bins));
+  for (const SlipBranch& piece : branches) {
+    BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
+    for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
+      band.add(std::abs(motion.relative_velocity[i]), piece.direction * values[i]);
+    }
+    band.end_cycle();
+  }
+  std::vector<BranchBand> out;
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    CycleBand band = bands[k].band();
+    if (!band.at.empty()) out.push_back({static_cast<Branch>(k), std::move(band)});
+  }
+  return out;
 }
 
 std::size_t whole_cycles_near_middle(const Segmentation& segmentation, std::size_t count) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace tribofit {
 namespace {
@@ -42,6 +43,33 @@ std::vector<std::size_t> drawn_samples(std::span<const double> values, std::size
   drawn.reserve(kPerBin * bins);
   for (std::size_t k = 0; k < bins; ++k) draw_stretch(values, n * k / bins, n * (k + 1) / bins, drawn);
   return drawn;
+}
+
+std::vector<FlagRun> runs_of(std::span<const std::uint8_t> flags) {
+  std::vector<FlagRun> runs;
+  for (std::size_t i = 0; i < flags.size(); i = runs.back().end) {
+    std::size_t end = i;
+    while (end < flags.size() && flags[end] == flags[i]) ++end;
+    runs.push_back({i, end, flags[i] != 0});
+  }
+  return runs;
+}
+
+std::vector<std::size_t> drawn_samples(std::initializer_list<std::span<const double>> channels,
+                                       std::span<const std::uint8_t> calm, std::size_t bins) {
+  std::vector<FlagRun> runs = runs_of(calm);
+  if (runs.size() > bins / 4) runs = {{0, calm.size(), false}};  // too many to be distinguishable
+  const std::size_t of_run = std::max<std::size_t>(2, 2 * bins / std::max<std::size_t>(1, runs.size()));
+  std::set<std::size_t> kept;
+  for (const FlagRun& run : runs) {
+    const std::size_t here = runs.size() == 1 ? bins : run.set ? of_run / 4 : of_run - of_run / 4;
+    for (const std::span<const double> channel : channels) {
+      for (const std::size_t i : drawn_samples(channel.subspan(run.begin, run.end - run.begin), here)) {
+        kept.insert(run.begin + i);
+      }
+    }
+  }
+  return {kept.begin(), kept.end()};
 }
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {

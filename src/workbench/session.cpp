@@ -258,7 +258,7 @@ std::vector<WorkbenchRung> WorkbenchSession::rungs() const {
 }
 
 std::string WorkbenchSession::command_of(const WorkbenchChoice& choice) const {
-  TerminalOptions terminal;
+  ReportOptions terminal;
   terminal.arguments = state_->options.arguments;
   const std::vector<std::string> own = arguments_of(choice);
   terminal.arguments.insert(terminal.arguments.end(), own.begin(), own.end());
@@ -275,7 +275,7 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   for (const std::string& name : choice.effects) {  // corrections of the motion stay as they are
     if (const Effect effect = make_effect(name); is_kinematic(effect)) identify.effects.push_back(effect);
   }
-  TerminalOptions terminal;
+  ReportOptions terminal;
   terminal.arguments = {"diagnose"};
   const auto add = [&](const std::vector<std::string>& more) {
     terminal.arguments.insert(terminal.arguments.end(), more.begin(), more.end());

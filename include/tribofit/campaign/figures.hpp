@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ struct RunFigures {
   std::vector<std::size_t> bin_samples;  ///< slip samples in each bin
   std::vector<double> bin_friction;      ///< their mean friction (Fig 10, 11); NaN where there are none
   std::vector<ErrorCurve> errors;        ///< one a fit (Fig 12)
+
+  /// e of the mean friction of a bin.
+  double error_of_mean(const ErrorCurve& curve, std::size_t bin) const {
+    return std::abs((bin_friction[bin] - curve.fitted[bin]) / bin_friction[bin]);
+  }
 
   double spectrum_step = 0;         ///< [Hz]
   std::vector<double> spectrum;     ///< amplitude of v_r at k spectrum_step (Fig 7) [mm/s]

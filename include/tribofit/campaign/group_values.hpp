@@ -44,6 +44,13 @@ std::optional<FiguresOfRun> first_figures(const ResultReader& results, std::span
 /// The laws that any group has by the joint protocol, in the order in which they are met.
 std::vector<std::string> joint_laws(std::span<const PooledGroup> groups);
 
+/// A parameter of a law that is no level: neither mu_s nor mu_k, nor of an effect.
+struct OtherParameter {
+  std::string law, name, unit;
+};
+/// Those that any group has, in the order in which they are met.
+std::vector<OtherParameter> other_parameters(std::span<const PooledGroup> groups);
+
 /// Law and protocol of each estimate of the levels mu_s and mu_k; per-cycle extremes give the same whatever the law.
 std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups);
 

@@ -86,6 +86,9 @@ struct RunResult {
   std::size_t best = 0;  ///< index in fits
   std::vector<std::string> warnings;
 
+  bool was_read() const { return run.status != RunStatus::unreadable; }
+  /// As used, or as stated where the trace was not read.
+  const Conditions& known_conditions() const { return was_read() ? conditions : run.conditions; }
   /// The fit of that law and protocol; null where there is none with parameters.
   const ResultFit* fit(std::string_view law, std::string_view protocol) const;
 };

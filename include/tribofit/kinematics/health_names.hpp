@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 /// Names of the checks of the data, as reports and JSON have them (HealthItem::check). Some coincide with the key of an
 /// effect that would show there; a check says what the data show, an effect is found by the diagnosis.
 namespace tribofit::health_check {
@@ -13,5 +17,12 @@ inline constexpr const char* kRevolutions = "revolutions";
 inline constexpr const char* kSpeedRipple = "speed-ripple";
 inline constexpr const char* kRunUp = "run-up";
 inline constexpr const char* kPlateauSpeed = "plateau-speed";
+
+/// Whether the values of a fit depend on what this check says: it bears on velocity or friction themselves.
+constexpr bool bears_on_values(std::string_view check) {
+  constexpr std::array<std::string_view, 5> kBearing = {kPlateauSpeed, kSpeedRipple, kChannelDelay, kClipping,
+                                                        kDropOuts};
+  return std::find(kBearing.begin(), kBearing.end(), check) != kBearing.end();
+}
 
 }  // namespace tribofit::health_check

@@ -20,10 +20,6 @@ namespace tribofit {
 /// `result` is null where the run could not be read; its "fits" are empty then.
 std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options = {});
 
-/// campaign.json: the runs in order, each with the hash of its settings, the folder they lie in, and the rows of the
-/// manifest that are no runs. Every shard of a campaign writes the same.
-std::string campaign_json(const Campaign& campaign, const BatchOptions& options);
-
 /// What `identify runs/` and `identify merge` write and say of a campaign.
 struct CampaignSummary {
   std::size_t fitted = 0, failed = 0, missing = 0;  ///< runs

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tribofit {
@@ -123,6 +124,11 @@ struct Chart {
   std::vector<ChartLabel> labels = {};
   int height = 340;   ///< on the page [CSS pixels]
   bool half = false;  ///< stands beside its neighbour where the page is wide
+
+  /// A line without points yet; a report leaves out lines that get none.
+  ChartLine& line(std::string name, const Stroke& stroke, std::size_t panel = 0) {
+    return lines.emplace_back(ChartLine{.name = std::move(name), .stroke = stroke, .panel = panel});
+  }
 };
 
 }  // namespace tribofit

@@ -7,6 +7,8 @@
 
 namespace tribofit {
 
+class WholeFolder;
+
 /// Charts of a report as pictures for a paper: a file of each, as wide as a column of a journal (85 mm), with a
 /// sans-serif face of 8 points and units in the titles of its axes. Their captions belong to the paper: figures.txt
 /// beside them has title and note of each. SVG keeps its texts as text; PDF (letters embedded) and PNG are drawn by
@@ -37,8 +39,7 @@ class PictureFiles {
   void commit();
 
  private:
-  struct Files;
-  std::unique_ptr<Files> files_;
+  std::unique_ptr<WholeFolder> folder_;
 };
 
 /// Writes the pictures of a report into `folder`, all of them or none.

@@ -35,15 +35,16 @@ struct ReportColumn {
 /// A table, described once for the terminal and the page. Columns are named from left to right:
 /// ReportTable("Cells").text({"regime"}).numbers({"cells"}).
 struct ReportTable {
-  explicit ReportTable(std::string title = {}) : caption(std::move(title)) {}
+  /// all_rows: the file that has them, where only the first are shown.
+  explicit ReportTable(std::string title = {}, std::string all_rows = {})
+      : caption(std::move(title)), file(std::move(all_rows)) {}
   ReportTable& text(std::initializer_list<std::string> names, int detail = 0) { return add(names, false, detail); }
   ReportTable& numbers(std::initializer_list<std::string> names, int detail = 0) { return add(names, true, detail); }
 
-  std::string caption;
+  std::string caption, file;
   std::vector<ReportColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
-  bool folded = false;    ///< opened by a click; a terminal leaves it out
-  std::string file = {};  ///< that has all rows, where only the first are shown
+  bool folded = false;  ///< opened by a click; a terminal leaves it out
 
  private:
   ReportTable& add(std::initializer_list<std::string> names, bool number, int detail) {
@@ -70,7 +71,7 @@ struct ReportSection {
   std::string id = {}, title = {};
   std::vector<ReportItem> items = {};
 
-  /// Adds an item; tables without rows and charts that show nothing are left out.
+  /// Adds an item; tables without rows, lines without points and charts that show nothing are left out.
   void add(ReportItem item);
   void add(std::vector<Chart> charts);
   void plain(std::string text) { add(ReportText{std::move(text), ReportText::Kind::plain}); }
@@ -81,23 +82,27 @@ struct ReportSection {
   void item(std::string text) { add(ReportText{std::move(text), ReportText::Kind::item}); }
 };
 
+/// Names and values, as people read them: {"radius", "15 mm (command line)"}.
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
 struct Report {
   std::string kind = {};  ///< "friction law", "diagnosis", "campaign", "study"
   std::string title = {}, subtitle = {};
   std::string lead = {};  ///< the verdict: what a reader must know
   std::vector<std::string> warnings = {};
-  std::vector<std::pair<std::string, std::string>> facts = {};
+  Facts facts = {};
   std::vector<ReportSection> sections = {};
 
   /// Adds those that hold anything.
   void add(std::vector<ReportSection> more);
 };
 
+/// What commands in a report and below a text are made of.
 struct ReportOptions {
-  std::vector<std::string> arguments =
-      {};                                ///< the user's own options without traces and outputs, shown with the command
-  std::vector<std::string> inputs = {};  ///< traces and folders as the user named them; empty: the path of the trace
-  bool instruments_declared = false;     ///< an instruments file was given
+  std::vector<std::string> arguments = {};  ///< the user's own options without traces and outputs
+  std::vector<std::string> inputs = {};     ///< traces and folders as the user named them; empty: the path of the trace
+  bool instruments_declared = false;        ///< an instruments file was given
+  bool csv_written = false;                 ///< the CSV folder of this result exists already
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,

@@ -7,23 +7,17 @@
 
 #include "tribofit/friction/effect.hpp"
 #include "tribofit/friction/laws/all.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 
-struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
-struct Fingerprint;      // oscillator/fingerprint.hpp
-struct Identification;   // fit/identification.hpp
+struct Fingerprint;  // oscillator/fingerprint.hpp
 struct RigIdentification;
-struct TwinIdentification;  // study/twin.hpp
 
-struct TerminalOptions {
+struct TerminalOptions : ReportOptions {
   bool colour = false;
-  bool unicode = false;                ///< bars and plus-minus signs beyond ASCII can be shown
-  std::size_t width = 100;             ///< columns; sentences are broken there
-  bool instruments_declared = false;   ///< an instruments file was given
-  bool csv_written = false;            ///< the CSV folder of this result exists already
-  std::vector<std::string> arguments;  ///< the user's own options without traces and outputs, for the next command
-  std::vector<std::string> inputs;     ///< traces and folders as the user named them; empty: the path of the trace
+  bool unicode = false;     ///< bars and plus-minus signs beyond ASCII can be shown
+  std::size_t width = 100;  ///< columns; sentences are broken there
 };
 
 /// What a person reads after a run: trace and conditions, health, stick-slip, one table of parameters per fit with

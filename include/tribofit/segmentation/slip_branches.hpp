@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/statistics/bins.hpp"
 
 namespace tribofit {
 
@@ -24,6 +26,15 @@ std::vector<SlipBranch> slip_branches(const Motion& motion, const Segmentation& 
 
 /// Largest |v_r| of these branches [m/s]; 0 where there are none.
 double fastest_of(const Motion& motion, const std::vector<SlipBranch>& branches);
+
+/// A value of each sample, in the direction of sliding, over |v_r| [m/s]: a band over cycles in `bins` bins for each
+/// branch that there is.
+struct BranchBand {
+  Branch branch;
+  CycleBand band;
+};
+std::vector<BranchBand> bands_over_speed(const Motion& motion, const std::vector<SlipBranch>& branches,
+                                         std::span<const double> values, std::size_t bins);
 
 /// The first of `count` cycles in a row that are whole and selected, as near to the middle of the record as they come;
 /// else the middle ones. There are at least `count` cycles.

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "report/charts/styles.hpp"
-#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
+#include "statistics/thinning.hpp"
 #include "tribofit/campaign/group_values.hpp"
 #include "tribofit/campaign/over_conditions.hpp"
 
@@ -16,6 +16,12 @@ namespace tribofit {
 namespace {
 
 using Maybe = std::optional<ResultMeasure>;
+
+/// "mu_s" as markup: "mu_{s}".
+std::string with_subscript(const std::string& name) {
+  const std::size_t at = name.find('_');
+  return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
+}
 
 Maybe mean_of(const PooledValue* value) {
   if (value == nullptr) return std::nullopt;
@@ -43,13 +49,12 @@ class MeansChart {
     const bool alone = over_.series().size() == 1;
     std::size_t k = 0;
     for (const OverConditions::Series& series : over_.series()) {
-      ChartLine line = line_of(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
+      ChartLine& line = bars(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
       if (!alone) line.stroke.dash = stroke_of(k++).dash;
       for (std::size_t i = 0; i < series.groups.size(); ++i) {
         const Maybe measure = value(series.groups[i]);
         if (measure && std::isfinite(measure->value)) line.add(series.x[i], measure->value, measure->std_error);
       }
-      if (!line.x.empty()) chart_.lines.push_back(std::move(line));
     }
     return *this;
   }
@@ -59,14 +64,13 @@ class MeansChart {
   /// The earlier values of that name, one for each of the conditions.
   MeansChart& earlier(const std::string& name) {
     if (of_.earlier == nullptr) return *this;
-    ChartLine line = line_of(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
+    ChartLine& line = bars(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
     std::vector<bool> met(of_.groups.size(), false);
     for (const ComparedValue& v : of_.earlier->values) {
       if (v.earlier.name != name || met[v.group]) continue;
       met[v.group] = true;
       line.add(over_.x_of(v.group), v.earlier.value, v.earlier.std_error);
     }
-    if (!line.x.empty()) chart_.lines.push_back(std::move(line));
     return *this;
   }
   Chart chart(int height, const std::string& note = "") const {
@@ -77,8 +81,10 @@ class MeansChart {
   }
 
  private:
-  ChartLine line_of(std::string name, const Stroke& stroke) const {
-    return {.name = std::move(name), .stroke = stroke, .bars = true, .panel = chart_.panels.size() - 1};
+  ChartLine& bars(const std::string& name, const Stroke& stroke) {
+    ChartLine& line = chart_.line(name, stroke, chart_.panels.size() - 1);
+    line.bars = true;
+    return line;
   }
 
   const DrawnCampaign& of_;
@@ -116,28 +122,19 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
 /// What the laws have besides mu_s and mu_k (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
 Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over) {
   MeansChart chart(of, over, "table4-decay", "Other parameters of the laws");
-  std::vector<std::pair<std::string, std::string>> drawn;  // law and name
-  for (const PooledGroup& group : of.groups) {
-    for (const PooledGroup::OfFit& fit : group.fits) {
-      for (const PooledValue& v : fit.parameters) {
-        const bool is_level = v.name == "mu_s" || v.name == "mu_k",
-                   known = std::count(drawn.begin(), drawn.end(), std::pair(fit.law, v.name)) > 0;
-        if (is_level || known || !v.effect.empty()) continue;
-        drawn.emplace_back(fit.law, v.name);
-        const auto value_by = [&](const char* protocol) {
-          return [&, protocol](std::size_t g) {
-            const PooledGroup::OfFit* own = fit_of(of.groups[g], fit.law, protocol);
-            return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, v.name));
-          };
-        };
-        chart.panel(with_subscript(v.name), v.unit).add("joint fit", 0, value_by("joint"));
-        chart.add("per-cycle extremes", 1, value_by("published")).earlier(v.name);
-      }
-    }
-  }
   std::vector<std::string> names;
-  for (const auto& [law, name] : drawn) names.push_back(fmt::format("{} of the {} law", name, law));
-  return chart.chart(110 + 180 * std::max(1, static_cast<int>(drawn.size())),
+  for (const auto& [law, name, unit] : other_parameters(of.groups)) {
+    const auto value_by = [&](const char* protocol) {
+      return [&, protocol](std::size_t g) {
+        const PooledGroup::OfFit* own = fit_of(of.groups[g], law, protocol);
+        return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, name));
+      };
+    };
+    chart.panel(with_subscript(name), unit).add("joint fit", 0, value_by("joint"));
+    chart.add("per-cycle extremes", 1, value_by("published")).earlier(name);
+    names.push_back(fmt::format("{} of the {} law", name, law));
+  }
+  return chart.chart(110 + 180 * std::max(1, static_cast<int>(names.size())),
                      fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
 }
 
@@ -223,7 +220,7 @@ Chart error_chart(const RunFigures& f) {
   const auto error = [&](const ErrorCurve& curve) {
     std::vector<double> errors;
     for (std::size_t b = 0; b < f.bin_friction.size(); ++b) {
-      errors.push_back(std::abs((f.bin_friction[b] - curve.fitted[b]) / f.bin_friction[b]));
+      errors.push_back(f.error_of_mean(curve, b));
     }
     return errors;
   };
@@ -314,7 +311,8 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
   for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
     std::string name, unit;
     for (std::size_t k = 0; k < of.shown.size(); ++k) {
-      ChartLine line{.name = of.name_of(of.shown[k]), .stroke = marked(k, false), .bars = true, .panel = p};
+      ChartLine& line = chart.line(of.name_of(of.shown[k]), marked(k, false), p);
+      line.bars = true;
       const std::vector<std::size_t>& runs = of.groups[of.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
         const RunResult& run = of.runs[runs[i]];
@@ -327,7 +325,6 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
         line.low.back() = value.lower95;
         line.high.back() = value.upper95;
       }
-      if (!line.x.empty()) chart.lines.push_back(std::move(line));
     }
     if (!name.empty()) chart.panels.push_back({.axis = {.quantity = with_subscript(name), .unit = unit}});
   }

@@ -8,11 +8,10 @@
 #include "fit/assessment.hpp"
 #include "report/charts/styles.hpp"
 #include "report/charts/trace_charts.hpp"
-#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
+#include "statistics/thinning.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"
-#include "tribofit/statistics/bins.hpp"
 
 namespace tribofit {
 namespace {
@@ -28,51 +27,28 @@ constexpr std::array<BranchStyle, 3> kBranches = {
     BranchStyle{"slowing down", {Colour::red, Dash::dashed, Symbol::triangle_down, 1.6, 5}},
     BranchStyle{"slip", {Colour::blue, Dash::solid, Symbol::circle, 1.6, 5}}};
 
-double speed_at(const Identification& trace, std::size_t i) {
-  return std::abs(trace.motion.relative_velocity[i]) / kMillimetre;
-}
-
-/// Bands of value(sample, direction) over speed, one for each branch that there is.
-template <class Value>
-std::vector<std::pair<Branch, CycleBand>> bands_over_speed(const DrawnTrace& d, Value value) {
-  std::vector<BandOverCycles> bands(kBranches.size(), BandOverCycles(0, d.fastest, kSpeedBins));
-  for (const SlipBranch& piece : d.pieces) {
-    BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
-    for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i)
-      band.add(speed_at(d.trace, i), value(i, piece.direction));
-    band.end_cycle();
-  }
-  std::vector<std::pair<Branch, CycleBand>> out;
-  for (std::size_t k = 0; k < bands.size(); ++k) {
-    CycleBand band = bands[k].band();
-    if (!band.at.empty()) out.emplace_back(static_cast<Branch>(k), std::move(band));
-  }
-  return out;
-}
-
-ChartLine band_line(std::string name, const CycleBand& band, Stroke stroke) {
-  return {std::move(name), band.at, band.middle, stroke, band.low, band.high};
+/// Adds a band over cycles; speeds come in m/s.
+ChartLine& add_band(const std::string& name, CycleBand band, const Stroke& stroke, Chart& chart) {
+  return chart.lines.emplace_back(
+      ChartLine{name, in_unit(band.at, kMillimetre), band.middle, stroke, band.low, band.high});
 }
 
 /// Residuals of each model on both branches, switched with the line of their model.
 void add_residuals(const DrawnTrace& d, Chart& chart) {
   const std::vector<double>& friction = d.trace.motion.friction;
   for (std::size_t m = 0; m < d.models.size(); ++m) {
-    const std::vector<double>& prediction = d.predictions[m];
-    const double unit = residual_unit(*d.models[m].fit);
-    const auto residual = [&](std::size_t i, int sign) { return sign * (friction[i] - prediction[i]) / unit; };
-    for (auto& [branch, band] : bands_over_speed(d, residual)) {
-      Stroke stroke = kBranches[static_cast<std::size_t>(branch)].stroke;
-      stroke.width = 1.3;
-      if (m > 0) {  // one band is enough to look at
-        stroke.colour = model_stroke(m).colour;
-        stroke.dash = model_stroke(m).dash;
-        band.low.clear();
-        band.high.clear();
-      }
-      chart.lines.push_back(band_line(d.models[m].name, band, stroke));
-      chart.lines.back().panel = 1;
-      chart.lines.back().listed = false;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < friction.size(); ++i) residuals.push_back(friction[i] - d.predictions[m][i]);
+    residuals = in_unit(residuals, residual_unit(*d.models[m]));
+    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, residuals, kSpeedBins)) {
+      ChartLine& line = add_band(curve_name(*d.models[m]), band, style_of(branch, kBranches).stroke, chart);
+      line.stroke.width = 1.3;
+      line.panel = 1;
+      line.listed = false;
+      if (m == 0) continue;
+      line.stroke.colour = model_stroke(m).colour;
+      line.stroke.dash = model_stroke(m).dash;
+      line.low.clear(), line.high.clear();  // one band is enough to look at
     }
   }
 }
@@ -83,34 +59,30 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
     if (std::isfinite(c.break_away_friction) && d.trace.segmentation.is_selected(c))
       levels.push_back(c.break_away_friction);
   }
-  if (levels.empty()) return;
-  ChartLine line{"break-away of each cycle", {}, {}, dots(Colour::grey, Symbol::diamond)};
+  ChartLine& line = chart.line("break-away of each cycle", dots(Colour::grey, Symbol::diamond));
   for (const std::size_t k : drawn_samples(levels, d.bins(kBreakAways))) line.add(0, levels[k]);
-  chart.lines.push_back(std::move(line));
 }
 
 /// The law of each fit with its band; those that no model beside the samples has can be switched on.
 void add_curves(const DrawnTrace& d, Chart& chart) {
-  for (const DrawnModel& drawn : d.curves) {
-    const auto beside =
-        std::find_if(d.models.begin(), d.models.end(), [&](const DrawnModel& model) { return model.fit == drawn.fit; });
+  for (const Fit* fit : d.curves) {
+    const auto beside = std::find(d.models.begin(), d.models.end(), fit);
     const bool is_beside = beside != d.models.end();
-    const Curve curve = curve_of(*drawn.fit, kCurvePoints);
-    ChartLine line{
-        drawn.name,    in_unit(curve.velocity, kMillimetre),
-        curve.mu,      is_beside ? model_stroke(static_cast<std::size_t>(beside - d.models.begin())) : kPublished,
-        curve.lower95, curve.upper95};
+    const Curve curve = curve_of(*fit, kCurvePoints);
+    ChartLine& line = chart.line(
+        curve_name(*fit), is_beside ? model_stroke(static_cast<std::size_t>(beside - d.models.begin())) : kPublished);
+    line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
+    line.low = curve.lower95, line.high = curve.upper95;
     line.shown = is_beside;
-    chart.lines.push_back(std::move(line));
   }
 }
 
 /// What no slip reaches is grey.
 void shade_beyond(const DrawnTrace& d, Chart& chart) {
   double fastest = 0, slowest = std::numeric_limits<double>::infinity();
-  for (const DrawnModel& drawn : d.curves) {
-    fastest = std::max(fastest, drawn.fit->fastest / kMillimetre);
-    slowest = std::min(slowest, drawn.fit->slowest / kMillimetre);
+  for (const Fit* fit : d.curves) {
+    fastest = std::max(fastest, fit->fastest / kMillimetre);
+    slowest = std::min(slowest, fit->slowest / kMillimetre);
   }
   if (!(fastest > 0)) return;
   const double right = 1.12 * fastest;
@@ -150,14 +122,14 @@ void add_errors(const std::string& name, std::size_t k, const BinExtremes& error
 /// Mean residual in units of the noise floor.
 HeatMap map_of(const DrawnTrace& d, std::size_t model) {
   ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
-  const double floor = residual_unit(*d.models[model].fit), most = std::max(1.0, map.usual / floor);
+  const double floor = residual_unit(*d.models[model]), most = std::max(1.0, map.usual / floor);
   for (std::vector<double>& row : map.mean) row = in_unit(row, floor);
   return {map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
 }
 
 Chart map_chart(const DrawnTrace& d, std::size_t model) {
   return {.id = d.id + "-map-" + std::to_string(model + 1),
-          .title = "What " + d.models[model].name + " leaves over cycle and phase of the slip",
+          .title = "What " + curve_name(*d.models[model]) + " leaves over cycle and phase of the slip",
           .note =
               "Mean residual in units of the noise floor. Upright stripes: the law has the wrong shape. Changes from "
               "cycle to cycle: something moves with time or angle.",
@@ -181,10 +153,10 @@ Chart law_chart(const DrawnTrace& d) {
               .x = {"relative velocity |v_{r}|", "mm/s"},
               .panels = {{friction_axis(d.trace.motion), 1.35}},
               .height = 560};
-  const std::vector<double>& friction = d.trace.motion.friction;
-  for (const auto& [branch, band] : bands_over_speed(d, [&](std::size_t i, int sign) { return sign * friction[i]; })) {
-    const BranchStyle& style = kBranches[static_cast<std::size_t>(branch)];
-    chart.lines.push_back(band_line("measured, " + std::string(style.name), band, style.stroke));
+  const Motion& motion = d.trace.motion;
+  for (const auto& [branch, band] : bands_over_speed(motion, d.pieces, motion.friction, kSpeedBins)) {
+    const BranchStyle& style = style_of(branch, kBranches);
+    add_band("measured, " + std::string(style.name), band, style.stroke, chart);
   }
   add_break_aways(d, chart);
   add_curves(d, chart);
@@ -207,12 +179,12 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
     for (const SlipBranch& piece : d.pieces) {
       for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
         const double error = std::abs((m.friction[i] - d.predictions[k][i]) / m.friction[i]);
-        speed.add(speed_at(d.trace, i), error);
+        speed.add(std::abs(m.relative_velocity[i]) / kMillimetre, error);
         time.add(m.time[i], error);
       }
     }
-    add_errors(d.models[k].name, k, speed.result(), charts[0]);
-    add_errors(d.models[k].name, k, time.result(), charts[1]);
+    add_errors(curve_name(*d.models[k]), k, speed.result(), charts[0]);
+    add_errors(curve_name(*d.models[k]), k, time.result(), charts[1]);
   }
   if (d.trace.segmentation.kind == MotionKind::stick_slip) {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k));
@@ -239,9 +211,8 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
         .half = true};
     std::replace_if(
         chart.id.begin(), chart.id.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '-');
-    ChartLine line{"profile", {}, {}, {Colour::blue, Dash::solid, Symbol::circle}};
+    ChartLine& line = chart.line("profile", {Colour::blue, Dash::solid, Symbol::circle});
     for (const ProfilePoint& point : p.profile) line.add(shown(p, point.value), point.rise);
-    chart.lines.push_back(std::move(line));
     charts.push_back(std::move(chart));
   }
   return charts;

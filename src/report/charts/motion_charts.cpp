@@ -1,48 +1,12 @@
 #include "report/charts/motion_charts.hpp"
 
 #include <algorithm>
-#include <initializer_list>
-#include <set>
 
-#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
+#include "statistics/thinning.hpp"
 
 namespace tribofit {
 namespace {
-
-struct Phase {
-  std::size_t begin, end;
-  bool sticks;
-};
-
-std::vector<Phase> phases_of(std::span<const std::uint8_t> sticks) {
-  std::vector<Phase> phases;
-  for (std::size_t i = 0; i < sticks.size(); i = phases.back().end) {
-    std::size_t end = i;
-    while (end < sticks.size() && sticks[end] == sticks[i]) ++end;
-    phases.push_back({i, end, sticks[i] != 0});
-  }
-  return phases;
-}
-
-/// The extremes of each channel in each of about `bins` stretches.
-std::vector<std::size_t> kept_samples(std::initializer_list<std::span<const double>> channels,
-                                      std::span<const std::uint8_t> sticks, std::size_t bins) {
-  std::vector<Phase> phases = phases_of(sticks);
-  if (phases.size() > bins / 4) phases = {{0, sticks.size(), false}};  // too many to be distinguishable
-  const std::size_t of_phase = std::max<std::size_t>(2, 2 * bins / std::max<std::size_t>(1, phases.size()));
-  std::set<std::size_t> kept;
-  for (const Phase& phase : phases) {
-    const bool alone = phases.size() == 1;
-    const std::size_t here = alone ? bins : phase.sticks ? of_phase / 4 : of_phase - of_phase / 4;
-    for (const std::span<const double> channel : channels) {
-      for (const std::size_t i : drawn_samples(channel.subspan(phase.begin, phase.end - phase.begin), here)) {
-        kept.insert(phase.begin + i);
-      }
-    }
-  }
-  return {kept.begin(), kept.end()};
-}
 
 std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit) {
   std::vector<double> out;
@@ -63,7 +27,7 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
 }
 
 void add_loop(const DrawnMotion& m, std::size_t bins, const Stroke& stroke, Chart& chart, bool closed) {
-  std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity}, m.sticks, bins);
+  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, bins);
   if (closed) kept.push_back(kept.front());
   chart.lines.push_back({.name = m.name,
                          .x = picked(m.displacement, kept, kMillimetre),
@@ -77,7 +41,7 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
     chart.panels.clear();
     for (const MotionChannel& channel : channels) chart.panels.push_back({channel.axis});
   }
-  const std::vector<std::size_t> kept = kept_samples({m.displacement, m.velocity, m.friction}, m.sticks, bins);
+  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, bins);
   const std::vector<double> time = picked(m.time, kept, 1);
   for (std::size_t panel = 0; panel < channels.size(); ++panel) {
     const MotionChannel& channel = channels[panel];
@@ -91,9 +55,9 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
 
 void shade_sticks(const DrawnMotion& m, Chart& chart) {
   constexpr std::size_t kMost = 60;
-  for (const Phase& phase : phases_of(m.sticks)) {
-    if (!phase.sticks || chart.stretches.size() >= kMost) continue;
-    chart.stretches.push_back({m.time[phase.begin], m.time[std::min(phase.end, m.time.size() - 1)], Shade::stick});
+  for (const FlagRun& run : runs_of(m.sticks)) {
+    if (!run.set || chart.stretches.size() >= kMost) continue;
+    chart.stretches.push_back({m.time[run.begin], m.time[std::min(run.end, m.time.size() - 1)], Shade::stick});
   }
 }
 
@@ -103,7 +67,7 @@ ChartMark disc_mark(double disc_velocity, std::size_t panel) {
 
 Animation::Block animated(const DrawnMotion& m) {
   constexpr std::size_t kBins = 250;
-  const std::vector<std::size_t> kept = kept_samples({m.displacement, m.friction}, m.sticks, kBins);
+  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, kBins);
   Animation::Block block{
       m.name, picked(m.time, kept, 1), picked(m.displacement, kept, kMillimetre), picked(m.friction, kept, 1), {}};
   for (double& t : block.time) t -= m.time.front();

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "report/charts/styles.hpp"
-#include "statistics/thinning.hpp"
 #include "report/numbers.hpp"
+#include "statistics/thinning.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
@@ -17,66 +17,47 @@ constexpr double kZoom = 5e-3;  // s, to either side of a break-away or re-stick
 constexpr std::size_t kRecordBins = 1200, kCycleBins = 1200, kZoomBins = 300, kMeasureBins = 200, kLineBins = 800;
 constexpr std::size_t kShownCycles = 3;
 
-/// What the velocity charts show: v_b where the block moves against a disc of known speed, else v_r.
-class VelocityChannel {
- public:
-  explicit VelocityChannel(const Motion& motion) : motion_(motion) {
-    of_block_ = motion.velocity_kind != VelocityKind::fixed_block &&
-                (!motion.disc_velocity.empty() || motion.constant_disc_velocity != 0);
-  }
-  bool of_block() const { return of_block_; }
-  double operator[](std::size_t i) const {
-    const double v_r = motion_.relative_velocity[i];
-    return (of_block_ ? motion_.disc_velocity_at(i) - v_r : v_r) / kMillimetre;
-  }
-
- private:
-  const Motion& motion_;
-  bool of_block_ = false;
-};
-
 /// Samples [begin, end) that are drawn, and how their times are shown.
 struct Window {
   std::size_t begin, end, bins;
   double origin = 0, unit = 1;  ///< of the abscissa [s]
 };
 
-template <class Channel>
-ChartLine line_of(const DrawnTrace& d, const Window& w, std::string name, const Channel& channel, Stroke stroke,
-                  std::size_t panel = 0) {
-  std::vector<double> values(w.end - w.begin);
-  for (std::size_t i = w.begin; i < w.end; ++i) values[i - w.begin] = channel[i];
-  ChartLine line{.name = std::move(name), .stroke = stroke, .panel = panel};
+/// Adds a line of value(sample).
+template <class Value>
+void add_line(const DrawnTrace& d, const Window& w, const std::string& name, Value value, const Stroke& stroke,
+              std::size_t panel, Chart& chart) {
+  std::vector<double> values;
+  for (std::size_t i = w.begin; i < w.end; ++i) values.push_back(value(i));
+  ChartLine& line = chart.line(name, stroke, panel);
   for (const std::size_t k : drawn_samples(values, w.bins)) {
     line.add((d.trace.motion.time[w.begin + k] - w.origin) / w.unit, values[k]);
   }
-  return line;
 }
 
-ChartLine disc_line(const DrawnTrace& d, const Window& w) {
-  const Motion& motion = d.trace.motion;
-  const std::string name = "ω r of the disc";
-  if (!motion.disc_velocity.empty()) {
-    return line_of(d, w, name, in_unit(motion.disc_velocity, kMillimetre), kDisc, 1);
-  }
-  const double level = motion.constant_disc_velocity / kMillimetre;
-  const auto shown = [&](std::size_t i) { return (motion.time[i] - w.origin) / w.unit; };
-  return {.name = name, .x = {shown(w.begin), shown(w.end - 1)}, .y = {level, level}, .stroke = kDisc, .panel = 1};
-}
-
-/// Friction with its models above, velocity with the disc below.
+/// Friction with its models above; below v_b with the disc where the block moves against one of known speed, else v_r.
 Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const Motion& motion = d.trace.motion;
-  const VelocityChannel velocity(motion);
+  const bool varies = !motion.disc_velocity.empty();
+  const bool of_block =
+      motion.velocity_kind != VelocityKind::fixed_block && (varies || motion.constant_disc_velocity != 0);
+  const auto in = [](const std::vector<double>& values) { return [&](std::size_t i) { return values[i]; }; };
+  const auto disc = [&](std::size_t i) { return motion.disc_velocity_at(i) / kMillimetre; };
+  const auto velocity = [&](std::size_t i) {
+    const double v_r = motion.relative_velocity[i];
+    return (of_block ? motion.disc_velocity_at(i) - v_r : v_r) / kMillimetre;
+  };
   Chart chart{.x = {.quantity = "time", .unit = "s", .digits = kTimeDigits},
-              .panels = {{friction_axis(motion), 1.3}, {{velocity.of_block() ? "v_{b}" : "v_{r}", "mm/s"}}}};
-  chart.lines.push_back(line_of(d, w, "measured", motion.friction, kMeasured));
+              .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
+  add_line(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
-    chart.lines.push_back(line_of(d, w, d.models[k].name, d.predictions[k], model_stroke(k)));
+    add_line(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart);
     chart.lines.back().shown = k < 2;
   }
-  chart.lines.push_back(line_of(d, w, "measured", velocity, kMeasured, 1));
-  if (velocity.of_block()) chart.lines.push_back(disc_line(d, w));
+  add_line(d, w, "measured", velocity, kMeasured, 1, chart);
+  if (!of_block) return chart;
+  const Window ends{w.begin, w.end, varies ? w.bins : 1, w.origin, w.unit};
+  add_line(d, ends, "ω r of the disc", disc, kDisc, 1, chart);
   return chart;
 }
 
@@ -138,11 +119,10 @@ Chart spectrum_chart(const DrawnTrace& d) {
     chart.note = "Strongest line at " + significant(peak, 4) + " Hz (dotted). " + chart.note;
     chart.marks.push_back({peak, true, Dash::dotted, ""});
   }
-  ChartLine line{.name = "amplitude", .stroke = kMeasured};
+  ChartLine& line = chart.line("amplitude", kMeasured);
   for (const std::size_t k : drawn_samples(amplitude, d.bins(kLineBins))) {
     line.add(static_cast<double>(k) * spectrum.bin_width, amplitude[k]);
   }
-  chart.lines.push_back(std::move(line));
   return chart;
 }
 
@@ -166,11 +146,10 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
   for (const CycleMeasure& measure : measures) {
     std::vector<double> values;
     for (const Cycle& c : cycles) values.push_back(c.*measure.value / unit);
-    ChartLine line{.name = measure.name, .stroke = dots(measure.colour, measure.symbol)};
+    ChartLine& line = chart.line(measure.name, dots(measure.colour, measure.symbol));
     for (const std::size_t k : drawn_samples(values, d.bins(kMeasureBins))) {
       line.add(cycles[k].break_away_time, values[k]);
     }
-    chart.lines.push_back(std::move(line));
   }
   shade_left_out(d, chart);
   return chart;
@@ -178,12 +157,12 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
 
 }  // namespace
 
-DrawnTrace::DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside,
-                       const std::vector<DrawnModel>& laws, std::string prefix, double part)
+DrawnTrace::DrawnTrace(const Identification& of, const std::vector<const Fit*>& beside,
+                       const std::vector<const Fit*>& laws, std::string prefix, double part)
     : trace(of), models(beside), curves(laws), id(std::move(prefix)), share(part) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
-  for (const DrawnModel& model : models) predictions.push_back(predict(*model.fit, trace.motion, trace.segmentation));
+  for (const Fit* model : models) predictions.push_back(predict(*model, trace.motion, trace.segmentation));
 }
 
 std::size_t DrawnTrace::bins(std::size_t whole) const {

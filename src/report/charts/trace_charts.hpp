@@ -9,24 +9,18 @@
 
 namespace tribofit {
 
-/// A fit that is drawn, as the legend names it.
-struct DrawnModel {
-  std::string name;
-  const Fit* fit;
-};
-
 /// What the charts of one trace share: its samples, and what each model says of every one of them.
 struct DrawnTrace {
   const Identification& trace;
-  const std::vector<DrawnModel>& models;         ///< beside the samples, the one to look at first
-  const std::vector<DrawnModel>& curves;         ///< whose law is drawn over speed: the models, and others
+  const std::vector<const Fit*>& models;         ///< beside the samples, the one to look at first
+  const std::vector<const Fit*>& curves;         ///< whose law is drawn over speed: the models, and others
   std::string id;                                ///< begins the ids of the charts
   double share;                                  ///< part of the points of a page that this trace may have
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
   std::vector<SlipBranch> pieces;                ///< of the slips
   double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
 
-  DrawnTrace(const Identification& of, const std::vector<DrawnModel>& beside, const std::vector<DrawnModel>& laws,
+  DrawnTrace(const Identification& of, const std::vector<const Fit*>& beside, const std::vector<const Fit*>& laws,
              std::string prefix, double part = 1);
   /// Points that a series of this trace may have where a trace alone has `whole`.
   std::size_t bins(std::size_t whole) const;

@@ -8,19 +8,10 @@ const slowness = [["10 times as fast", 10], ["as it is", 1], ["half as fast", 0.
 const scene = { width: 420, height: 242, wall: 14, rest: 170, block: 64, deck: 96, reach: 150, plotTop: 138,
   plotBottom: 212, plotLeft: 44, plotRight: 410 };
 
-/** Index of the last sample at or before a time. */
-function sampleAt(time, t) {
-  let low = 0, high = time.length - 1;
-  while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (time[middle] <= t) low = middle; else high = middle - 1;
-  }
-  return low;
-}
-
 /** Where the block is at a time of its loop, and whether it sticks. */
 function blockAt(block, t) {
-  const { time, displacement, sticks } = block, k = sampleAt(time, t), next = Math.min(k + 1, time.length - 1);
+  const { time, displacement, sticks } = block;
+  const k = Math.max(0, time.findLastIndex((at) => at <= t)), next = Math.min(k + 1, time.length - 1);
   const step = time[next] - time[k], part = step > 0 ? (t - time[k]) / step : 0;
   return { displacement: displacement[k] + part * (displacement[next] - displacement[k]), sticks: sticks[k] };
 }
@@ -30,12 +21,6 @@ function springPath(from, to, y) {
   let path = `M${from},${y}h${lead}`;
   for (let k = 0; k < turns; ++k) path += `l${pitch / 4},-9l${pitch / 2},18l${pitch / 4},-9`;
   return path + `H${to}`;
-}
-
-/** Displacement over the loop as an SVG path. */
-function loopPath(block, toX, toY) {
-  return block.time.map((t, k) => `${k ? "L" : "M"}${toX(t).toFixed(1)},${toY(block.displacement[k]).toFixed(1)}`)
-    .join("");
 }
 
 /** One block: {element, show(t)}. scale: pixels a millimetre, the same for all blocks beside each other. */
@@ -50,23 +35,22 @@ function blockScene(block, animation, bounds) {
   const word = svgPart("text", { y: s.deck - 13, "text-anchor": "middle", "font-size": 13 });
   const marks = svgPart("path", { stroke: styles.colours.black, "stroke-width": 1.4 });
   const dot = svgPart("circle", { r: 4.5, fill: styles.colours.red, stroke: "#fff" });
-  const small = { "font-size": 12, fill: "#1b1b1b" };
-  const element = svgPart("svg", { viewBox: `0 0 ${s.width} ${s.height}`, role: "img", "aria-label":
-      `${block.name}: block on its disc, displacement from ${shortNumber(bounds.low)} to ${shortNumber(bounds.high)} mm` },
-  svgPart("text", { x: s.wall, y: 20, "font-size": 14, "font-weight": 600 }, block.name),
+  const label = (x, y, text, anchor = "start", more = {}) =>
+    svgPart("text", { x, y, "text-anchor": anchor, "font-size": 12, fill: "#1b1b1b", ...more }, text);
+  const low = number(bounds.low, 3), high = number(bounds.high, 3);
+  const points = block.time.map((t, k) => `${toX(t).toFixed(1)},${toY(block.displacement[k]).toFixed(1)}`);
+  const element = svgPart("svg", { viewBox: `0 0 ${s.width} ${s.height}`, role: "img",
+    "aria-label": `${block.name}: block on its disc, displacement from ${low} to ${high} mm` },
+  label(s.wall, 20, block.name, "start", { "font-size": 14, "font-weight": 600 }),
   svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: styles.colours.black, "stroke-width": 4 }), spring, body, word,
   svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: styles.colours.black }), marks,
-  svgPart("text", { x: s.width - 4, y: s.deck + 28, "text-anchor": "end", ...small },
-    `disc ${shortNumber(animation.disc_velocity)} mm/s \u2192`),
-  svgPart("path", { d: loopPath(block, toX, toY), fill: "none", stroke: styles.colours.blue, "stroke-width": 1.4 }),
+  label(s.width - 4, s.deck + 28, `disc ${number(animation.disc_velocity, 3)} mm/s \u2192`, "end"),
+  svgPart("path", { d: `M${points.join("L")}`, fill: "none", stroke: styles.colours.blue, "stroke-width": 1.4 }),
   svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: "#444" }),
-  svgPart("text", { x: s.plotLeft - 4, y: s.plotTop + 6, "text-anchor": "end", ...small }, shortNumber(bounds.high)),
-  svgPart("text", { x: s.plotLeft - 4, y: s.plotBottom, "text-anchor": "end", ...small }, shortNumber(bounds.low)),
-  svgPart("text", { x: s.plotLeft - 4, y: (s.plotTop + s.plotBottom) / 2 + 4, "text-anchor": "end", ...small }, "mm"),
-  svgPart("text", { x: s.plotLeft, y: s.plotTop - 8, ...small }, "displacement of the block"),
-  svgPart("text", { x: s.plotLeft, y: s.plotBottom + 16, ...small }, "0 s"),
-  svgPart("text", { x: s.plotRight, y: s.plotBottom + 16, "text-anchor": "end", ...small }, `${shortNumber(loop)} s`),
-  dot);
+  label(s.plotLeft - 4, s.plotTop + 6, high, "end"), label(s.plotLeft - 4, s.plotBottom, low, "end"),
+  label(s.plotLeft - 4, (s.plotTop + s.plotBottom) / 2 + 4, "mm", "end"),
+  label(s.plotLeft, s.plotTop - 8, "displacement of the block"), label(s.plotLeft, s.plotBottom + 16, "0 s"),
+  label(s.plotRight, s.plotBottom + 16, `${number(loop, 3)} s`, "end"), dot);
   const show = (time) => {
     const t = time % loop, now = blockAt(block, t);
     const left = s.rest + (now.displacement - bounds.low) * scale - s.block / 2;
@@ -86,17 +70,10 @@ function blockScene(block, animation, bounds) {
   return { element, show, loop };
 }
 
-function shortNumber(value) {
-  return String(Number(Number(value).toPrecision(3)));
-}
-
 /** The factor by which a loop takes about four seconds. */
 function usualSpeed(loop) {
-  let best = slowness[0][1];
-  for (const [, factor] of slowness) {
-    if (Math.abs(Math.log(loop / factor / 4)) < Math.abs(Math.log(loop / best / 4))) best = factor;
-  }
-  return best;
+  const off = (factor) => Math.abs(Math.log(loop / factor / 4));
+  return slowness.map(([, factor]) => factor).reduce((best, factor) => (off(factor) < off(best) ? factor : best));
 }
 
 /** Moves every block to a time; returns what they do there, in words. */
@@ -105,12 +82,6 @@ function showBlocks(scenes, blocks, at) {
     const now = one.show(at), name = blocks.length > 1 ? `${blocks[k].name}: ` : "";
     return `${name}${now.displacement.toFixed(3)} mm, ${now.sticks ? "sticks" : "slips"}`;
   }).join("; ");
-}
-
-/** Says when an element comes into view or leaves it. */
-function watchView(element, say) {
-  if (typeof IntersectionObserver !== "function") return;
-  new IntersectionObserver((entries) => say(entries[entries.length - 1].isIntersecting)).observe(element);
 }
 
 /** An animation: blocks side by side, play and pause, a slider of the time, the speed. */
@@ -160,12 +131,12 @@ function animationFigure(animation) {
     if (on) requestAnimationFrame(step);
   }
 
-  watchView(figure, (now) => {
+  new IntersectionObserver((entries) => { // what is out of view need not move
     const was = seen;
-    seen = now;
+    seen = entries[entries.length - 1].isIntersecting;
     before = null;
     if (playing && seen && !was) requestAnimationFrame(step);
-  });
+  }).observe(figure);
   show(0);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
   addEventListener("beforeprint", () => play(false));

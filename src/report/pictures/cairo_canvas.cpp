@@ -76,8 +76,7 @@ class CairoCanvas : public Canvas {
   void write(const Words& words) override;
   void begin_plot(const Area& area) override {
     cairo_save(cairo_);
-    cairo_rectangle(cairo_, across(area.left), down(area.bottom + area.height), across(area.width),
-                    across(area.height));
+    cairo_rectangle(cairo_, across(area.left), down(area.top()), across(area.width), across(area.height));
     cairo_clip(cairo_);
   }
   void end_plot() override { cairo_restore(cairo_); }
@@ -105,8 +104,7 @@ class CairoCanvas : public Canvas {
 };
 
 void CairoCanvas::write(const Words& words) {
-  const std::string line = one_line(words.text);
-  const std::vector<TextPiece> pieces = words.markup ? pieces_of(line) : std::vector<TextPiece>{{line, 0}};
+  const std::vector<TextPiece> pieces = words.pieces();
   const auto set_size = [&](const TextPiece& piece) {
     cairo_set_font_size(cairo_, words.points * (piece.level == 0 ? 1 : kScriptSize));
   };

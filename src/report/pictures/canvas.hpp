@@ -21,6 +21,14 @@ using Path = std::vector<Point>;
 
 struct Area {
   double left = 0, bottom = 0, width = 0, height = 0;
+
+  double right() const { return left + width; }
+  double top() const { return bottom + height; }
+  bool holds(const Point& p) const {
+    constexpr double kRound = 1e-6;
+    return p.x >= left - kRound && p.x <= right() + kRound && p.y >= bottom - kRound && p.y <= top() + kRound;
+  }
+  Path corners() const { return {{left, bottom}, {right(), bottom}, {right(), top()}, {left, top()}}; }
 };
 
 struct Pen {
@@ -41,6 +49,11 @@ struct Words {
   bool upright = false;  ///< read from below
   bool markup = true;    ///< "v_{r}" has a subscript
   bool halo = false;     ///< white around the letters, over what is drawn there
+
+  std::vector<TextPiece> pieces() const {
+    const std::string line = one_line(text);
+    return markup ? pieces_of(line) : std::vector<TextPiece>{{line, 0}};
+  }
 };
 
 class Canvas {

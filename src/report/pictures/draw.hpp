@@ -20,7 +20,6 @@ struct PanelFrame {
   double across(double value) const { return area.left + x.part(value) * area.width; }
   double up(double value) const { return area.bottom + y.part(value) * area.height; }
   Point at(double x_value, double y_value) const { return {across(x_value), up(y_value)}; }
-  bool holds(const Point& p) const;
 };
 
 /// A line with its band, symbols and bars of errors.
@@ -33,6 +32,8 @@ void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours)
 Pen pen_of(const Stroke& stroke);
 void draw_symbols(Canvas& canvas, const Path& at, const Stroke& stroke);
 void draw_box(Canvas& canvas, const Area& box, Colour colour, bool hatched);
+/// A path that ends where it begins.
+Path closed(Path path);
 /// Colour of a part of the heat map's range, 0 to 1.
 std::string heat_colour(double part);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "report/pictures/draw.hpp"
 #include "report/pictures/thin.hpp"
@@ -58,7 +57,7 @@ Path symbols_of(const PanelFrame& frame, const ChartLine& line) {
   Path points, kept;
   for (std::size_t k = 0; k < std::min(line.x.size(), line.y.size()); ++k) {
     const Point p = frame.at(line.x[k], line.y[k]);
-    if (frame.holds(p)) points.push_back(p);
+    if (frame.area.holds(p)) points.push_back(p);
   }
   const Path apart = thinned_points(points, kSymbolCell);
   const std::size_t every = line.stroke.joined ? 1 + apart.size() / kMostSymbols : 1;
@@ -84,17 +83,11 @@ double symbol_radius(const Stroke& stroke) {
   return std::clamp(1.25 * kPointsPerPixel * stroke.size, 2.0, 5.5) / 2 * kMillimetresPerPoint;
 }
 
-Path corners_of(const Area& box) {
-  const double right = box.left + box.width, top = box.bottom + box.height;
-  return {{box.left, box.bottom}, {right, box.bottom}, {right, top}, {box.left, top}};
-}
-
 }  // namespace
 
-bool PanelFrame::holds(const Point& p) const {
-  constexpr double kRound = 1e-6;
-  return p.x >= area.left - kRound && p.x <= area.left + area.width + kRound && p.y >= area.bottom - kRound &&
-         p.y <= area.bottom + area.height + kRound;
+Path closed(Path path) {
+  path.push_back(path.front());
+  return path;
 }
 
 Pen pen_of(const Stroke& stroke) {
@@ -148,17 +141,14 @@ void draw_line(const PanelFrame& frame, const ChartLine& line) {
 
 void draw_box(Canvas& canvas, const Area& box, Colour colour, bool hatched) {
   constexpr double kSpacing = 1.1;  // of the hatching, along the abscissa
-  canvas.fill_path(corners_of(box), hatched ? Paint{"#ffffff"} : ink(colour));
+  canvas.fill_path(box.corners(), hatched ? Paint{"#ffffff"} : ink(colour));
   std::vector<Path> hatching;  // of 45 degrees: x - y is the same all along
-  const double right = box.left + box.width;
-  for (double c = box.left - box.height + kSpacing / 2; hatched && c < right; c += kSpacing) {
-    const double first = std::max(box.left, c), last = std::min(right, c + box.height);
+  for (double c = box.left - box.height + kSpacing / 2; hatched && c < box.right(); c += kSpacing) {
+    const double first = std::max(box.left, c), last = std::min(box.right(), c + box.height);
     if (first < last) hatching.push_back({{first, box.bottom + first - c}, {last, box.bottom + last - c}});
   }
   canvas.stroke(hatching, {ink(colour), 0.9});
-  Path edge = corners_of(box);
-  edge.push_back(edge.front());
-  canvas.stroke_path(edge, {});
+  canvas.stroke_path(closed(box.corners()), {});
 }
 
 void draw_bars(const PanelFrame& frame, const std::vector<ChartBars>& bars) {
@@ -217,7 +207,7 @@ void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours)
       bool above = r + 2 < y.size() && r + 1 < map.z.size() && map.z[r + 1].size() >= end;
       for (std::size_t k = c; above && k < end; ++k) above = step(map.z[r + 1][k]) >= 0;
       const Area box{low.x, low.y, high.x - low.x + (beside ? kUnder : 0), high.y - low.y + (above ? kUnder : 0)};
-      frame.canvas.fill_path(corners_of(box), {heat_colour((colour + 0.5) / kColourSteps)});
+      frame.canvas.fill_path(box.corners(), {heat_colour((colour + 0.5) / kColourSteps)});
     }
   }
   frame.canvas.end_plot();

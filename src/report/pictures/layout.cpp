@@ -14,21 +14,6 @@ constexpr double kEdge = 1;                    // blank at the edges
 constexpr double kBetweenPanels = 2.2, kLeastPanel = 14;
 constexpr double kColourBox = 2.5;
 
-/// Adds what a line shows at its k-th point where its abscissa is within the range (any where `within` is null).
-template <class Add>
-void each_ordinate(const ChartLine& line, const Scale* within, Add add) {
-  const std::size_t count = line.x.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    if (within != nullptr) {
-      const double part = within->part(line.x[k]);
-      if (!(part >= -1e-9 && part <= 1 + 1e-9)) continue;
-    }
-    if (k < line.y.size()) add(line.y[k]);
-    if (k < line.low.size()) add(line.low[k]);
-    if (k < line.high.size()) add(line.high[k]);
-  }
-}
-
 Extent extent_of_abscissa(const Chart& chart) {
   Extent extent(chart.x.logarithmic);
   for (const ChartLine& line : chart.lines) {
@@ -53,7 +38,14 @@ Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
   const bool logarithmic = chart.panels[panel].axis.logarithmic;
   Extent extent(logarithmic);
   for (const ChartLine& line : chart.lines) {
-    if (line.shown && line.panel == panel) each_ordinate(line, &x, [&](double value) { extent.add(value); });
+    if (!line.shown || line.panel != panel) continue;
+    for (std::size_t k = 0; k < line.x.size(); ++k) {
+      const double part = x.part(line.x[k]);
+      if (!(part >= -1e-9 && part <= 1 + 1e-9)) continue;
+      for (const auto* values : {&line.y, &line.low, &line.high}) {
+        if (k < values->size()) extent.add((*values)[k]);
+      }
+    }
   }
   for (const ChartMark& mark : chart.marks) {
     if (!mark.upright && mark.panel == panel) extent.add(mark.at);
@@ -161,11 +153,7 @@ void add_colours(const Chart& chart, PictureLayout& layout, double height) {
   for (const std::vector<double>& row : map.z) {
     for (const double value : row) extent.add(value);
   }
-  ChartAxis axis;
-  axis.quantity = map.quantity;
-  axis.unit = map.unit;
-  axis.low = map.low;
-  axis.high = map.high;
+  const ChartAxis axis{.quantity = map.quantity, .unit = map.unit, .low = map.low, .high = map.high};
   layout.colours = scale_of(axis, extent, 0, static_cast<int>(height / 8));
 }
 
@@ -277,7 +265,7 @@ void place_upwards(PictureLayout& layout, const std::vector<double>& heights, do
   }
   layout.height = bottom - kBetweenPanels + kEdge + 1;
   layout.colour_box.bottom = layout.panels.back().bottom;
-  layout.colour_box.height = layout.panels.front().bottom + layout.panels.front().height - layout.colour_box.bottom;
+  layout.colour_box.height = layout.panels.front().top() - layout.colour_box.bottom;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "tribofit/report/pictures.hpp"
 
 #include <set>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -43,9 +42,8 @@ std::vector<Picture> pictures_of(const Report& report) {
 std::string drawn(const Chart& chart, PictureFormat format) {
   const PictureLayout layout = layout_of(chart);
   const std::string title = one_line(chart.title);
-  const std::unique_ptr<Canvas> canvas = format == PictureFormat::svg
-                                             ? make_svg(kPictureWidth, layout.height, title)
-                                             : make_cairo(format, kPictureWidth, layout.height, title);
+  const auto canvas = format == PictureFormat::svg ? make_svg(kPictureWidth, layout.height, title)
+                                                   : make_cairo(format, kPictureWidth, layout.height, title);
   draw_chart(chart, layout, *canvas);
   return canvas->finish();
 }
@@ -66,23 +64,18 @@ bool can_write_pictures(PictureFormat format) {
   return format == PictureFormat::svg || has_cairo();
 }
 
-struct PictureFiles::Files {
-  explicit Files(const std::string& path) : folder(path) {}
-  WholeFolder folder;
-};
-
 PictureFiles::PictureFiles(const Report& report, const std::string& folder, PictureFormat format) {
   const std::vector<Picture> pictures = pictures_of(report);
   std::vector<std::string> files;
   for (const Picture& picture : pictures) files.push_back(drawn(*picture.chart, format));
-  files_ = std::make_unique<Files>(folder);  // no folder while drawing may still fail or be stopped
+  folder_ = std::make_unique<WholeFolder>(folder);  // no folder while drawing may still fail or be stopped
   std::string captions = pictures.empty() ? "There is no chart to draw: " + one_line(report.lead) + "\n" : "";
   for (std::size_t k = 0; k < pictures.size(); ++k) {
-    files_->folder.add(pictures[k].name + "." + name_of(format)).write(files[k]);
+    folder_->add(pictures[k].name + "." + name_of(format)).write(files[k]);
     captions += (k > 0 ? "\n" : "") + caption_of(pictures[k], format);
   }
-  files_->folder.add("figures.txt").write(captions);
-  files_->folder.finish();
+  folder_->add("figures.txt").write(captions);
+  folder_->finish();
 }
 
 PictureFiles::~PictureFiles() = default;
@@ -90,7 +83,7 @@ PictureFiles::PictureFiles(PictureFiles&&) noexcept = default;
 PictureFiles& PictureFiles::operator=(PictureFiles&&) noexcept = default;
 
 void PictureFiles::commit() {
-  files_->folder.commit();
+  folder_->commit();
 }
 
 void write_pictures(const Report& report, const std::string& folder, PictureFormat format) {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 #include <string_view>
 
@@ -8,12 +7,6 @@
 
 namespace tribofit {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
 
 /// A number to a hundredth of a point, without zeros that say nothing.
 std::string number(double value) {
@@ -50,8 +43,7 @@ class SvgCanvas : public Canvas {
   void write(const Words& words) override;
   void begin_plot(const Area& area) override {
     say("<clipPath id=\"plot{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>", ++plots_,
-        number(across(area.left)), number(down(area.bottom + area.height)), number(across(area.width)),
-        number(across(area.height)));
+        number(across(area.left)), number(down(area.top())), number(across(area.width)), number(across(area.height)));
     say("<g class=\"plot\" clip-path=\"url(#plot{})\">", plots_);
   }
   void end_plot() override { say("</g>"); }
@@ -94,8 +86,7 @@ void SvgCanvas::write(const Words& words) {
   const double x = across(words.at.x), y = down(words.at.y), lower = kHalfOfCapital * words.points;
   std::string text;
   int level = 0;
-  for (const TextPiece& piece :
-       words.markup ? pieces_of(one_line(words.text)) : std::vector<TextPiece>{{one_line(words.text), 0}}) {
+  for (const TextPiece& piece : words.pieces()) {
     const std::string shift =
         piece.level == level ? ""
                              : fmt::format(" dy=\"{}\"", number((level - piece.level) * kScriptRise * words.points));

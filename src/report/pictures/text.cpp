@@ -1,5 +1,7 @@
 #include "report/pictures/text.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -50,6 +52,12 @@ std::string one_line(std::string_view text) {
   return out;
 }
 
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
 std::vector<TextPiece> pieces_of(std::string_view text) {
   std::vector<TextPiece> pieces;
   const auto add = [&](std::string_view part, int level) {
@@ -82,28 +90,18 @@ double width_of(std::string_view text, double points) {
 std::string shortened(std::string_view text, double width, double points) {
   const std::string line = one_line(text);
   if (width_of(line, points) <= width) return line;
-  double left = width - width_of(kEllipsis, points);
-  std::string front, back;
-  for (std::size_t begin = 0, end = line.size(); begin < end;) {
-    const bool to_front = front.size() <= back.size();
-    std::size_t from = begin, length = length_at(line, begin);
-    if (!to_front) {
-      from = end - 1;
-      while (from > begin && (static_cast<unsigned char>(line[from]) & 0xC0U) == 0x80) --from;
-      length = end - from;
-    }
-    const std::string next = line.substr(from, length);
-    left -= width_of(next, points);
-    if (left < 0) break;
-    if (to_front) {
-      front += next;
-      begin += length;
-    } else {
-      back = next + back;
-      end = from;
-    }
+  std::vector<std::string> characters;
+  for (std::size_t k = 0; k < line.size(); k += length_at(line, k))
+    characters.push_back(line.substr(k, length_at(line, k)));
+  std::string cut(kEllipsis);
+  for (std::size_t kept = characters.size(); kept-- > 0;) {  // as much of the front as of the back
+    const auto front = characters.begin() + static_cast<std::ptrdiff_t>((kept + 1) / 2);
+    const auto back = characters.end() - static_cast<std::ptrdiff_t>(kept / 2);
+    cut = fmt::format("{}{}{}", fmt::join(characters.begin(), front, ""), kEllipsis,
+                      fmt::join(back, characters.end(), ""));
+    if (width_of(cut, points) <= width) break;
   }
-  return front + std::string(kEllipsis) + back;
+  return cut;
 }
 
 }  // namespace tribofit

@@ -15,6 +15,9 @@ inline constexpr double kMillimetresPerPoint = 25.4 / 72;
 /// `text` as valid UTF-8 on one line: what is not, and control characters, become a replacement sign or a blank.
 std::string one_line(std::string_view text);
 
+/// `text` as XML and HTML have it.
+std::string escaped(std::string_view text);
+
 /// A part of a text: on the line (0), set low (-1) or high (1).
 struct TextPiece {
   std::string text;

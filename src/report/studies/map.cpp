@@ -35,12 +35,11 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRo
   });
   if (any_gap) chart.note = "White: nothing there, the block slides or its motion did not settle.";
   chart.map = std::move(map);
-  ChartLine edge{.name = "edge of stick-slip", .stroke = dots(Colour::black, Symbol::circle, 3)};
+  ChartLine& edge = chart.line("edge of stick-slip", dots(Colour::black, Symbol::circle, 3));
   const std::size_t every = 1 + std::max(request.x.values.size(), request.y.values.size()) / kMostCells;
   for (const auto& [at_x, at_y] : edge_of_stick_slip(request, rows, every)) {
     edge.add(at_x / request.x.variable.si, at_y / request.y.variable.si);
   }
-  if (!edge.x.empty()) chart.lines.push_back(std::move(edge));
   const double x = value_of(of.machine, request.x.variable.name) / request.x.variable.si;
   const double y = value_of(of.machine, request.y.variable.name) / request.y.variable.si;
   if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {

@@ -138,10 +138,6 @@ Json explained_json(const Settled& settled) {
   return out;
 }
 
-Json range_json(const Range& range, double unit) {
-  return interval_json(range.lower95 / unit, range.upper95 / unit);
-}
-
 std::string measure_columns(const std::string& before) {
   std::string text;
   for (const MeasureInfo& measure : measures()) text += "," + before + measure.column;

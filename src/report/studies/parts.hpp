@@ -3,11 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "campaign/csv_table.hpp"
 #include "report/charts/styles.hpp"
-#include "report/csv_text.hpp"
-#include "statistics/thinning.hpp"
+#include "report/json_parts.hpp"
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
+#include "statistics/thinning.hpp"
 #include "tribofit/report/study.hpp"
 
 namespace tribofit {
@@ -34,7 +35,6 @@ std::string study_text(const StudiedMachine& of, const char* kind, const Json& b
 Json settled_json(const Settled& settled);
 /// The same, and why a motion did not settle.
 Json explained_json(const Settled& settled);
-Json range_json(const Range& range, double unit);
 /// ",frequency_hz,stick_time_s,..." with something before each name.
 std::string measure_columns(const std::string& before = "");
 

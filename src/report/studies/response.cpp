@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "parts.hpp"
@@ -22,7 +21,7 @@ std::string no_spectra(const Response& study) {
 }
 
 ReportTable harmonics_table(const Response& study) {
-  ReportTable table("Spectra of settled motion");
+  ReportTable table("Spectra of settled motion", "harmonics.csv (--csv)");
   table.numbers({"harmonic", "frequency [Hz]", "friction [N]", "displacement [mm]", "velocity [mm/s]"});
   for (std::size_t n = 0; n < study.harmonics.size(); ++n) {
     const ResponseLine& h = study.harmonics[n];
@@ -30,7 +29,6 @@ ReportTable harmonics_table(const Response& study) {
                           significant(h.displacement / kMillimetre, 4), significant(h.velocity / kMillimetre, 4)});
   }
   table.folded = table.rows.size() > 30;
-  table.file = "harmonics.csv (--csv)";
   return table;
 }
 
@@ -56,12 +54,11 @@ Chart curve_chart(const Response& study) {
               .height = 400};
   if (study.frequency.empty() || study.amplitude.empty()) return chart;
   const double least = 0.1 * *std::min_element(study.amplitude.begin(), study.amplitude.end());  // else off the paper
-  ChartLine lines{.name = "lines of the settled motion", .stroke = marked(1, false)};
+  ChartLine& lines = chart.line("lines of the settled motion", marked(1, false));
   for (const ResponseLine& h : study.harmonics) {
     const bool there = h.frequency >= study.frequency.front() && h.frequency <= study.frequency.back();
     if (there && h.displacement >= least) lines.add(h.frequency, h.displacement / kMillimetre);
   }
-  if (!lines.x.empty()) chart.lines.push_back(std::move(lines));
   mark_natural(study, chart);
   if (!study.harmonics.empty()) {
     const double f = study.settled.frequency;
@@ -136,7 +133,8 @@ Report report_of(const StudiedMachine& of, const Response& study, const ReportOp
   std::string lead = fmt::format("Natural frequency {} Hz, damped {} Hz; response frequency {}. {}.",
                                  significant(study.natural_frequency, 5),
                                  significant(study.damped_natural_frequency, 5), frequency, response_sentence(study));
-  ReportSection section{"response", "Response and spectra", {curve_chart(study)}};
+  ReportSection section{"response", "Response and spectra", {}};
+  section.add(curve_chart(study));
   if (study.harmonics.empty()) {
     section.soft(no_spectra(study));
   } else {

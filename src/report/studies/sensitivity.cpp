@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "parts.hpp"
@@ -52,10 +51,10 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   for (const std::size_t i : ranked(study, measure)) {
     const Sensitivity& one = study[i];
     if (!(one.base != 0)) continue;
-    ChartLine line{one.variable.name, in_unit(one.values, one.base), {}, stroke_of(k)};
+    ChartLine& line = chart.line(one.variable.name, stroke_of(k));
+    line.x = in_unit(one.values, one.base);
     for (const Settled& s : one.settled) line.y.push_back(s.*info.value / info.si);
     line.shown = k++ < kShown;
-    chart.lines.push_back(std::move(line));
   }
   return chart;
 }

@@ -14,6 +14,10 @@ std::string range_text(const Range& range, double unit) {
   return fmt::format("[{}, {}]", significant(range.lower95 / unit, 4), significant(range.upper95 / unit, 4));
 }
 
+Json range_json(const Range& range, double unit) {
+  return interval_json(range.lower95 / unit, range.upper95 / unit);
+}
+
 /// Where sliding gains or loses its stability, where stick vanishes and comes back, with their 95 % ranges.
 std::vector<std::string> critical_sentences(const StudiedMachine& of, const SpeedStudy& study) {
   const CriticalSpeed& c = study.critical;
@@ -128,11 +132,11 @@ void add_range(const Range& range, std::size_t panel, Chart& chart) {
 void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
   const std::vector<double> velocity = in_unit(study.velocity, kMillimetre);
   const auto add = [&](const char* name, const std::vector<Settled>& settled, std::size_t kind, Dash dash) {
-    ChartLine line{.name = name, .x = velocity, .stroke = marked(kind), .panel = panel};
+    ChartLine& line = chart.line(name, marked(kind), panel);
+    line.x = velocity;
     line.stroke.dash = dash;
     line.stroke.size = 5;
     for (const Settled& s : settled) line.y.push_back(s.*measure.value / measure.si);
-    chart.lines.push_back(std::move(line));
   };
   add("begun in stick (way up)", study.up, 1, Dash::solid);
   add("begun in sliding (way down)", study.down, 2, Dash::dashed);
@@ -142,9 +146,9 @@ void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t
 void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
   const Estimate* value = measured_value(of, measure);
   if (value == nullptr) return;
-  ChartLine line{.name = "measured", .stroke = dots(Colour::black, Symbol::cross, 9), .bars = true, .panel = panel};
+  ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
+  line.bars = true;
   line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si, 1.96 * value->std_error / measure.si);
-  chart.lines.push_back(std::move(line));
 }
 
 /// Speeds in equal ratios are seen apart on a logarithmic axis.

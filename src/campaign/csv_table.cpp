@@ -1,4 +1,4 @@
-#include "csv_text.hpp"
+#include "csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -19,13 +19,16 @@ void CsvLine::begin_cell() {
 void CsvLine::add_number(double value) {
   begin_cell();
   if (!std::isfinite(value)) return;
-  digits_ > 0 ? fmt::format_to(std::back_inserter(text_), "{:.{}g}", value, digits_)
-              : fmt::format_to(std::back_inserter(text_), "{}", value);
+  if (digits_ > 0) {
+    fmt::format_to(std::back_inserter(text_), "{:.{}g}", value, digits_);
+  } else {
+    fmt::format_to(std::back_inserter(text_), "{}", value);
+  }
 }
 
 void CsvLine::add_text(std::string_view text) {
   begin_cell();
-  const bool quoted = text.find_first_of(",\"") != std::string_view::npos;
+  const bool quoted = text.find_first_of(",;\t\"#") != std::string_view::npos;
   if (quoted) text_ += '"';
   for (const char c : text) {
     if (c == '"') text_ += '"';
@@ -34,9 +37,9 @@ void CsvLine::add_text(std::string_view text) {
   if (quoted) text_ += '"';
 }
 
-void CsvLine::add_values(const Json& json) {
+void CsvLine::add_values(const nlohmann::ordered_json& json) {
   if (json.is_structured()) {
-    for (const Json& value : json) add_values(value);
+    for (const auto& value : json) add_values(value);
   } else if (json.is_number_float()) {
     add_number(json.get<double>());
   } else if (json.is_boolean()) {

@@ -1,17 +1,18 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
-#include "campaign/whole_folder.hpp"
-#include "json_parts.hpp"
+#include "whole_folder.hpp"
 
 namespace tribofit {
 
-/// One line of a CSV file, cell by cell. Text is quoted where it must be, and its line breaks become blanks; a number
-/// that is not known is an empty cell; truth is 1 and 0. The values of a JSON object or list are laid out in their
-/// order, null as an empty cell: so a table has the numbers of the JSON, under the names of its header.
+/// One line of a CSV file, cell by cell. Text is quoted where a reader would see more than one cell or a comment, and
+/// its line breaks become blanks; a number that is not known is an empty cell; truth is 1 and 0. The values of a JSON
+/// object or list are laid out in their order, null as an empty cell: so a table has the numbers of the JSON, under the
+/// names of its header.
 class CsvLine {
  public:
   /// digits: of numbers; 0: to the last.
@@ -19,7 +20,7 @@ class CsvLine {
 
   template <class Cell>
   void add(const Cell& cell) {
-    if constexpr (std::is_same_v<Cell, Json>) {
+    if constexpr (std::is_same_v<Cell, nlohmann::ordered_json>) {
       add_values(cell);
     } else if constexpr (std::is_floating_point_v<Cell>) {
       add_number(cell);
@@ -36,7 +37,7 @@ class CsvLine {
   void begin_cell();
   void add_number(double value);
   void add_text(std::string_view text);
-  void add_values(const Json& json);
+  void add_values(const nlohmann::ordered_json& json);
 
   int digits_;
   bool has_cells_ = false;
