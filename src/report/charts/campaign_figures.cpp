@@ -123,16 +123,16 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
 Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over) {
   MeansChart chart(of, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::string> names;
-  for (const auto& [law, name, unit] : other_parameters(of.groups)) {
+  for (const OtherParameter& other : other_parameters(of.groups)) {
     const auto value_by = [&](const char* protocol) {
       return [&, protocol](std::size_t g) {
-        const PooledGroup::OfFit* own = fit_of(of.groups[g], law, protocol);
-        return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, name));
+        const PooledGroup::OfFit* own = fit_of(of.groups[g], other.law, protocol);
+        return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, other.name));
       };
     };
-    chart.panel(with_subscript(name), unit).add("joint fit", 0, value_by("joint"));
-    chart.add("per-cycle extremes", 1, value_by("published")).earlier(name);
-    names.push_back(fmt::format("{} of the {} law", name, law));
+    chart.panel(with_subscript(other.name), other.unit).add("joint fit", 0, value_by("joint"));
+    chart.add("per-cycle extremes", 1, value_by("published")).earlier(other.name);
+    names.push_back(fmt::format("{} of the {} law", other.name, other.law));
   }
   return chart.chart(110 + 180 * std::max(1, static_cast<int>(names.size())),
                      fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
