@@ -180,6 +180,14 @@ std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& a
   return rungs;
 }
 
+/// The effects that were found remove less than they leave of what the base law has above the noise floor, and what
+/// they leave is beyond the error of the held-out error.
+bool is_most_left(const std::vector<Fit>& fits, double floor) {
+  const double first = fits.front().error.held_out_rmse, last = fits.back().error.held_out_rmse;
+  const bool clear = last - limits::kClearOfFloor * held_out_std_error(fits.back()) > floor;
+  return fits.size() > 1 && clear && last * last - floor * floor > limits::kMostLeft * (first * first - floor * floor);
+}
+
 /// Far above the floor, an error that goes with no variable of these data is not explained either.
 void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
   const bool added = fits.size() > 1;
@@ -189,7 +197,15 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
   if (possible) diagnosis.verdict = Verdict::unexplained;
   const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
   const double left_over = fits.back().error.held_out_rmse / diagnosis.floor_rmse;
-  if (structured || possible || !(left_over > far)) return;
+  if (structured || possible) return;
+  if (is_most_left(fits, diagnosis.floor_rmse)) {
+    diagnosis.verdict = Verdict::unexplained;
+    diagnosis.messages.push_back(fmt::format(
+        "most of the error above the noise floor is still there with what was found: {:.1f} times the noise floor",
+        left_over));
+    return;
+  }
+  if (!(left_over > far)) return;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(
       fmt::format("what remains is {:.1f} times the noise floor and goes with no variable of these data more than "

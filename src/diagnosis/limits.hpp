@@ -51,8 +51,7 @@ inline constexpr double kAwayFromNone = 0.5;  ///< of its range the size of an e
 // Whether a candidate passes.
 inline constexpr double kLeastSizeOfLevel =
     0.15;  ///< a high break-away makes its own stick longer, and explains as much
-inline constexpr std::ptrdiff_t kBreakAwaysOfStickSlip =
-    30;                                     ///< fewer: what goes with the stick time goes with time
+inline constexpr std::ptrdiff_t kBreakAwaysOfStickSlip = 30;  ///< fewer: what goes with the stick time goes with time
 inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles do not count as independent
 
 /// Two models are distinguishable when their squares differ by more than chance would make them: with the right one
@@ -95,6 +94,8 @@ inline constexpr double kChanceOfShare = 0.05;      ///< for a share that is onl
 inline constexpr double kLeastStructure = 0.05;     ///< of the squares of the noise: smaller structure does not matter
 inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
 inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
+inline constexpr double kMostLeft = 0.5;    ///< of the squares above the floor: what was found is the smaller part
+inline constexpr double kClearOfFloor = 2;  ///< standard errors of the held-out error, from which it is no chance
 inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering
 
 }  // namespace limits
