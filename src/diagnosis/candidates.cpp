@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "fit/spectral_lines.hpp"
@@ -145,6 +146,11 @@ std::vector<double> grid_of(const Parameter& parameter, double lower, double upp
   return values;
 }
 
+/// Slips that must lie on either side of a change, of n; of a few slips a quarter.
+std::size_t least_beside_change(std::size_t n) {
+  return std::min(limits::kFewestBesideChange, std::max<std::size_t>(1, n / 4));
+}
+
 /// Times at which friction may have stepped: about the change point that explains most of the levels of the cycles
 /// (likelihood ratio, E. S. Page, Biometrika 41 (1954) 100), between the two cycles and within either of them.
 std::vector<double> change_points(const Observations& observations, std::span<const double> residual) {
@@ -162,9 +168,11 @@ std::vector<double> change_points(const Observations& observations, std::span<co
   }
   double before = 0, weight_before = 0, best = -1;
   std::size_t at = 0;
+  const std::size_t beside = least_beside_change(n);
   for (std::size_t k = 0; k + 1 < n; ++k) {
     before += level[k];
     weight_before += weight[k];
+    if (k + 1 < beside || n - k - 1 < beside) continue;
     const double gap = before / weight_before - (total - before) / (weights - weight_before);
     const double gain = gap * gap * weight_before * (weights - weight_before) / weights;
     if (gain > best) {
@@ -243,6 +251,24 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
   }
   for (const Effect& effect : own) out.push_back({effect, describe(effect), {}, {}});
   return out;
+}
+
+bool is_amid_slips(const Observations& observations, double time) {
+  struct Beside {
+    std::size_t before = 0, after = 0, all = 0;
+  };
+  std::map<std::size_t, Beside> records;
+  for (const auto& slip : observations.slips) {
+    Beside& beside = records[slip.record];
+    ++beside.all;
+    if (observations.time[slip.end - 1] <= time) ++beside.before;
+    if (observations.time[slip.begin] >= time) ++beside.after;
+  }
+  return std::any_of(records.begin(), records.end(), [](const auto& record) {
+    const Beside& beside = record.second;
+    // A slip within which the change lies counts for one of the sides.
+    return std::min(beside.before, beside.after) + 1 >= least_beside_change(beside.all);
+  });
 }
 
 Starts starts_of(const Candidate& candidate, std::span<const Record> records, const Observations& observations,

@@ -34,6 +34,9 @@ struct Starts {
   double places = 1;
 };
 
+/// Enough slips lie on either side of a change of friction at `time` [s] to know both levels.
+bool is_amid_slips(const Observations& observations, double time);
+
 /// `residual` is what the model so far leaves: one value for each of the observations.
 Starts starts_of(const Candidate& candidate, std::span<const Record> records, const Observations& observations,
                  std::span<const double> residual);

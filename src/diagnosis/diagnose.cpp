@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include "base_law.hpp"
@@ -144,11 +143,13 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
 /// One noise floor for all rungs, since it is a property of the records: the sensor noise, and the least of what the
 /// rungs make of the scatter of break-away. A richer model that calls more of the error scatter has not explained it.
 double share_floor(double noise, std::vector<Fit>& fits) {
-  Floor floor = fits.back().floor;
-  double scatter = std::numeric_limits<double>::infinity();
-  for (const Fit& rung : fits) {
-    scatter = std::min(scatter, std::max(0.0, std::pow(rung.floor.rmse, 2) - std::pow(rung.floor.noise, 2)));
-  }
+  const auto of_scatter = [](const Fit& rung) {
+    return std::max(0.0, std::pow(rung.floor.rmse, 2) - std::pow(rung.floor.noise, 2));
+  };
+  const auto least = std::min_element(fits.begin(), fits.end(),
+                                      [&](const Fit& a, const Fit& b) { return of_scatter(a) < of_scatter(b); });
+  const double scatter = of_scatter(*least);
+  Floor floor = least->floor;
   floor.noise = noise;
   floor.rmse = std::sqrt(floor.noise * floor.noise + scatter);
   for (Fit& rung : fits) set_floor(floor, rung);
@@ -200,9 +201,7 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
   if (structured || possible) return;
   if (is_most_left(fits, diagnosis.floor_rmse)) {
     diagnosis.verdict = Verdict::unexplained;
-    diagnosis.messages.push_back(fmt::format(
-        "most of the error above the noise floor is still there with what was found: {:.1f} times the noise floor",
-        left_over));
+    diagnosis.messages.push_back("the effects found explain less than half of the error above the noise floor");
     return;
   }
   if (!(left_over > far)) return;

@@ -143,13 +143,25 @@ void describe_last_trial(const FindingInputs& in, const LastJudged& last, Effect
   finding.error_reduction = reduction(in, before, squared);
 }
 
+/// All that stands against a candidate that is no chance is that a parameter of it would go beyond its bound: something
+/// that acts like it remains. (Not where the instruments file or the end of the record is against it.)
+bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judged) {
+  const Trial& trial = judged.trial;
+  const std::size_t offset = trial.model.offset_of(candidate.info.key);
+  if (judged.p_value >= limits::kChanceBeyondBounds) return false;
+  if (candidate.allowed && !candidate.allowed->holds(trial.p[offset])) return false;
+  const auto first = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(offset);
+  const auto last = first + static_cast<std::ptrdiff_t>(candidate.info.parameters.size());
+  return std::find(first, last, true) != last;
+}
+
 /// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
-/// of what is left above the noise; or it is no chance, but its values cannot be: something that acts like it is there.
-bool is_possible(const FindingInputs& in, const LastJudged& last) {
+/// of what is left above the noise; or its bounds alone.
+bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;
   if (!(judged.size > limits::kLeastPossible) || !(judged.fall > 0)) return false;
-  if (!judged.plausible) return judged.p_value < limits::kChance;
+  if (!judged.plausible) return acts_beyond_bounds(in.all[k], judged);
   const double excess = in.ladder.top().held_out_squares - in.context.noise_squares();
   return judged.p_value < limits::kChanceOfPossible && judged.fall > limits::kPossiblePart * excess;
 }
@@ -160,7 +172,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last,
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
                    : last.judged != nullptr ? why_not(*last.judged, in.all[k])
                                             : "it promises no fall of the error";
-  if (finding.status == EffectStatus::unsupported && is_possible(in, last)) {
+  if (finding.status == EffectStatus::unsupported && is_possible(in, k, last)) {
     finding.status = EffectStatus::possible;
     finding.reason =
         last.judged->plausible

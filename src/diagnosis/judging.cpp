@@ -46,6 +46,9 @@ bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Can
     const bool too_slow =
         q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(context.fine.observations);
     if (too_slow) return false;
+    const bool at_an_end =
+        q.search == ParameterSearch::moment_of_change && !is_amid_slips(context.fine.observations, trial.p[offset + k]);
+    if (at_an_end) return false;
   }
   return true;
 }

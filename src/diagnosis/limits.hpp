@@ -23,7 +23,9 @@ inline constexpr std::size_t kCoarseValues = 5000;  ///< enough to see which can
 inline constexpr std::size_t kFewestCoarse = 16, kMostCoarse = 40;  ///< a slip; 16 still show both of its branches
 
 // Blocks of cycles.
-inline constexpr std::size_t kCyclesOfBlock = 5;                   ///< neighbours share slow scatter over about as many
+inline constexpr std::size_t kCyclesOfBlock = 5;  ///< neighbours share slow scatter over about as many
+/// On either side of a change: the level of fewer is a draw of slow scatter (stick-slip with 1/f noise moves).
+inline constexpr std::size_t kFewestBesideChange = kCyclesOfBlock;
 inline constexpr std::size_t kFewestBlocks = 2, kMostBlocks = 10;  ///< ten: the usual compromise of cross-validation
 /// Of what all cycles know about a direction the kept ones must know this part: less, and the step there is a guess.
 inline constexpr double kLeastKnown = 0.1;
@@ -84,6 +86,8 @@ inline constexpr double kCreepPart = 0.5;
 inline constexpr double kChanceOfPossible = 0.05;  ///< p-value: one record in twenty would else be called unfinished
 inline constexpr double kPossiblePart = 0.3;       ///< of what is above the noise: less does not change the picture
 inline constexpr double kLeastPossible = 0.1;      ///< of the squares of the noise: less shows on no plot
+
+inline constexpr double kChanceBeyondBounds = 0.01;  ///< p-value, as for structure that remains: this is what it is
 
 // Whether a run that was held back bears a finding out.
 inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those that do one in twenty fails by chance

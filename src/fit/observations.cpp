@@ -72,8 +72,8 @@ void go_on_from(const Observations::SlipObservation& before, Observations::SlipO
   slip.lead_end = out.lead_time.size();
 }
 
-/// A record that sticks and begins in slip tells nothing of what was before: a memory that acts in stick starts from
-/// friction as it is read there. (Where nothing sticks it starts in steady state, which no noise can move.)
+/// Where a record that sticks begins in slip, or goes on in slip after a gap, nothing tells what was before: a memory
+/// that acts in stick starts from friction as it is read there. (Where nothing sticks it starts in steady state, which no noise can move.)
 void begin_with(double friction, Observations::SlipObservation& slip, Observations& out) {
   slip.lead_friction = friction;
   slip.lead_begin = out.lead_time.size();

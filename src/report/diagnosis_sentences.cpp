@@ -129,7 +129,7 @@ class Sentences {
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (const std::vector<std::string> keys = keys_of(EffectStatus::possible); !keys.empty()) {
-      return fmt::format("{} What remains may be explained by {}, but these data do not prove it: {}.",
+      return fmt::format("{} What remains looks like {}, but these data do not prove it: {}.",
                          found_effects(d_).empty() ? "No effect is proven." : found_sentence(result_),
                          fmt::join(keys, " or "), fall());
     }

@@ -94,6 +94,7 @@ void TerminalText::items(const std::vector<ReportItem>& items) {
     if (text->kind == Kind::warning) warning(text->text);
     if (text->kind == Kind::plain || text->kind == Kind::soft) line(text->text);
     if (text->kind == Kind::item) line(text->text, 2, 4);
+    if (text->kind == Kind::command) text_ += folded_command(text->text, width_) + "\n";
   }
 }
 

@@ -347,25 +347,27 @@ TEST(Findings, AWithdrawnEffectIsNotFound) {
 /// Beside a base law that leaves twice the squares of the noise.
 TEST(Findings, WhatMayExplainMuchAndIsNotProvenIsPossible) {
   const Made made;
-  const std::vector<Candidate> all = candidates_of({"viscous", "drift", "run-in", "heating"});
+  const std::vector<Candidate> all = candidates_of({"viscous", "drift", "run-in", "heating", "asymmetry"});
   const double noise = made.context.noise_squares();
   Ladder ladder;
   ladder.steps.resize(1);
   ladder.steps[0].trial.held_out_squares = 2 * noise;
   ladder.last = {result(all, 0, 0.02, false), result(all, 1, 0.02, false), result(all, 2, 0.2, false),
-                 result(all, 3, 0.02, false)};
+                 result(all, 3, 0.02, false), result(all, 4, 1e-6, false)};
   for (CandidateResult& judged : ladder.last) {
     judged.fall = 0.5 * noise;
     judged.size = 0.5;
   }
   ladder.last[1].fall = 0.1 * noise;  // little of what is above the noise
-  ladder.last[3].plausible = false;
+  ladder.last[3].plausible = ladder.last[4].plausible = false;
+  ladder.last[4].trial.at_bound.assign(ladder.last[4].trial.model.parameters().size(), true);
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
   EXPECT_EQ(of(found, "viscous").status, EffectStatus::possible);
   EXPECT_THAT(of(found, "viscous").reason, HasSubstr(all[0].info.experiment)) << "what would prove it";
   EXPECT_EQ(of(found, "drift").status, EffectStatus::unsupported);
   EXPECT_EQ(of(found, "run-in").status, EffectStatus::unsupported) << "what it explains may well be chance";
   EXPECT_EQ(of(found, "heating").status, EffectStatus::unsupported);
+  EXPECT_EQ(of(found, "asymmetry").status, EffectStatus::possible) << "its bounds alone are against it";
 }
 
 TEST(Findings, TheFormOnTheLadderStandsForItsEffect) {

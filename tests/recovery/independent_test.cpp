@@ -22,7 +22,7 @@ DiagnosedTraces diagnosis_of(const Rig& rig) {
   return diagnose(std::vector<TraceInput>{input}, IdentifyOptions{});
 }
 
-/// The truth within twice the 95 % interval, and the interval within a tenth of the truth.
+/// The truth within twice the 95 % interval, and the interval at most half as wide as the truth is large.
 void expect_recovered(const FitParameter& p, double truth) {
   const double lower = p.lower95 - 0.5 * (p.upper95 - p.lower95), upper = p.upper95 + 0.5 * (p.upper95 - p.lower95);
   EXPECT_TRUE(lower <= truth && truth <= upper)
