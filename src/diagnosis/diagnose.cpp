@@ -6,6 +6,7 @@
 
 #include "base_law.hpp"
 #include "findings.hpp"
+#include "fit/assessment.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/spectral_lines.hpp"
 #include "limits.hpp"
@@ -185,7 +186,7 @@ std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& a
 /// they leave is beyond the error of the held-out error.
 bool is_most_left(const std::vector<Fit>& fits, double floor) {
   const double first = fits.front().error.held_out_rmse, last = fits.back().error.held_out_rmse;
-  const bool clear = last - limits::kClearOfFloor * held_out_std_error(fits.back()) > floor;
+  const bool clear = last > kAtFloor * floor && last - limits::kClearOfFloor * held_out_std_error(fits.back()) > floor;
   return fits.size() > 1 && clear && last * last - floor * floor > limits::kMostLeft * (first * first - floor * floor);
 }
 

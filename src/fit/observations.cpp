@@ -72,16 +72,6 @@ void go_on_from(const Observations::SlipObservation& before, Observations::SlipO
   slip.lead_end = out.lead_time.size();
 }
 
-/// Where a record that sticks begins in slip, or goes on in slip after a gap, nothing tells what was before: a memory
-/// that acts in stick starts from friction as it is read there. (Where nothing sticks it starts in steady state, which no noise can move.)
-void begin_with(double friction, Observations::SlipObservation& slip, Observations& out) {
-  slip.lead_friction = friction;
-  slip.lead_begin = out.lead_time.size();
-  out.lead_time.push_back(out.time[slip.begin]);
-  out.lead_velocity.push_back(out.velocity[slip.begin]);
-  slip.lead_end = out.lead_time.size();
-}
-
 /// Keeps the velocity of each stick from where creep stands out of the noise, a third of a slip time before break-away
 /// at most, and friction there, from which a memory that acts in stick starts. Creep is smooth, noise is not: fed to a
 /// memory that turns with the sign of v_r it would pass for motion, so the velocity is averaged.
@@ -98,8 +88,6 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
       const bool first_of_record = slip == out.slips.begin();
       if (!first_of_record && std::prev(slip)->samples.end + 2 >= slip->samples.begin) {
         go_on_from(*std::prev(slip), *slip, out);
-      } else if (segmentation.kind == MotionKind::stick_slip) {
-        begin_with(mean_about(motion.friction, slip->samples.begin, half), *slip, out);
       }
       continue;
     }
