@@ -117,14 +117,17 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
 }
 
 Spectrum spectrum_up_to(std::span<const double> signal, double step, double top) {
-  constexpr double kSamplesPerPeriod = 4;
-  if (signal.size() < 16) return {};
+  constexpr double kSamplesPerPeriod = 8;  // what lies above then folds back from seven times `top` on
+  if (signal.size() < 16 || !(step > 0) || !(top > 0)) return {};
   top = std::min(top, 0.5 / step);
   const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerPeriod * top * step)));
   const BlockMeans reduced = block_means(signal, every, step);
   if (reduced.mean.size() < 8) return {};
   Spectrum out = amplitude_spectrum(reduced.mean, reduced.step);
   out.amplitude.resize(std::min(out.amplitude.size(), static_cast<std::size_t>(top / out.bin_width) + 1));
+  for (std::size_t k = 0; k < out.amplitude.size(); ++k) {
+    out.amplitude[k] /= block_transmission(static_cast<double>(k) * out.bin_width, every > 1 ? reduced.step : 0);
+  }
   return out;
 }
 

@@ -1,6 +1,6 @@
 /// Nominal 95 % intervals of effects, where law and effects are known, over the cases of the benchmark.
 ///
-/// TRIBOFIT_COVERAGE_RUNS sets how many cases each effect and size gets; when it is not set, the largest size gets one.
+/// TRIBOFIT_COVERAGE_RUNS sets how many cases each effect and size gets (one when it is not set).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +39,7 @@ TEST(EffectCoverage, NominalIntervalsOfEffectsCoverTheTruth) {
                       .pairs = 0,
                       .nothing = 0,
                       .aliens = 0,
-                      .unknowable = 0,
-                      .largest_only = text == nullptr};
+                      .unknowable = 0};
   std::vector<Case> cases = plan_cases(plan);
   std::erase_if(cases, [](const Case& c) { return !is_fitted(c); });
   std::vector<std::vector<int>> covered(cases.size());

@@ -29,6 +29,17 @@ TEST(Spectrum, AmplitudeOfASineOnABin) {
   EXPECT_NEAR(s.amplitude[0], 0, 1e-3);
 }
 
+TEST(Spectrum, UpToAFrequencyItIsThatOfTheWhole) {
+  const double step = 1e-4;
+  const std::vector<double> signal = sine(40000, step, 22.5, 3, 0);  // four seconds: on a bin
+  const Spectrum s = spectrum_up_to(signal, step, 25);
+  ASSERT_GT(s.amplitude.size(), 0u);
+  EXPECT_NEAR(static_cast<double>(s.amplitude.size() - 1) * s.bin_width, 25, s.bin_width);
+  EXPECT_NEAR(peak_frequency(s, 1, 25), 22.5, 0.1 * s.bin_width);
+  EXPECT_NEAR(*std::max_element(s.amplitude.begin(), s.amplitude.end()), 3, 0.02) << "also next to the end";
+  EXPECT_TRUE(spectrum_up_to(signal, step, 0).amplitude.empty());
+}
+
 TEST(Spectrum, AwkwardLengthsAreNoTrouble) {
   for (std::size_t n : {4u, 5u, 7u, 997u, 10007u}) {
     const Spectrum s = amplitude_spectrum(sine(n, 0.01, 5, 1), 0.01);

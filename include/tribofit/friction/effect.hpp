@@ -155,7 +155,6 @@ struct HiddenCases {
   std::vector<double> sizes = {};      ///< of the first parameter, in its unit, the least effect first
   bool either_sign = false;            ///< each size is as likely negative
   std::vector<ValueDraw> others = {};  ///< of the other parameters, in their order
-  std::string why_none = {};           ///< where there are no sizes: why no record can hold it
 };
 
 /// An effect that looks the same in most records, and the experiment that distinguishes the two, as one imperative

@@ -24,7 +24,7 @@ struct Spectrum {
 Spectrum amplitude_spectrum(std::span<const double> signal, double step);
 
 /// The same up to the frequency `top` [Hz] (at most half the rate), of means over neighbours where that is far below
-/// the rate, which costs less; empty for less than 16 samples.
+/// the rate, which costs less; what the means take away is given back. Empty for less than 16 samples.
 Spectrum spectrum_up_to(std::span<const double> signal, double step, double top);
 
 /// Frequency [Hz] of the highest value of a spectrum between two frequencies, interpolated by a parabola through it and

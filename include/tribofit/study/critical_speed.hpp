@@ -7,6 +7,9 @@
 
 namespace tribofit {
 
+/// Speeds whose ratio is nearer to one are the same: far below what a record or a rig lets anybody set.
+inline constexpr double kSameSpeed = 1e-3;
+
 /// Speeds of the disc at which the motion of a machine changes its kind, as v_disc = omega r [m/s].
 struct CriticalSpeed {
   /// Where steady sliding gains or loses its stability (see steady_sliding()), rising; none in the range: empty.
@@ -22,9 +25,8 @@ struct CriticalSpeed {
   bool below_range = false, above_range = false;
   bool stable_at_highest = false;  ///< steady sliding at the highest speed
 
-  /// Between stick_returns and stick_vanishes it depends on the past which motion is seen; closer than 0.1 % they are
-  /// one.
-  bool is_bistable() const { return stick_vanishes > 1.001 * stick_returns; }
+  /// Between stick_returns and stick_vanishes it depends on the past which motion is seen.
+  bool is_bistable() const { return stick_vanishes > (1 + kSameSpeed) * stick_returns; }
 };
 
 struct CriticalSpeedOptions {

@@ -20,8 +20,7 @@ std::string speed_text(const Portrait& portrait) {
 
 /// Whether this portrait is made at the speed of the machine, at which there may be a record.
 bool is_own(const StudiedMachine& of, const Portrait& portrait) {
-  constexpr double kSame = 1e-3;
-  return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSame;
+  return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSameSpeed;
 }
 
 /// Three cycles of the record that the machine was identified from, where it was made at this speed.

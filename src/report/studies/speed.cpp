@@ -101,13 +101,12 @@ ReportTable speed_table(const SpeedStudy& study, std::size_t most) {
 
 /// An upright mark at each critical speed; what happens at one speed shares a mark.
 void add_critical(const SpeedStudy& study, Chart& chart) {
-  constexpr double kSame = 1e-3;
   const std::size_t first = chart.marks.size();
   const auto add = [&](double at, Dash dash, const char* text) {
     if (!std::isfinite(at)) return;
     for (std::size_t k = first; k < chart.marks.size(); ++k) {
       ChartMark& mark = chart.marks[k];
-      if (std::abs(mark.at * kMillimetre / at - 1) > kSame) continue;
+      if (std::abs(mark.at * kMillimetre / at - 1) > kSameSpeed) continue;
       mark.text += std::string(", ") + text;
       return;
     }
