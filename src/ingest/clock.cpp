@@ -99,10 +99,14 @@ class Clock {
     if (!recording_.steps.empty()) recording_.steps.back().end = row;
     Step step;
     step.begin = row;
+    step.conditions = recording_.file_conditions;
     const auto& stated = recording_.stated_steps;
     if (!stated.empty()) {
       step.label = stated[stated_].label;
-      step.conditions = stated[stated_].conditions;
+      for (const auto condition : {&Conditions::radius, &Conditions::speed, &Conditions::load}) {
+        const Condition& own = stated[stated_].conditions.*condition;
+        if (own.known()) step.conditions.*condition = own;
+      }
     } else if (!in_recipe) {
       step.label = recording_.steps.back().label;
     } else if (!step_.empty()) {
@@ -194,6 +198,20 @@ std::optional<Sampling> sampling_from(const RawFact& fact) {
   return sampling;
 }
 
+}  // namespace
+
+std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate) {
+  if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {:g} Hz", *rate)};
+  if (const auto interval = table.rows[rows].interval) {
+    return Sampling{table.rows[rows].start, 0, *interval, false,
+                    fmt::format("the interval of {:g} s in the file", *interval)};
+  }
+  for (const RawFact& fact : table.facts) {
+    if (auto sampling = sampling_from(fact)) return sampling;
+  }
+  return std::nullopt;
+}
+
 void set_time(FileRecord& recording, const Sampling& sampling) {
   const double size = sampling.rate + sampling.interval;
   if (!(size > 0) || !std::isfinite(size) || !std::isfinite(sampling.start)) {
@@ -209,24 +227,8 @@ void set_time(FileRecord& recording, const Sampling& sampling) {
   recording.notes.push_back("time from " + sampling.source);
 }
 
-}  // namespace
-
-std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate) {
-  if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {:g} Hz", *rate)};
-  if (const auto interval = table.rows[rows].interval) {
-    return Sampling{table.rows[rows].start, 0, *interval, false,
-                    fmt::format("the interval of {:g} s in the file", *interval)};
-  }
-  for (const RawFact& fact : table.facts) {
-    if (auto sampling = sampling_from(fact)) return sampling;
-  }
-  return std::nullopt;
-}
-
 void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
-  if (!recording.has(Channel::time)) {
-    set_time(recording, *sampling);
-  } else if (sampling && sampling->by_user) {
+  if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
     if (std::abs(found / sampling->rate - 1) > 0.01) {
       recording.warnings.push_back(

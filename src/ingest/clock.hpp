@@ -21,9 +21,11 @@ struct Sampling {
 /// file that is named as a rate or an interval (fs, dt, "Sampling rate"). Nothing when none is stated.
 std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate);
 
+/// Gives the rows their time where no column holds it. Throws InputError for a sampling that is not possible.
+void set_time(FileRecord& recording, const Sampling& sampling);
+
 /// Makes the recording's time start at 0 and increase strictly, and divides it into steps.
 ///
-/// - Without a time column the sampling gives it.
 /// - A new step begins where the file sets one apart, where the step column changes and where the clock restarts: goes
 ///   back to where the step's clock began. The clock of a restarted step continues one sampling interval after the
 ///   last one's end.

@@ -10,6 +10,9 @@
 
 namespace tribofit {
 
+/// [m/s^2], by which kilograms become the newtons that they weigh with.
+inline constexpr double standard_gravity = 9.80665;
+
 constexpr std::size_t no_rank = std::numeric_limits<std::size_t>::max();
 
 /// How usual `base` (ColumnName::base) is as a name of `channel`: 0 is the most usual, no_rank that it is none.

@@ -102,7 +102,9 @@ class Finder {
       const auto [last, error] = std::from_chars(wanted.data() + 1, end, number);
       if (error == std::errc{} && last == end && number >= 1 && number <= columns.size()) return number - 1;
       throw InputError(fmt::format("there is no column {} for {}", wanted, to_string(channel)),
-                       fmt::format("the file has {} columns, #1 to #{}", columns.size(), columns.size()), heading());
+                       fmt::format("the file has {} columns, #1 to #{}; {}", columns.size(), columns.size(),
+                                   lists_columns(table_.path)),
+                       heading());
     }
     std::vector<std::size_t> similar;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -113,7 +115,7 @@ class Finder {
     const std::vector<std::string> names = table_.names();
     throw InputError(
         fmt::format("there is no column '{}' for {}{}", wanted, to_string(channel), did_you_mean(wanted, names)),
-        "the columns are: " + listed(names), heading());
+        "the columns are: " + listed(names) + "; " + lists_columns(table_.path), heading());
   }
 
   bool is_taken(std::size_t column) const {
@@ -146,7 +148,8 @@ class Finder {
         best_rank = rank;
         best = i;
       } else if (rank == best_rank && channel != Channel::step &&
-                 (channel != Channel::time || column(i).rows == column(*best).rows)) {
+                 (channel != Channel::time ||
+                  (column(i).rows == column(*best).rows && column(i).place == column(*best).place))) {
         rivals.push_back(column(i).shown_name());
       }
     }
@@ -239,7 +242,25 @@ class Finder {
         return true;
       }
     }
+    if (takes_other_quantity(used, text)) return true;
     refuse_unit(used, text);
+  }
+
+  /// A force that is given as the mass it weighs like, or over the load.
+  bool takes_other_quantity(Column& used, const std::string& text) {
+    const auto unit = find_unit(text);
+    if (!unit || (used.channel != Channel::force && used.channel != Channel::load)) return false;
+    if (unit->quantity == Quantity::mass) {
+      used.factor = unit->factor * standard_gravity;
+      result_.notes.push_back(fmt::format("{} in column {} is in {}, taken as the force it weighs with",
+                                          to_string(used.channel), used.name, text));
+      return true;
+    }
+    if (unit->quantity != Quantity::dimensionless || used.channel != Channel::force) return false;
+    used.channel = Channel::mu;
+    used.factor = unit->factor;
+    result_.notes.push_back(fmt::format("the force in column {} is over the load: it is mu", used.name));
+    return true;
   }
 
   /// Where the unit stands: apart from the name, else in it.
@@ -323,6 +344,10 @@ class Finder {
 };
 
 }  // namespace
+
+std::string lists_columns(const std::string& path) {
+  return fmt::format("'identify columns {}' lists what it holds", path);
+}
 
 std::string_view to_string(Channel channel) {
   return kChannelNames[index_of(channel)];

@@ -18,6 +18,9 @@ constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);
 }
 
+/// What to do where the columns of a file are not known, for messages.
+std::string lists_columns(const std::string& path);
+
 /// "time", "mu", "v_b", ... as on the command line.
 std::string_view to_string(Channel channel);
 

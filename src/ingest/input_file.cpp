@@ -13,7 +13,7 @@
 
 namespace tribofit {
 
-InputFile::InputFile(const std::string& path) : path_(path) {
+InputFile::InputFile(const std::string& path, char ends_lines) : path_(path), ends_lines_(ends_lines) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
     throw InputError(std::string("cannot be opened: ") + std::strerror(errno),
@@ -50,6 +50,7 @@ std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const 
     }
     done += static_cast<std::size_t>(count);
   }
+  if (ends_lines_ != '\n') std::replace(buffer.begin(), buffer.begin() + std::ptrdiff_t(done), ends_lines_, '\n');
   return done;
 }
 

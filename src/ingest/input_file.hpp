@@ -10,8 +10,9 @@ namespace tribofit {
 /// A file opened for reading at any offset, by any number of threads.
 class InputFile {
  public:
-  /// Throws InputError for a missing or unreadable file and for a directory.
-  explicit InputFile(const std::string& path);
+  /// Throws InputError for a missing or unreadable file and for a directory. `ends_lines`: a byte that is read as a
+  /// line feed (a CR, in files of lines that end in CR alone).
+  explicit InputFile(const std::string& path, char ends_lines = '\n');
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -36,6 +37,7 @@ class InputFile {
   std::string path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
+  char ends_lines_;
 };
 
 }  // namespace tribofit

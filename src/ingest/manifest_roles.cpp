@@ -13,10 +13,13 @@ namespace tribofit {
 
 Role role_of(const ColumnName& name) {
   if (is_one_of(name.base, {"file", "filename", "trace", "path", "datei"})) return Role::file;
-  if (is_one_of(name.base, {"radius", "r", "frictionradius", "reibradius"})) return Role::radius;
+  if (is_one_of(name.base, {"radius", "r", "frictionradius", "reibradius", "trackradius", "weartrackradius",
+                            "disctrackradiususedforthisstep"}))
+    return Role::radius;
   if (is_one_of(name.base, {"repeat", "repetition", "replicate", "rep", "wiederholung"})) return Role::repeat;
   if (name_rank(name.base, Channel::speed, std::nullopt) != no_rank) return Role::speed;
   if (name_rank(name.base, Channel::load, std::nullopt) != no_rank) return Role::load;
+  if (is_one_of(name.base, {"setforce", "setload", "appliedload", "appliedforce", "testload"})) return Role::load;
   return Role::other;
 }
 

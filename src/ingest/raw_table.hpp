@@ -70,6 +70,12 @@ struct RawColumn {
   std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
 };
 
+/// A cell that holds no number of a usable size: its value is NaN.
+struct RawDefect {
+  std::size_t row = 0, column = 0;
+  std::string problem, advice;
+};
+
 /// What a file holds, before anything is known of what it means: readers make it (reader.hpp); channels, units, clocks,
 /// steps, continued files and joins work on it.
 ///
@@ -81,7 +87,8 @@ struct RawTable {
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;
   std::uint64_t checksum = 0;  ///< of the bytes that hold the values; 0: taken of the values themselves
-  bool is_finite = false;      ///< the reader has refused what is no finite number below largest_value
+  bool is_finite = false;      ///< the reader knows that there is no other than finite numbers below largest_value
+  std::optional<RawDefect> first_gap;  ///< the first cell without a number, where the reader can say what it holds
   std::vector<std::string> notes, warnings;
 
   using Load = std::function<void(RawTable& table, std::span<const std::size_t> columns, int threads)>;

@@ -22,7 +22,8 @@ void check_requests(const FileRecord& first, const FileRecord& second, const Rea
     if (request == options.columns.end() || request->second.empty() || request->second == "none") continue;
     if (first.columns.find(channel) != nullptr || second.columns.find(channel) != nullptr) continue;
     throw InputError("there is no column '" + request->second + "' for " + request->first + " in either file",
-                     "the columns are: " + listed(first.column_names) + "; " + listed(second.column_names),
+                     "the columns are: " + listed(first.column_names) + "; " + listed(second.column_names) + "; " +
+                         lists_columns(second.path),
                      {first.path, 0, ""});
   }
 }

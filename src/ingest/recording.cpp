@@ -9,7 +9,9 @@
 
 #include "clock.hpp"
 #include "content_hash.hpp"
+#include "gaps.hpp"
 #include "join.hpp"
+#include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -77,7 +79,7 @@ std::uint64_t checksum_of(const RawTable& table, const std::vector<Column>& used
   return hash;
 }
 
-void refuse_unusable(const RawTable& table, const Column& column, std::size_t rows, const FileRecord& recording) {
+void refuse_unusable(const RawTable& table, const Column& column, std::size_t rows) {
   const RawColumn& raw = table.columns[column.index];
   if (raw.numbers.empty() && !raw.texts.empty()) {
     throw InputError("holds text, not numbers", "name another column with --columns", table.heading(column.index));
@@ -86,13 +88,6 @@ void refuse_unusable(const RawTable& table, const Column& column, std::size_t ro
     throw InputError(fmt::format("holds {} values where the columns beside it hold {}", raw.numbers.size(), rows),
                      "export the trace again, or leave the column out with --columns", table.heading(column.index));
   }
-  if (table.is_finite) return;
-  const auto wrong =
-      std::find_if_not(raw.numbers.begin(), raw.numbers.end(), [](double v) { return std::abs(v) < largest_value; });
-  if (wrong == raw.numbers.end()) return;
-  throw InputError(fmt::format("'{:g}' is not a finite number of a usable size", *wrong),
-                   "fill it in or remove the row",
-                   recording.location(static_cast<std::size_t>(wrong - raw.numbers.begin()), column.channel));
 }
 
 void to_si(const Column& column, std::vector<double>& values) {
@@ -108,12 +103,14 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   recording.checksum = file.checksum;
   recording.column_names = file.column_names;
   recording.has_names = file.has_names;
+  recording.file_conditions = file.file_conditions;
   recording.columns = std::move(plan.columns);
   recording.lines = std::move(table.rows[plan.rows].lines);
   recording.stated_steps = std::move(table.rows[plan.rows].steps);
   const std::vector<Column>& used = recording.columns.used;
   const std::size_t rows = table.columns[used.front().index].numbers.size();
-  for (const Column& column : used) refuse_unusable(table, column, rows, recording);
+  for (const Column& column : used) refuse_unusable(table, column, rows);
+  const auto gappy = table.is_finite ? std::vector<std::size_t>() : find_gappy_rows(table, used, recording);
   for (std::size_t k = 0; k < used.size(); ++k) {
     auto& values = table.columns[used[k].index].numbers;
     const bool again = std::any_of(used.begin() + static_cast<std::ptrdiff_t>(k) + 1, used.end(),
@@ -122,6 +119,8 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
     to_si(used[k], recording[used[k].channel]);
   }
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
+  if (!recording.has(Channel::time)) set_time(recording, *plan.sampling);
+  leave_out(gappy, recording);
   set_clock(recording, plan.sampling);
   return recording;
 }
@@ -135,6 +134,9 @@ FileRecord read_recording(const std::string& path, const ReadOptions& options, s
   file.column_names = table.names();
   file.has_names = table.has_names();
   take_messages(table, file);
+  const StatedConditions stated = stated_conditions(table.facts, table);
+  file.file_conditions = stated.conditions;
+  add_all(file.notes, stated.notes);
   file.columns = find_columns(table, options);
   add_all(file.notes, file.columns.notes);
   add_all(file.warnings, file.columns.warnings);
@@ -164,6 +166,7 @@ void refuse_columns(const FileRecord& recording, const std::string& problem) {
   std::string advice = names ? "name the columns: --columns time=NAME,mu=NAME,v_b=NAME"
                              : "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s";
   if (problem == "no time column") advice += ", or give the sampling rate: --rate 20kHz";
+  advice += "; " + lists_columns(recording.path);
   throw InputError(text, advice, {recording.path, 0, ""});
 }
 

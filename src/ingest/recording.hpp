@@ -34,6 +34,7 @@ struct FileRecord {
   std::vector<Channel> second_channels;   ///< that came from it
   double clock_start = 0, clock_end = 0;  ///< first and last time as written [s]
   double clock_offset_std_error = 0;      ///< as in Trace
+  Conditions file_conditions;             ///< that the file states for all its steps
   std::vector<RawStep> stated_steps;      ///< as the file divides itself
   std::vector<Step> steps;                ///< with the conditions that the file states
   std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "unit_spelling.hpp"
+
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -44,7 +46,12 @@ constexpr std::array symbols = {
     Symbol{"N", 1, {1, 1, -2, 0, 0, 0, 0}, "umkM"},
     Symbol{"kgf", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"gf", 9.80665e-3, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"kp", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"lbf", 4.4482216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"ozf", 0.27801385095378125, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"kip", 4448.2216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"dyn", 1e-5, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"lb", 0.45359237, {0, 1, 0, 0, 0, 0, 0}, ""},
     Symbol{"Hz", 1, {0, 0, -1, 0, 0, 0, 1}, "mkMG"},
     Symbol{"hz", 1, {0, 0, -1, 0, 0, 0, 1}, "k"},
     Symbol{"rad", 1, {0, 0, 0, 1, 0, 0, 0}, "um"},
@@ -220,35 +227,12 @@ class UnitParser {
   std::string_view rest_;
 };
 
-/// One spelling for what people write in many ways; the result is ASCII.
-std::string normalised(std::string_view text) {
-  std::string result(trimmed(text));
-  static constexpr std::array<std::array<std::string_view, 2>, 17> spellings = {{{"\u00b5", "u"},
-                                                                                 {"\u03bc", "u"},
-                                                                                 {"\u00b7", "*"},
-                                                                                 {"\u22c5", "*"},
-                                                                                 {"\u00d7", "*"},
-                                                                                 {"\u00b2", "^2"},
-                                                                                 {"\u00b3", "^3"},
-                                                                                 {"\u207b\u00b9", "^-1"},
-                                                                                 {"\u00b9", "^1"},
-                                                                                 {"\u2103", "degC"},
-                                                                                 {"\u00b0C", "degC"},
-                                                                                 {"\u00b0F", "degF"},
-                                                                                 {"\u00b0", "deg"},
-                                                                                 {"**", "^"},
-                                                                                 {" per ", "/"},
-                                                                                 {"N.m", "N*m"},
-                                                                                 {"\u2212", "-"}}};
-  for (const auto& [from, to] : spellings) result = replaced(std::move(result), from, to);
-  return result;
-}
-
 std::optional<Unit> find_exactly(std::string_view text) {
   if (text.empty() || text == "-") return Unit{};
   if (text == "K") return Unit{Quantity::temperature, 1, -273.15};
   if (text == "C" || text == "degC" || text == "deg C") return Unit{Quantity::temperature, 1, 0};
   if (text == "F" || text == "degF" || text == "deg F") return Unit{Quantity::temperature, 5.0 / 9, -160.0 / 9};
+  if (text == "% of load" || text == "% load" || text == "%load") return find_exactly("%");
   if (text == "r/min" || text == "U/min" || text == "RPM") return find_exactly("rpm");
   const auto term = UnitParser(text).parse();
   if (!term) return std::nullopt;
@@ -260,11 +244,11 @@ std::optional<Unit> find_exactly(std::string_view text) {
 
 const std::vector<std::string>& known_units() {
   static const std::vector<std::string> names = {
-      "s",    "ms",   "us",    "min",   "h",   "m",     "mm",    "um",    "cm",     "in",   "m/s",
-      "mm/s", "um/s", "cm/s",  "rad/s", "rpm", "deg/s", "rev/s", "m/s^2", "mm/s^2", "N",    "mN",
-      "kN",   "MN",   "kgf",   "Nm",    "mNm", "Nmm",   "kNm",   "kg",    "g",      "N/m",  "N/mm",
-      "kN/m", "Ns/m", "Ns/mm", "Hz",    "kHz", "MHz",   "rad",   "deg",   "rev",    "degC", "K",
-      "V",    "mV",   "s/m",   "s/mm",  "1/m", "1/mm",  "1/s",   "1/min", "1/K",    "%"};
+      "s",    "ms",   "us",    "min", "h",     "m",     "mm",    "um",     "cm",  "in",   "m/s", "mm/s",
+      "um/s", "cm/s", "rad/s", "rpm", "deg/s", "rev/s", "m/s^2", "mm/s^2", "N",   "mN",   "kN",  "MN",
+      "kgf",  "gf",   "lbf",   "kip", "Nm",    "mNm",   "Nmm",   "kNm",    "kg",  "g",    "N/m", "N/mm",
+      "kN/m", "Ns/m", "Ns/mm", "Hz",  "kHz",   "MHz",   "rad",   "deg",    "rev", "degC", "K",   "V",
+      "mV",   "s/m",  "s/mm",  "1/m", "1/mm",  "1/s",   "1/min", "1/K",    "%"};
   return names;
 }
 
@@ -280,7 +264,7 @@ std::optional<Unit> as_quantity(const Unit& unit, Quantity wanted) {
 }  // namespace
 
 std::optional<Unit> find_unit(std::string_view text) {
-  const std::string name = normalised(text);
+  const std::string name = usual_spelling(text);
   if (const auto unit = find_exactly(name)) return unit;
   return find_exactly(lower_case(name));
 }
@@ -291,7 +275,7 @@ std::optional<Unit> find_unit(std::string_view text, Quantity quantity) {
 }
 
 std::string suggest_unit(std::string_view text) {
-  return likely_name(normalised(text), known_units());
+  return likely_name(usual_spelling(text), known_units());
 }
 
 double parse_quantity(std::string_view text, Quantity quantity, std::string_view name, std::string_view bare_unit) {

@@ -29,6 +29,11 @@ void set_cell(std::string& line, std::size_t index, const std::string& text) {
   line.replace(begin, std::min(line.find(',', begin), line.size()) - begin, text);
 }
 
+/// Four rows in a row: one alone is left out.
+void set_cells(Lines& lines, std::size_t index, const std::string& text) {
+  for (std::size_t line = 99; line < 103; ++line) set_cell(lines[line], index, text);
+}
+
 class BadTrace : public ::testing::TestWithParam<Defect> {};
 
 TEST_P(BadTrace, IsRefusedWithPlaceAndAdvice) {
@@ -58,13 +63,13 @@ INSTANTIATE_TEST_SUITE_P(
                [](Lines& l) { l[0] = "time [s],mu,v_b [furlong/s]"; },
                {"unknown unit", "furlong/s", "--units"}},
         Defect{"TextInANumber",
-               [](Lines& l) { set_cell(l[99], 1, "abc"); },
+               [](Lines& l) { set_cells(l, 1, "abc"); },
                {":100:", "column mu", "'abc' is not a number"}},
-        Defect{"EmptyCell", [](Lines& l) { set_cell(l[99], 1, ""); }, {":100:", "column mu", "empty"}},
+        Defect{"EmptyCell", [](Lines& l) { set_cells(l, 1, ""); }, {":100:", "column mu", "empty"}},
         Defect{"RaggedRow", [](Lines& l) { l[99].erase(l[99].rfind(',')); }, {":100:", "2 cells", "3 columns"}},
-        Defect{"NaN", [](Lines& l) { set_cell(l[99], 2, "NaN"); }, {":100:", "column v_b_mm_s", "not a finite number"}},
+        Defect{"NaN", [](Lines& l) { set_cells(l, 2, "NaN"); }, {":100:", "column v_b_mm_s", "not a finite number"}},
         Defect{"Infinite",
-               [](Lines& l) { set_cell(l[99], 2, "-inf"); },
+               [](Lines& l) { set_cells(l, 2, "-inf"); },
                {":100:", "column v_b_mm_s", "not a finite number"}},
         Defect{"TimeBackwards", [](Lines& l) { std::swap(l[99], l[100]); }, {":101:", "column time_s", "backwards"}},
         Defect{"TimeRepeats", [](Lines& l) { l.insert(l.begin() + 99, l[99]); }, {":101:", "column time_s", "repeats"}},

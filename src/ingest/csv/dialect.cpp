@@ -4,26 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <map>
-#include <optional>
 
 #include "encoding.hpp"
-#include "ingest/column_names.hpp"
+#include "heading.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
 
-struct Line {
-  std::string_view text;  // without the line end
-  std::uint64_t begin = 0;
-};
-
-std::vector<Line> split_lines(std::string_view head, std::size_t most) {
-  std::vector<Line> lines;
+std::vector<HeadLine> split_lines(std::string_view head, std::size_t most) {
+  std::vector<HeadLine> lines;
   for (std::size_t at = 0; at < head.size() && lines.size() < most;) {
     const std::size_t end = std::min(head.find('\n', at), head.size());
     std::string_view text = head.substr(at, end - at);
@@ -32,11 +26,6 @@ std::vector<Line> split_lines(std::string_view head, std::size_t most) {
     at = end + 1;
   }
   return lines;
-}
-
-bool is_comment(std::string_view line) {
-  const std::string_view text = trimmed(line);
-  return !text.empty() && (text.front() == '#' || text.front() == '%' || text.substr(0, 2) == "//");
 }
 
 /// What a line holds under a separator and a decimal mark.
@@ -63,39 +52,59 @@ struct Form {
   char separator, decimal;
 };
 
+std::size_t most_frequent(const std::map<std::size_t, std::size_t>& count) {
+  std::size_t frequent = 0, most = 0;
+  for (const auto& [n, times] : count) {
+    if (times >= most) {
+      frequent = n;
+      most = times;
+    }
+  }
+  return frequent;
+}
+
 /// The most frequent number of cells among the lines that are mostly numbers, 0 when there are none.
 std::size_t usual_cells(const std::vector<Census>& lines) {
   std::map<std::size_t, std::size_t> count;
   for (const Census& line : lines) {
     if (line.mostly_numbers()) ++count[line.cells];
   }
-  std::size_t cells = 0, most = 0;
-  for (const auto& [n, times] : count) {
-    if (times >= most) {
-      cells = n;
-      most = times;
-    }
+  return most_frequent(count);
+}
+
+std::size_t usual_numbers(const std::vector<Census>& lines, std::size_t columns) {
+  std::map<std::size_t, std::size_t> count;
+  for (const Census& line : lines) {
+    if (line.cells == columns && line.mostly_numbers()) ++count[line.numbers];
   }
-  return cells;
+  return most_frequent(count);
 }
 
 struct Layout {
   Form form{',', '.'};
   std::size_t columns = 0;
   std::vector<Census> lines;
+  std::size_t numbers = 0;  // in most rows
+
+  /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is none.
+  bool is_row(const Census& line) const {
+    return line.cells == columns && line.mostly_numbers() && 2 * line.numbers > numbers;
+  }
 };
 
-Layout find_layout(const std::vector<Line>& lines) {
+Layout find_layout(const std::vector<HeadLine>& lines) {
   // Where two forms read equally many numbers the earlier one is meant.
-  static constexpr std::array<Form, 5> forms = {{{'\t', '.'}, {';', '.'}, {',', '.'}, {'\t', ','}, {';', ','}}};
+  static constexpr std::array<Form, 7> forms = {
+      {{'\t', '.'}, {';', '.'}, {',', '.'}, {'\t', ','}, {';', ','}, {blanks, '.'}, {blanks, ','}}};
   Layout best;
   double best_score = 0;
   for (const Form& form : forms) {
-    Layout layout{form, 0, {}};
-    for (const Line& line : lines) {
+    Layout layout{form, 0, {}, 0};
+    for (const HeadLine& line : lines) {
       layout.lines.push_back(is_comment(line.text) ? Census{} : take_census(line.text, form.separator, form.decimal));
     }
     layout.columns = usual_cells(layout.lines);
+    layout.numbers = usual_numbers(layout.lines, layout.columns);
     double score = 0;
     for (const Census& line : layout.lines) {
       if (line.cells != layout.columns || line.filled == 0) continue;
@@ -110,126 +119,10 @@ Layout find_layout(const std::vector<Line>& lines) {
   return best;
 }
 
-bool is_unit_cell(std::string_view cell) {
-  std::string_view text = trimmed(cell);
-  if (text.size() >= 2 &&
-      ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'))) {
-    return true;
-  }
-  return find_unit(text).has_value();
-}
-
-/// Whether the cells are units: all of them, or at least half where none is the name of a channel (so that a unit
-/// that is not known is named as such and does not make the row a header).
-bool is_units_row(const std::vector<std::string>& cells) {
-  std::size_t filled = 0, units = 0;
-  bool names = false;
-  for (const std::string& cell : cells) {
-    if (cell.empty() || cell == "-" || cell == "1") continue;
-    ++filled;
-    if (is_unit_cell(cell))
-      ++units;
-    else
-      names = names || is_field_name(parse_column_name(cell).base);
-  }
-  return filled > 0 && (units == filled || (!names && 2 * units >= filled));
-}
-
-void trim_empty_end(std::vector<std::string>& cells) {
-  while (!cells.empty() && cells.back().empty()) cells.pop_back();
-}
-
-/// Cells of a line of text above the rows; a comment sign at its start is taken off.
-std::vector<std::string> heading_cells(std::string_view line, char separator, Encoding encoding) {
-  std::string text = to_utf8(line, encoding);
-  if (is_comment(text)) text = text.substr(std::min(text.find_first_not_of("#%/! \t"), text.size()));
-  auto cells = split_cells(text, separator);
-  trim_empty_end(cells);
-  return cells;
-}
-
-/// Finds the header (and the row of units) above line `first`.
-void find_heading(const std::vector<Line>& lines, std::size_t first, Encoding encoding, Dialect& dialect) {
-  std::vector<std::string> units;
-  std::size_t units_line = 0;
-  std::optional<std::pair<std::size_t, std::vector<std::string>>> comment_heading;
-  for (std::size_t i = first; i-- > 0 && first - i <= 8;) {
-    if (trimmed(lines[i].text).empty()) continue;
-    auto cells = heading_cells(lines[i].text, dialect.separator, encoding);
-    if (cells.empty() || cells.size() > dialect.columns + 1) continue;
-    if (is_comment(lines[i].text)) {
-      // "# time, mu, v_b": a header only where no plain one stands between it and the rows
-      if (!comment_heading && cells.size() == dialect.columns) comment_heading = {i, cells};
-      continue;
-    }
-    if (units_line == 0 && is_units_row(cells)) {
-      units = cells;
-      units_line = i + 1;
-      continue;
-    }
-    if (cells.size() < dialect.columns && dialect.columns > 1 && cells.size() == 1) continue;  // a title
-    dialect.names = cells;
-    dialect.header_line = i + 1;
-    break;
-  }
-  if (dialect.names.empty() && comment_heading) {
-    dialect.header_line = comment_heading->first + 1;
-    dialect.names = comment_heading->second;
-  }
-  if (dialect.names.empty() && units_line > 0) {  // "t, v": names that could be units
-    dialect.names = units;
-    dialect.header_line = units_line;
-    units_line = 0;
-  }
-  if (units_line > 0) {
-    dialect.units = units;
-    dialect.units_line = units_line;
-  }
-}
-
-/// "# Radius [mm]: 15", "Speed = 4 rpm", "\"Normal load [N]\";50", "Interval,0.0005,..." as a name and its value.
-std::optional<RawFact> find_fact(std::string_view line, std::size_t number) {
-  std::string text = replaced(std::string(line), "\"", "");
-  text.erase(0, text.find_first_not_of("#%/!' \t"));
-  const std::size_t mark = text.find_first_of(":=;,\t");
-  if (mark == std::string::npos || mark == 0) return std::nullopt;
-  const std::string separators = text[mark] == ',' ? ",;\t" : ";\t";
-  const std::size_t begin = text.find_first_not_of(separators + " ", mark + 1);
-  if (begin == std::string::npos) return std::nullopt;
-  const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
-  RawFact fact{std::string(trimmed(std::string_view(text).substr(0, mark))),
-               std::string(trimmed(std::string_view(text).substr(begin, end - begin))), number};
-  const std::string next = end < text.size() ? split(std::string_view(text).substr(end + 1), text[end]).front() : "";
-  if (!trimmed(next).empty() && find_unit(next)) fact.value += " " + std::string(trimmed(next));
-  return fact;
-}
-
-std::vector<RawFact> find_facts(const std::vector<Line>& lines, Encoding encoding, const Dialect& dialect) {
-  std::vector<RawFact> facts;
-  for (std::size_t number = 1; number < dialect.data_line; ++number) {
-    if (number == dialect.header_line || number == dialect.units_line) continue;
-    if (auto fact = find_fact(to_utf8(lines[number - 1].text, encoding), number)) facts.push_back(std::move(*fact));
-  }
-  return facts;
-}
-
-[[noreturn]] void refuse_without_rows(const std::vector<Line>& lines, std::string_view head, Encoding encoding,
-                                      const std::string& path) {
+[[noreturn]] void refuse_without_rows(const std::vector<HeadLine>& lines, Encoding encoding, const std::string& path) {
   std::size_t last = lines.size();
   while (last > 0 && trimmed(lines[last - 1].text).empty()) --last;
   if (last == 0) throw InputError("is empty", "export the trace again", {path, 0, ""});
-  std::size_t numbers = 0;
-  for (const Line& line : lines) {
-    const std::string_view text = trimmed(line.text);
-    if (text.find(' ') != std::string_view::npos && take_census(text, ' ', '.').mostly_numbers()) ++numbers;
-  }
-  if (numbers > lines.size() / 2) {
-    throw InputError("the columns are separated by spaces", "separate them by commas, semicolons or tabs",
-                     {path, last, ""});
-  }
-  if (head.find('\n') == std::string_view::npos && head.find('\r') != std::string_view::npos) {
-    throw InputError("lines end in CR alone", "convert them with: tr '\\r' '\\n'", {path, 1, ""});
-  }
   const std::string shown = to_utf8(lines[last - 1].text.substr(0, 120), encoding);
   throw InputError(fmt::format("has a header but no rows of numbers (last line: \"{}\")", shown),
                    "check that the export was complete", {path, last, ""});
@@ -256,6 +149,9 @@ void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dial
   const auto above = split_cells(view.substr(from, end - from), dialect.separator);
   const bool numbers = take_census(view.substr(from, end - from), dialect.separator, dialect.decimal).mostly_numbers();
   if (!numbers || above.size() < columns) return;
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const bool is_text = !cells.front().empty() && letter(cells.front().front()) && !is_number(cells.front(), '.');
+  if (is_text) return;  // a footer
   const bool whole =
       cells.size() > above.size() || (cells.size() == above.size() && cells.back().size() >= above.back().size());
   if (whole) return;
@@ -264,10 +160,33 @@ void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dial
                                       view.substr(end + 1).substr(0, 80)));
 }
 
+/// The cells of rows from the beginning, and of the last one.
+std::vector<std::vector<std::string>> some_rows(const InputFile& file, const std::vector<HeadLine>& lines,
+                                                std::size_t first, const Dialect& dialect) {
+  constexpr std::size_t most = 50;
+  std::vector<std::vector<std::string>> rows;
+  const auto take = [&](std::string_view line) {
+    if (!take_census(line, dialect.separator, dialect.decimal).mostly_numbers()) return false;
+    rows.push_back(split_cells(line, dialect.separator));
+    return true;
+  };
+  for (std::size_t i = first; i < lines.size() && rows.size() < most; ++i) take(lines[i].text);
+  const std::uint64_t length = std::min<std::uint64_t>(file.size(), 1 << 14);
+  std::string tail(static_cast<std::size_t>(length), '\0');
+  tail.resize(file.read(dialect.data_end - std::min(dialect.data_end, length), tail));
+  const auto last = split_lines(tail, tail.size());
+  for (std::size_t i = last.size(); i-- > 1;) {
+    if (take(last[i].text)) break;
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<std::string> split_cells(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  if (separator == blanks) line = trimmed(line);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '"') {
@@ -275,6 +194,8 @@ std::vector<std::string> split_cells(std::string_view line, char separator) {
         cells.back() += line[++i];
       else
         quoted = !quoted;
+    } else if (separator == blanks && is_blank(line[i]) && !quoted) {
+      if (!is_blank(line[i - 1])) cells.emplace_back();
     } else if (line[i] == separator && !quoted) {
       cells.emplace_back();
     } else {
@@ -317,11 +238,8 @@ Dialect find_dialect(const InputFile& file) {
   dialect.decimal = layout.form.decimal;
   dialect.columns = layout.columns;
   std::size_t first = 0;
-  while (first < layout.lines.size() &&
-         !(layout.lines[first].cells == layout.columns && layout.lines[first].mostly_numbers())) {
-    ++first;
-  }
-  if (layout.columns == 0 || first == layout.lines.size()) refuse_without_rows(lines, text, encoding, file.path());
+  while (first < layout.lines.size() && !layout.is_row(layout.lines[first])) ++first;
+  if (layout.columns == 0 || first == layout.lines.size()) refuse_without_rows(lines, encoding, file.path());
 
   dialect.data_line = first + 1;
   dialect.data_begin = mark + lines[first].begin;
@@ -332,6 +250,10 @@ Dialect find_dialect(const InputFile& file) {
                           1, std::count(text.begin() + std::ptrdiff_t(lines[first].begin), text.end(), '\n')));
   find_heading(lines, first, encoding, dialect);
   dialect.facts = find_facts(lines, encoding, dialect);
+  for (std::size_t i = 0; i < first; ++i) {
+    const std::string number = number_of_step(to_utf8(lines[i].text, encoding));
+    if (!number.empty()) dialect.first_step = number;
+  }
   dialect.columns = std::max(dialect.columns, dialect.names.size());
   if (dialect.header_line > 1 || (dialect.header_line == 0 && first > 0)) {
     const std::size_t above = dialect.header_line > 0 ? dialect.header_line - 1 : first;
@@ -342,6 +264,7 @@ Dialect find_dialect(const InputFile& file) {
   }
   if (dialect.decimal == ',') dialect.notes.push_back("numbers have a decimal comma");
   drop_cut_off_line(file, layout.columns, dialect);
+  find_blocks(some_rows(file, lines, first, dialect), dialect);
   return dialect;
 }
 

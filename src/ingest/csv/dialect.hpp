@@ -11,6 +11,9 @@
 
 namespace tribofit {
 
+/// The separator of columns that are divided by one or more blanks or tabs.
+inline constexpr char blanks = ' ';
+
 /// How a file writes its table, and where the table begins and ends.
 struct Dialect {
   char separator = ',';
@@ -25,6 +28,9 @@ struct Dialect {
   std::uint64_t data_end = 0;          ///< bytes; before the end of the file where the last row is cut off
   double row_bytes = 0;                ///< mean length of the first rows
   std::vector<std::string> first_row;  ///< its cells
+  std::vector<std::size_t> blocks;     ///< of each column, where a row has several, each with a time; else empty
+  bool blocks_apart = false;           ///< their clocks differ, or one ends before the other
+  std::string first_step;              ///< its number, where a line above the first row states it
   std::vector<RawFact> facts;          ///< "name: value" of the preamble
   std::vector<std::string> notes;
 };

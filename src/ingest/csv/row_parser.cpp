@@ -6,17 +6,26 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include "fccp.hpp"
 
 #include "decimal.hpp"
+#include "dialect.hpp"
 #include "ingest/raw_table.hpp"
 
 namespace tribofit {
+namespace {
 
-RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal)
-    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal) {
+constexpr std::size_t longest_text = 400;  // bytes of a line of text that are kept
+
+}  // namespace
+
+RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal,
+                     bool may_be_short)
+    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
   std::size_t next = 0;
   for (const WantedCell& cell : wanted) {
     skips_.push_back(cell.index - next);
@@ -25,7 +34,10 @@ RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, c
 }
 
 RowParser::Outcome RowParser::parse(char* line, double* out) {
+  gappy_ = false;
   switch (separator_) {
+    case blanks:
+      return parse_blanks(line, out) ? Outcome::numbers : parse_carefully<blanks>(line, out);
     case ';':
       return parse_plain<';'>(line, out) ? Outcome::numbers : parse_carefully<';'>(line, out);
     case '\t':
@@ -60,33 +72,74 @@ bool RowParser::parse_plain(const char* line, double* out) const {
   return cell + 1 == cells_ || (cell == cells_ && at[-1] == separator);
 }
 
+/// The same for columns that blanks and tabs divide.
+bool RowParser::parse_blanks(const char* line, double* out) const {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  const char* at = line;
+  std::size_t cell = 0, next = 0;
+  for (;; ++cell) {
+    while (is_blank(*at)) ++at;
+    if (*at == '\0') break;
+    if (next < wanted_.size() && wanted_[next].index == cell) {
+      at = read_decimal(at, decimal_, out[next++]);
+      if (at == nullptr || (*at != '\0' && !is_blank(*at))) return false;
+    } else {
+      for (; *at != '\0' && !is_blank(*at); ++at) {
+        if (*at == '"') return false;
+      }
+    }
+  }
+  return cell == cells_;
+}
+
 template <char separator>
 RowParser::Outcome RowParser::parse_carefully(char* line, double* out) {
-  using Quotes = io::double_quote_escape<separator, '"'>;
   const char* first = line;
   while (*first == ' ' || *first == '\t') ++first;
   if (*first == '\0' || *first == '\x1A') return Outcome::blank;
+  text_.assign(first, std::min<std::size_t>(std::strlen(first), longest_text));
   if (*first == '#' || *first == '%' || (first[0] == '/' && first[1] == '/')) return Outcome::text;
   split_.clear();
   try {
-    for (char* begin = line; begin != nullptr;) {
-      char* end = begin + (Quotes::find_next_column_end(begin) - begin);
-      char* next = *end == '\0' ? nullptr : end + 1;
-      *end = '\0';
-      char* cell = begin;
-      io::trim_chars<' ', '\t'>::trim(cell, end);
-      Quotes::unescape(cell, end);
-      split_.push_back(cell);
-      begin = next;
-    }
+    separator == blanks ? split_at_blanks(line) : split<separator>(line);
   } catch (const io::error::escaped_string_not_closed&) {
     return refuse("a quote is opened and not closed", "close or remove it");
   }
   return judge(split_, out);
 }
 
-RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out) {
-  std::size_t count = 0, filled = 0, numbers = 0;
+template <char separator>
+void RowParser::split(char* line) {
+  using Quotes = io::double_quote_escape<separator, '"'>;
+  for (char* begin = line; begin != nullptr;) {
+    char* end = begin + (Quotes::find_next_column_end(begin) - begin);
+    char* next = *end == '\0' ? nullptr : end + 1;
+    *end = '\0';
+    char* cell = begin;
+    io::trim_chars<' ', '\t'>::trim(cell, end);
+    Quotes::unescape(cell, end);
+    split_.push_back(cell);
+    begin = next;
+  }
+}
+
+void RowParser::split_at_blanks(char* line) {
+  for (char* at = line; *at != '\0';) {
+    while (*at == ' ' || *at == '\t') *at++ = '\0';
+    if (*at == '\0') return;
+    const bool quoted = *at == '"';
+    if (quoted) ++at;
+    split_.push_back(at);
+    while (*at != '\0' && (quoted ? *at != '"' : *at != ' ' && *at != '\t')) ++at;
+    if (!quoted) continue;
+    if (*at == '\0') throw io::error::escaped_string_not_closed();
+    *at++ = '\0';
+  }
+}
+
+/// Whether the line is a row, not text; counts the cells without empty ones at the end.
+bool RowParser::is_data(const std::vector<char*>& cells, std::size_t& count) const {
+  std::size_t filled = 0, numbers = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     double value = 0;
     if (*cells[i] == '\0') continue;
@@ -94,33 +147,45 @@ RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out
     ++filled;
     if (to_number(cells[i], value)) ++numbers;
   }
-  if (filled == 0) return Outcome::blank;
-  if (count == cells_ ? numbers == 0 : 2 * numbers < filled || numbers == 0) return Outcome::text;
+  const bool whole = count == cells_ && separator_ != blanks;  // words of a sentence are many cells
+  return numbers > 0 && (whole || 2 * numbers >= filled);
+}
+
+RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out) {
+  std::size_t count = 0;
+  const bool is_row = is_data(cells, count);
+  if (count == 0) return Outcome::blank;
+  if (!is_row) return Outcome::text;
   if (count > cells_) {
     return refuse(fmt::format("the row has {} cells where the file has {} columns", count, cells_),
                   decimal_ == '.' && count == 2 * cells_
                       ? "with a decimal comma, separate the columns by semicolons or tabs"
                       : "remove the extra cells or export the trace again");
   }
-  if (cells.size() < cells_) {
+  if (cells.size() < cells_ && !may_be_short_) {
     return refuse(fmt::format("the row has {} cell{} where the file has {} columns", cells.size(),
                               cells.size() == 1 ? "" : "s", cells_),
                   "complete or remove the row");
   }
-  for (const auto& [index, column] : wanted_) {
-    const std::string cell(cells[index]);
-    const std::string shown = fmt::format("'{}'", cell.substr(0, 40));
-    if (cell.empty()) return refuse("the cell is empty", "fill it in or remove the row", column);
-    if (!to_number(cells[index], *out)) {
-      return refuse(shown + " is not a number", "correct it, remove the row, or name another column with --columns",
-                    column);
-    }
-    if (!(std::abs(*out) < largest_value)) {
-      return refuse(shown + " is not a finite number of a usable size", "fill it in or remove the row", column);
-    }
-    ++out;
-  }
+  char none = '\0';
+  for (const auto& [index, column] : wanted_) take(index < cells.size() ? cells[index] : &none, column, *out++);
   return Outcome::numbers;
+}
+
+void RowParser::take(char* cell, const std::string& column, double& out) {
+  const bool is_number = *cell != '\0' && to_number(cell, out);
+  if (is_number && std::abs(out) < largest_value) return;
+  const std::string shown = fmt::format("'{}'", std::string_view(cell).substr(0, 40));
+  out = std::numeric_limits<double>::quiet_NaN();
+  if (gappy_) return;
+  gappy_ = true;
+  if (*cell == '\0') {
+    refuse("the cell is empty", "fill it in or remove the row", column);
+  } else if (!is_number) {
+    refuse(shown + " is not a number", "correct it, remove the row, or name another column with --columns", column);
+  } else {
+    refuse(shown + " is not a finite number of a usable size", "fill it in or remove the row", column);
+  }
 }
 
 RowParser::Outcome RowParser::refuse(std::string problem, std::string advice, std::string column) {

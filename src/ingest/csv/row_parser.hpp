@@ -22,21 +22,33 @@ class RowParser {
     std::string problem, advice, column;
   };
 
-  /// `wanted` in the order of the row; `cells` is how many a row has.
-  RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal);
+  /// `wanted` in the order of the row; `cells` is how many a row has; rows that `may_be_short` lack empty ones at the
+  /// end.
+  RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal, bool may_be_short);
 
-  /// Parses `line` (ended by NUL; may be changed) into `out`, one number for each wanted cell, as written.
-  /// After Outcome::wrong, defect() says what is wrong.
+  /// Parses `line` (ended by NUL; may be changed) into `out`, one number for each wanted cell, as written; NaN where a
+  /// cell holds none of a usable size. defect() says what is wrong after Outcome::wrong, and in the first cell without
+  /// a number after is_gappy().
   Outcome parse(char* line, double* out);
 
+  /// Whether a wanted cell of the last row holds no number.
+  bool is_gappy() const { return gappy_; }
   const Defect& defect() const { return defect_; }
+  /// The last line as it was, after Outcome::text.
+  const std::string& text() const { return text_; }
 
  private:
   template <char separator>
   bool parse_plain(const char* line, double* out) const;
+  bool parse_blanks(const char* line, double* out) const;
   template <char separator>
   Outcome parse_carefully(char* line, double* out);
+  template <char separator>
+  void split(char* line);
+  void split_at_blanks(char* line);
   Outcome judge(const std::vector<char*>& cells, double* out);
+  bool is_data(const std::vector<char*>& cells, std::size_t& count) const;
+  void take(char* cell, const std::string& column, double& out);
   Outcome refuse(std::string problem, std::string advice, std::string column = {});
   bool to_number(char* cell, double& value) const;
 
@@ -44,8 +56,11 @@ class RowParser {
   std::vector<std::size_t> skips_;  // cells between one that is wanted and the next
   std::size_t cells_;
   char separator_, decimal_;
+  bool may_be_short_;
   std::vector<char*> split_;
+  bool gappy_ = false;
   Defect defect_;
+  std::string text_;
 };
 
 }  // namespace tribofit

@@ -26,13 +26,16 @@ namespace {
 // A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
 // Chunks end where lines do and depend on the file only, not on the number of threads.
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
+constexpr std::size_t most_text = 4096;  // lines of text that are kept; a file of steps has a few for each
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
   std::vector<std::vector<double>> values;
   std::vector<std::pair<std::size_t, std::size_t>> line_starts;  // row, line
   std::size_t lines = 0;
-  std::size_t text_rows = 0, first_text_line = 0;
+  std::size_t text_rows = 0;
+  std::vector<TextLine> text;  // rows and lines of the chunk
+  std::optional<RawDefect> first_gap;
   std::uint64_t checksum = 0;
   std::size_t wrong_line = 0;
   std::optional<RowParser::Defect> defect;
@@ -165,7 +168,7 @@ class RowReader {
   }
 
   void parse_lines(std::uint64_t begin, std::uint64_t end, Chunk& chunk) const {
-    RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal);
+    RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal, dialect_.blocks_apart);
     const auto estimate =
         static_cast<std::size_t>(1.2 * static_cast<double>(end - begin) / std::max(2.0, dialect_.row_bytes));
     for (auto& values : chunk.values) values.reserve(estimate);
@@ -178,6 +181,7 @@ class RowReader {
       if (outcome == RowParser::Outcome::numbers) {
         if (!follows) chunk.line_starts.emplace_back(chunk.values.front().size(), chunk.lines);
         follows = true;
+        if (parser.is_gappy() && !chunk.first_gap) chunk.first_gap = gap_of(parser, row, chunk);
         for (std::size_t k = 0; k < row.size(); ++k) chunk.values[k].push_back(row[k]);
         continue;
       }
@@ -190,8 +194,16 @@ class RowReader {
         }
         return;
       }
-      if (chunk.text_rows++ == 0) chunk.first_text_line = chunk.lines;
+      ++chunk.text_rows;
+      if (chunk.text.size() < most_text)
+        chunk.text.push_back({chunk.values.front().size(), chunk.lines, parser.text()});
     }
+  }
+
+  RawDefect gap_of(const RowParser& parser, const std::vector<double>& row, const Chunk& chunk) const {
+    const auto cell = std::find_if(row.begin(), row.end(), [](double value) { return value != value; }) - row.begin();
+    return {chunk.values.front().size(), wanted_[static_cast<std::size_t>(cell)].index, parser.defect().problem,
+            parser.defect().advice};
   }
 
   /// Called in the order of the file, one chunk at a time.
@@ -202,11 +214,19 @@ class RowReader {
       throw InputError(chunk.defect->problem, chunk.defect->advice,
                        {file_.path(), next_line_ + chunk.wrong_line - 1, chunk.defect->column});
     }
+    const std::size_t before = rows_.size();
+    if (chunk.first_gap && !rows_.first_gap) {
+      rows_.first_gap = chunk.first_gap;
+      rows_.first_gap->row += before;
+    }
+    for (const TextLine& text : chunk.text) {
+      if (rows_.text.size() >= most_text) break;
+      rows_.text.push_back({before + text.row, next_line_ + text.line - 1, text.text});
+    }
     for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);
     for (std::size_t k = 0; k < wanted_.size(); ++k) {
       rows_.values[k].insert(rows_.values[k].end(), chunk.values[k].begin(), chunk.values[k].end());
     }
-    if (chunk.text_rows > 0 && rows_.text_rows == 0) rows_.first_text_line = next_line_ + chunk.first_text_line - 1;
     rows_.text_rows += chunk.text_rows;
     rows_.checksum = xxh64(chunk.checksum, rows_.checksum);
     next_line_ += chunk.lines;

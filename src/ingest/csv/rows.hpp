@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "dialect.hpp"
@@ -11,13 +13,21 @@
 
 namespace tribofit {
 
+/// A line of text or comment between the rows.
+struct TextLine {
+  std::size_t row = 0;   ///< that follows it, or one beyond the last
+  std::size_t line = 0;  ///< of the file, from 1
+  std::string text;      ///< its beginning, as bytes
+};
+
 /// The rows of a table, as written.
 struct Rows {
   std::vector<std::vector<double>> values;  ///< one vector for each wanted cell, in the same order
   LineMap lines;
-  std::uint64_t checksum = 0;  ///< of the bytes read, XXH64
-  std::size_t text_rows = 0;   ///< dropped because they hold text, not numbers
-  std::size_t first_text_line = 0;
+  std::uint64_t checksum = 0;          ///< of the bytes read, XXH64
+  std::size_t text_rows = 0;           ///< dropped because they hold text, not numbers
+  std::vector<TextLine> text;          ///< the first of them
+  std::optional<RawDefect> first_gap;  ///< the first cell that holds no number of a usable size: its value is NaN
 
   std::size_t size() const { return values.empty() ? 0 : values.front().size(); }
 };
@@ -25,9 +35,9 @@ struct Rows {
 /// Reads the rows of the table in chunks of a megabyte, in parallel; only the `wanted` cells are converted.
 ///
 /// Lines are read by fast-cpp-csv-parser; cells are taken as text and converted exactly rounded. Blank lines are
-/// skipped; comments and lines of text are dropped and counted. Cells that are empty, no number or not finite, and rows
-/// with too few or too many cells are refused with an InputError: the first one in the file, whatever the number of
-/// threads. The result does not depend on it either.
+/// skipped; comments and lines of text are dropped, counted and, up to some thousands, kept. Cells that are empty, no
+/// number or not finite are NaN. Rows with too few or too many cells are refused with an InputError: the first one in
+/// the file, whatever the number of threads. The result does not depend on it either.
 /// Cost: linear; memory: the values and some two megabytes a thread.
 Rows read_rows(const InputFile& file, const Dialect& dialect, const std::vector<WantedCell>& wanted, int threads);
 

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <set>
+
+#include "temp_files.hpp"
+
+namespace tribofit {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+using Gaps = TempFiles;
+
+constexpr std::size_t rows = 4262;
+
+/// Rows at 1 kHz; those named hold `cell` for friction.
+std::string table(const std::set<std::size_t>& bad, const std::string& cell, bool with_time = true) {
+  std::string text = with_time ? "time_s,mu,v_b_mm_s\n" : "mu,v_b_mm_s\n";
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double t = 1e-3 * static_cast<double>(i);
+    if (with_time) text += fmt::format("{:.3f},", t);
+    text += fmt::format("{},{:.4f}\n", bad.contains(i) ? cell : fmt::format("{:.4f}", 0.3 + t), 6 + t);
+  }
+  return text;
+}
+
+TEST_F(Gaps, AnIsolatedBadCellIsLeftOutAndSaid) {
+  for (const char* cell : {"NaN", "", "-inf", "1e300", "#N/A", "---"}) {
+    const Trace trace = read_trace(write(table({1000}, cell)));
+    ASSERT_EQ(trace.size(), rows - 1) << cell;
+    EXPECT_NEAR(trace.time[1000], 1.001, 1e-12);
+    EXPECT_NEAR(trace.friction[1000], 1.301, 1e-12) << "nothing is filled in";
+    ASSERT_EQ(trace.steps.size(), 2U) << "nothing is taken across a gap";
+    EXPECT_EQ(trace.steps[1].begin, 1000U);
+    EXPECT_THAT(trace.warnings,
+                Contains(HasSubstr("1 row with a cell that holds no number was left out as a gap (line 1002)")));
+  }
+}
+
+TEST_F(Gaps, SeveralAreCountedWithTheirLines) {
+  const Trace trace = read_trace(write(table({17, 18, 19, 3000}, "NaN")));
+  EXPECT_EQ(trace.size(), rows - 4);
+  EXPECT_THAT(trace.warnings, Contains(HasSubstr("4 rows with a cell that holds no number were left out as gaps (lines "
+                                                 "19, 20, 21, 3002)")));
+}
+
+TEST_F(Gaps, WithoutATimeColumnTheOthersKeepTheirTime) {
+  ReadOptions options;
+  options.rate = 1000;
+  const Trace trace = read_trace(write(table({1000, 2000}, "NaN", false)), options);
+  EXPECT_EQ(trace.size(), rows - 2);
+  EXPECT_NEAR(trace.time.back(), 1e-3 * (rows - 1), 1e-9);
+  EXPECT_NEAR(trace.time[1000], 1.001, 1e-9);
+}
+
+TEST_F(Gaps, MoreAreRefusedAsTheFirstIs) {
+  expect_error(write(table({17, 18, 19, 20}, "NaN")), {}, "'NaN' is not a finite number", "remove the row", 19, "mu");
+  expect_error(write(table({17, 100, 200, 300, 400}, "abc")), {}, "'abc' is not a number", "--columns", 19, "mu");
+}
+
+TEST_F(Gaps, MessagesNameTheLineOfTheRowsThatRemain) {
+  std::string text = table({1000}, "NaN");
+  text += "1.000,0.3,6\n";  // time goes back in the last line
+  expect_error(write(text), {}, "time goes backwards", "sort", rows + 2, "time_s");
+}
+
+}  // namespace
+}  // namespace tribofit
