@@ -114,9 +114,9 @@ TEST_F(CampaignReport, LevelsOverTheRadiusAreTheTruth) {
   ASSERT_TRUE(mu_s != nullptr && drop != nullptr);
   ASSERT_THAT(mu_s->x, ::testing::ElementsAre(::testing::DoubleNear(9, 1e-9), ::testing::DoubleNear(12, 1e-9),
                                               ::testing::DoubleNear(15, 1e-9)));
-  constexpr double kTruth[] = {0.521, 0.512, 0.509}, kDrop[] = {0.133, 0.137, 0.191};
+  constexpr double kTrueStatic[] = {0.521, 0.512, 0.509}, kDrop[] = {0.133, 0.137, 0.191};
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(mu_s->y[k], kTruth[k], 0.006);
+    EXPECT_NEAR(mu_s->y[k], kTrueStatic[k], 0.006);
     EXPECT_NEAR(drop->y[k], kDrop[k], 0.01);
     EXPECT_LT(mu_s->low[k], mu_s->y[k]);
   }

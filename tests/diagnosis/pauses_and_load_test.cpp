@@ -1,4 +1,4 @@
-/// What a disc that pauses and a load that follows friction show, on records made with a known truth.
+/// What a disc that pauses and a load that follows friction show, on records simulated with a known truth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,14 +19,15 @@ using namespace tribofit;
 
 constexpr double kOmega = 0.419, kMuS = 0.509;
 
-struct Made {
+struct Simulated {
   std::shared_ptr<const Trace> trace;
   Motion motion;
   Segmentation segmentation;
 };
 
 /// 30 s of the published 15 mm rig.
-Made make(const std::vector<Effect>& effects, const std::vector<double>& values, const Drive& given, double scatter) {
+Simulated make(const std::vector<Effect>& effects, const std::vector<double>& values, const Drive& given,
+               double scatter) {
   Drive drive = given;
   drive.radius = 0.015;
   drive.mean_load = 50;
@@ -45,11 +46,11 @@ Made make(const std::vector<Effect>& effects, const std::vector<double>& values,
   const FrictionModel model(ExponentialLaw{}, effects);
   SimulatedRecording hidden =
       simulate_recording(model, p, rig_with_damping_ratio(0.85, 16.2e3, 0.02), drive, options, sensors);
-  Made made;
-  made.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
-  made.motion = compute_motion(Trace(*made.trace));
-  made.segmentation = find_cycles(made.motion);
-  return made;
+  Simulated simulated;
+  simulated.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
+  simulated.motion = compute_motion(Trace(*simulated.trace));
+  simulated.segmentation = find_cycles(simulated.motion);
+  return simulated;
 }
 
 Drive steady() {
@@ -85,29 +86,29 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
 
 TEST(LoadCoupling, ComesBackFromTheLoadChannel) {
   for (const double kappa : {-0.2, -0.1, 0.1, 0.2}) {
-    Made made = make({make_effect("load-coupling")}, {kappa}, steady(), 0.004);
-    ASSERT_FALSE(made.motion.load.empty());
-    const Estimate found = load_coupling(made.motion, made.segmentation);
+    Simulated simulated = make({make_effect("load-coupling")}, {kappa}, steady(), 0.004);
+    ASSERT_FALSE(simulated.motion.load.empty());
+    const Estimate found = load_coupling(simulated.motion, simulated.segmentation);
     EXPECT_NEAR(found.value, kappa, 0.005) << kappa;
-    uncouple_load(found.value, made.motion);
-    for (const double load : made.motion.load) ASSERT_NEAR(load, 50, 0.25);
+    uncouple_load(found.value, simulated.motion);
+    for (const double load : simulated.motion.load) ASSERT_NEAR(load, 50, 0.25);
   }
 }
 
 TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
   Drive drive = steady();
   drive.load = [](double t) { return 50 + 20 * std::sin(2 * std::numbers::pi * t / 17); };
-  const Made made = make({}, {}, drive, 0.004);
-  const Estimate found = load_coupling(made.motion, made.segmentation);
+  const Simulated simulated = make({}, {}, drive, 0.004);
+  const Estimate found = load_coupling(simulated.motion, simulated.segmentation);
   EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.01);
 }
 
 TEST(ChangePoint, IsFoundWithIntervalsThatHoldIt) {
   for (const double when : {9.37, 14.05, 21.62}) {
-    const Made made = make({make_effect("step")}, {0.02, when}, steady(), 0.004);
+    const Simulated simulated = make({make_effect("step")}, {0.02, when}, steady(), 0.004);
     const FrictionModel model(ExponentialLaw{}, {make_effect("step")});
-    const Fit fit =
-        fit_model(model, made.motion, made.segmentation, observe(made.motion, made.segmentation, model.needs(), 1000));
+    const Fit fit = fit_model(model, simulated.motion, simulated.segmentation,
+                              observe(simulated.motion, simulated.segmentation, model.needs(), 1000));
     ASSERT_EQ(fit.parameters.size(), 5u);
     const FitParameter &delta = fit.parameters[3], &time = fit.parameters[4];
     EXPECT_NEAR(delta.value, 0.02, 5e-4) << when;
@@ -119,9 +120,9 @@ TEST(ChangePoint, IsFoundWithIntervalsThatHoldIt) {
 }
 
 TEST(Pauses, BreakAwayAfterAPauseIsReadFromTheStretchThatPulls) {
-  const Made made = make({}, {}, with_pauses(), 0);
+  const Simulated simulated = make({}, {}, with_pauses(), 0);
   int after_pause = 0;
-  for (const Cycle& cycle : made.segmentation.cycles) {
+  for (const Cycle& cycle : simulated.segmentation.cycles) {
     if (!std::isfinite(cycle.break_away_friction)) continue;
     EXPECT_NEAR(cycle.break_away_friction, kMuS, 0.003) << cycle.break_away_time;
     after_pause += cycle.stick_time > 0.4 ? 1 : 0;
@@ -130,15 +131,15 @@ TEST(Pauses, BreakAwayAfterAPauseIsReadFromTheStretchThatPulls) {
 }
 
 TEST(Pauses, StickTimesDoNotFollowTheirOwnBreakAway) {
-  const Made made = make({}, {}, steady(), 0.01);
+  const Simulated simulated = make({}, {}, steady(), 0.01);
   Channels channels;
   channels.stick_time = true;
-  const Observations observations = observe(made.motion, made.segmentation, channels, 40);
+  const Observations observations = observe(simulated.motion, simulated.segmentation, channels, 40);
   std::vector<double> raw, freed, level;
   for (std::size_t k = 1; k < observations.slips.size(); ++k) {
     const auto& slip = observations.slips[k];
-    if (!slip.from_stick || !made.segmentation.cycles[slip.segment].stick_complete) continue;
-    raw.push_back(made.segmentation.cycles[slip.segment].stick_time);
+    if (!slip.from_stick || !simulated.segmentation.cycles[slip.segment].stick_complete) continue;
+    raw.push_back(simulated.segmentation.cycles[slip.segment].stick_time);
     freed.push_back(slip.stick_time);
     level.push_back(slip.break_away_friction);
   }
@@ -149,10 +150,10 @@ TEST(Pauses, StickTimesDoNotFollowTheirOwnBreakAway) {
 
 TEST(Pauses, NameAgeingWhereItIsAndOnlyThere) {
   for (const bool ages : {false, true}) {
-    const Made made =
+    const Simulated simulated =
         ages ? make({make_effect("ageing")}, {0.016, 0.1}, with_pauses(), 0.006) : make({}, {}, with_pauses(), 0.006);
     TraceInput input;
-    input.trace = made.trace;
+    input.trace = simulated.trace;
     const DiagnosedTraces result = diagnose({input}, IdentifyOptions());
     std::vector<std::string> named;
     for (const Rung& rung : result.diagnosis.ladder) {

@@ -12,8 +12,8 @@
 #include "diagnosis/base_law.hpp"
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/probes.hpp"
-#include "fit/spectral_lines.hpp"
 #include "diagnosis/trial.hpp"
+#include "fit/spectral_lines.hpp"
 
 namespace {
 
@@ -22,7 +22,7 @@ using namespace tribofit::diagnosis;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kNoise = 0.003;
+constexpr double kSearchNoise = 0.003;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 Channels channels() {
@@ -33,7 +33,7 @@ Channels channels() {
 
 synthetic::Record plain(std::uint64_t seed = 1) {
   synthetic::Options options;
-  options.noise = kNoise;
+  options.noise = kSearchNoise;
   options.seed = seed;
   return synthetic::make(FrictionModel(ExponentialLaw{}), synthetic::table4_15mm(ExponentialLaw{}), options);
 }
@@ -137,7 +137,7 @@ std::vector<Probe> probes_of(const synthetic::Record& made) {
   const Record record = {&made.motion, &made.segmentation};
   const Observations fine = observe(made.motion, made.segmentation, channels(), 200);
   const Observations coarse = observe(made.motion, made.segmentation, channels(), 40);
-  const DiagnosisContext context(std::span(&record, 1), fine, coarse, kNoise, 0.004);
+  const DiagnosisContext context(std::span(&record, 1), fine, coarse, kSearchNoise, 0.004);
   const FrictionModel model(ExponentialLaw{});
   const Trial trial = try_base(context, context.fine, model);
   return probe_all(context, try_model(context, context.coarse, model, trial.p), trial, residual_of(context, trial));

@@ -20,7 +20,7 @@ namespace {
 
 using namespace tribofit;
 
-constexpr double kOmega = 0.419, kUnit = 0.003;
+constexpr double kDiscSpeed = 0.419, kUnit = 0.003;
 
 /// Sticks of 0.1 s with noise of v_r that is correlated from sample to sample, and `creep(time in stick)` on top.
 template <class F>
@@ -103,7 +103,7 @@ DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double
   Drive drive;
   drive.radius = 0.015;
   drive.mean_load = 50;
-  drive.speed = constant_speed(kOmega);
+  drive.speed = constant_speed(kDiscSpeed);
   std::vector<double> p = {0.509, 0.318, 52.14};
   p.insert(p.end(), effect.begin(), effect.end());
   SimulationOptions options;
@@ -124,7 +124,7 @@ DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double
   return diagnose({input}, IdentifyOptions());
 }
 
-EffectFinding finding(const DiagnosedTraces& result, const std::string& key) {
+EffectFinding finding_of(const DiagnosedTraces& result, const std::string& key) {
   for (const EffectFinding& found : result.diagnosis.effects) {
     if (found.key == key) return found;
   }
@@ -134,11 +134,11 @@ EffectFinding finding(const DiagnosedTraces& result, const std::string& key) {
 TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
   for (const double colour : {0.0, 0.9}) {
     const DiagnosedTraces result = diagnose_hidden("contact-spin", {0.5e-3}, colour);
-    const EffectFinding spin = finding(result, "contact-spin");
+    const EffectFinding spin = finding_of(result, "contact-spin");
     ASSERT_EQ(spin.status, EffectStatus::found) << colour;
     EXPECT_NEAR(spin.parameters[0].value, 0.5e-3, 0.05e-3);
-    EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::unsupported);
-    EXPECT_EQ(finding(result, "bristle").status == EffectStatus::found, false);
+    EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::unsupported);
+    EXPECT_EQ(finding_of(result, "bristle").status == EffectStatus::found, false);
     const auto& where = result.diagnosis.where;
     EXPECT_TRUE(std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == "stick"; }));
   }
@@ -146,18 +146,18 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
 
 TEST(StickEvidence, AWrongRadiusIsNoCreep) {
   const DiagnosedTraces result = diagnose_hidden("radius-offset", {0.97}, 0.9);
-  EXPECT_EQ(finding(result, "radius-offset").status, EffectStatus::found);
-  EXPECT_EQ(finding(result, "contact-spin").status, EffectStatus::unsupported);
-  EXPECT_EQ(finding(result, "bristle").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::found);
+  EXPECT_EQ(finding_of(result, "contact-spin").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(result, "bristle").status, EffectStatus::unsupported);
 }
 
 TEST(StickEvidence, RigidMemoriesAreNoBristle) {
   for (const auto& [key, p] : {std::pair<std::string, std::vector<double>>("rate-state", {50e-6, 0}),
                                std::pair<std::string, std::vector<double>>("frictional-lag", {1e-3})}) {
     const DiagnosedTraces result = diagnose_hidden(key, p, 0.9);
-    EXPECT_EQ(finding(result, key).status, EffectStatus::found) << key;
-    EXPECT_NE(finding(result, "bristle").status, EffectStatus::found) << key;
-    EXPECT_NE(finding(result, "bristle").status, EffectStatus::equivalent) << key;
+    EXPECT_EQ(finding_of(result, key).status, EffectStatus::found) << key;
+    EXPECT_NE(finding_of(result, "bristle").status, EffectStatus::found) << key;
+    EXPECT_NE(finding_of(result, "bristle").status, EffectStatus::equivalent) << key;
   }
 }
 

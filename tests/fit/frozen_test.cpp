@@ -18,8 +18,8 @@ using namespace tribofit;
 const FrictionModel kExponential(ExponentialLaw{});
 const std::vector<double> kTruth = synthetic::table4_15mm(ExponentialLaw{});
 
-Fit fit_record(const FrictionModel& model, const synthetic::Record& record, const Instruments& instruments = {},
-               const FitOptions& options = {}) {
+Fit fit_with(const FrictionModel& model, const synthetic::Record& record, const Instruments& instruments = {},
+             const FitOptions& options = {}) {
   const Observations observations = observe(record.motion, record.segmentation, model.needs());
   return fit_model(model, record.motion, record.segmentation, observations, instruments, options);
 }
@@ -38,7 +38,7 @@ TEST(FailedFit, HasNoCurveAndNothingToTry) {
   const synthetic::Record record = never_sticking(synthetic::make(kExponential, kTruth, {}));
   FitOptions published;
   published.protocol = Protocol::published;
-  const Fit fit = fit_record(kExponential, record, {}, published);
+  const Fit fit = fit_with(kExponential, record, {}, published);
   ASSERT_FALSE(fit.converged);
   ASSERT_TRUE(fit.parameters.empty());
   const Curve curve = law_curve(fit, std::vector<double>{0.01, 0.02});
@@ -76,7 +76,7 @@ TEST(FrozenFit, ItsParametersReferToItsOwnLoad) {
   p.push_back(kExponent);
   const FrictionModel model(ExponentialLaw{}, {make_effect("load-dependence")});
   const synthetic::Record light = at_load(50, 10, kExponential, p, 50), heavy = at_load(100, 10, kExponential, p, 50);
-  const Fit fit = fit_record(model, light);
+  const Fit fit = fit_with(model, light);
   ASSERT_NEAR(fit.parameters[3].value, kExponent, 1e-3);
   EXPECT_NEAR(fit.mean_load, 50, 3);
   const Fit there = evaluate_frozen(fit, heavy.motion, heavy.segmentation);
@@ -105,7 +105,7 @@ TEST(FrozenFit, AMassBelowTheSensorSeesTheLoadAsRecorded) {
       if (i >= cycle.slip.begin) record.motion.friction[i] -= kMass * a[i - cycle.slip.begin] / load;
     }
   }
-  const Fit fit = fit_record(model, record);
+  const Fit fit = fit_with(model, record);
   ASSERT_EQ(fit.parameters.size(), 4u);
   EXPECT_NEAR(fit.parameters[3].value, kMass, 0.02 * kMass);
   EXPECT_LT(fit.error.rmse, 2e-4);
@@ -151,7 +151,7 @@ TEST(SeveralRecords, SystematicPartsDoNotVanish) {
   radius.rig.radius = Declared{0.015, 0.001};
   gain.vibrometer.gain = Declared{1, 0.01};
   for (const Instruments& declared : {radius, gain}) {
-    const Fit one = fit_record(kExponential, stated, declared), channel = fit_record(kExponential, recorded, declared);
+    const Fit one = fit_with(kExponential, stated, declared), channel = fit_with(kExponential, recorded, declared);
     const Record records[] = {{&stated.motion, &stated.segmentation}, {&stated.motion, &stated.segmentation}};
     const Observations single = observe(stated.motion, stated.segmentation);
     const Fit both = fit_model(kExponential, records, join({single, single}), declared);
@@ -169,11 +169,11 @@ TEST(Systematic, AnOffsetOfTheClocksCountsAsADelayOfTheVibrometer) {
   synthetic::Record record = synthetic::make(kExponential, kTruth, options);
   Instruments late;
   late.vibrometer.delay = Declared{0, 1e-4};
-  const Fit declared = fit_record(kExponential, record, late);
+  const Fit declared = fit_with(kExponential, record, late);
   record.motion.clock_offset_std_error = 1e-4;
-  const Fit joined = fit_record(kExponential, record);
+  const Fit joined = fit_with(kExponential, record);
   record.motion.clock_offset_std_error = std::numeric_limits<double>::quiet_NaN();
-  const Fit unknown = fit_record(kExponential, record);
+  const Fit unknown = fit_with(kExponential, record);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_GT(joined.parameters[k].systematic, 0);
     EXPECT_DOUBLE_EQ(joined.parameters[k].systematic, declared.parameters[k].systematic);
@@ -189,7 +189,7 @@ TEST(NotDetermined, AParameterThatFillsItsBoundsHasNoInterval) {
   const synthetic::Record record = never_sticking(synthetic::make(FrictionModel(CoulombLaw{}), {0.3, 0.3}, options));
   FitOptions within;
   within.given = {{"alpha", std::nullopt, GivenParameter::Bounds{50, 55}}};
-  const Fit fit = fit_record(kExponential, record, {}, within);
+  const Fit fit = fit_with(kExponential, record, {}, within);
   ASSERT_EQ(fit.parameters.size(), 3u);
   for (const FitParameter& p : fit.parameters) {
     const bool whole =
@@ -205,7 +205,7 @@ TEST(NotDetermined, AParameterThatFillsItsBoundsHasNoInterval) {
 TEST(Solver, LeavesTheLoggingOfTheProgramAsItIs) {
   const int before = FLAGS_minloglevel;
   FLAGS_minloglevel = google::GLOG_WARNING;
-  fit_record(kExponential, synthetic::make(kExponential, kTruth, {.cycles = 8}));
+  fit_with(kExponential, synthetic::make(kExponential, kTruth, {.cycles = 8}));
   EXPECT_EQ(FLAGS_minloglevel, google::GLOG_WARNING);
   FLAGS_minloglevel = before;
 }
@@ -215,7 +215,7 @@ TEST(Curve, TurnsWithTheDiscOfTheRecord) {
   options.noise = 0.001;
   const FrictionModel model(ExponentialLaw{}, {make_effect("drift")});
   const synthetic::Record record = synthetic::make(kExponential, kTruth, options);
-  const Fit fit = fit_record(model, record);
+  const Fit fit = fit_with(model, record);
   EXPECT_NEAR(fit.disc_speed, 0.419, 1e-12);
   Fit later = fit;  // a drift of 10 % a second is none at the start
   later.parameters[3].value = 0.1;

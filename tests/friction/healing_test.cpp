@@ -70,7 +70,7 @@ double age(double begin, double end, double theta, double length) {
   return theta;
 }
 
-std::vector<double> run(const FrictionModel& model, const std::vector<double>& p, const Slip& slip) {
+std::vector<double> friction_along(const FrictionModel& model, const std::vector<double>& p, const Slip& slip) {
   std::vector<double> mu(slip.size());
   evaluate<double>(model, p.data(), slip, slip.velocity, mu);
   return mu;
@@ -82,7 +82,7 @@ TEST(Healing, FollowsAnIndependentIntegrationThroughSlipStickAndSlip) {
     const double direct = 0.004;
     const auto law = [](double speed) { return 0.318 + 0.191 * std::exp(-52.14 * speed); };
     const std::vector<double> p = {0.509, 0.318, 52.14, length, direct};
-    const std::vector<double> mu = run(healing(), p, second.slip);
+    const std::vector<double> mu = friction_along(healing(), p, second.slip);
     double theta = age(0, kLength + kRest, kRest, length), t = kLength + kRest;
     EXPECT_NEAR(break_away_level(healing(), p.data(), second.slip), law(length / theta), 1e-6) << length;
     for (std::size_t i = 0; i < mu.size(); i += 250) {
@@ -98,7 +98,7 @@ TEST(Healing, ConvergesWithTheSquareOfTheStep) {
   const std::vector<double> p = {0.509, 0.318, 52.14, 50e-6, 0};
   const auto worst = [&](double step) {
     const SecondSlip second(step);
-    const std::vector<double> mu = run(healing(), p, second.slip);
+    const std::vector<double> mu = friction_along(healing(), p, second.slip);
     double theta = age(0, kLength + kRest, kRest, 50e-6), t = kLength + kRest, off = 0;
     for (std::size_t i = 0; i < mu.size(); ++i) {
       theta = age(t, second.time[i], theta, 50e-6);
@@ -122,7 +122,7 @@ TEST(Healing, SteadySlidingIsTheLawAtThatSpeed) {
       slip.velocity = velocity;
       const double expected =
           base == Law(ExponentialLaw{}) ? 0.3 + 0.2 * std::exp(-50 * speed) : 0.3 + 0.2 / (1 + 50 * speed);
-      const std::vector<double> mu = run(healing(base), {0.5, 0.3, 50, 20e-6, 0.003}, slip);
+      const std::vector<double> mu = friction_along(healing(base), {0.5, 0.3, 50, 20e-6, 0.003}, slip);
       EXPECT_NEAR(mu.front(), expected + 0.003 * std::asinh(speed / 2e-3), 1e-12);
       EXPECT_NEAR(mu.back(), expected + 0.003 * std::asinh(speed / 2e-3), 1e-12);
     }
@@ -148,8 +148,9 @@ TEST(Healing, BreakAwayGrowsWithTheTimeAtRestUpToStaticFriction) {
 
 TEST(Healing, ShortMemoryIsTheLawAlone) {
   const SecondSlip second(1e-5);
-  const std::vector<double> with = run(healing(), {0.509, 0.318, 52.14, 1e-9, 0}, second.slip);
-  const std::vector<double> without = run(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14}, second.slip);
+  const std::vector<double> with = friction_along(healing(), {0.509, 0.318, 52.14, 1e-9, 0}, second.slip);
+  const std::vector<double> without =
+      friction_along(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14}, second.slip);
   // Away from rest: within D_c of it every memory is long.
   for (std::size_t i = 200; i + 200 < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 1e-4);
 }
@@ -161,7 +162,7 @@ TEST(Healing, MemoriesAfterItStartFromItsBreakAway) {
   for (const auto& slot : model.parameters().subspan(3)) p.push_back(slot.parameter.start * slot.parameter.si);
   p[model.offset_of("rate-state")] = 200e-6;
   p[model.offset_of("frictional-lag")] = 10;  // 10 s: nothing changes
-  EXPECT_NEAR(run(model, p, second.slip).front(), break_away_level(model, p.data(), second.slip), 1e-5);
+  EXPECT_NEAR(friction_along(model, p, second.slip).front(), break_away_level(model, p.data(), second.slip), 1e-5);
   EXPECT_LT(break_away_level(model, p.data(), second.slip), 0.508);
 }
 

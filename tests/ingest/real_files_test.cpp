@@ -8,7 +8,7 @@
 namespace tribofit {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double revolution = 2 * std::numbers::pi;
 
 double mean(const std::vector<double>& values, std::size_t begin = 0, std::size_t end = 0) {
   if (end == 0) end = values.size();
@@ -39,7 +39,7 @@ TEST_F(RealFiles, DrillString) {
   EXPECT_EQ(trace.velocity_kind, VelocityKind::relative);
   EXPECT_EQ(trace.friction_kind, FrictionKind::coefficient);
   EXPECT_NEAR(trace.friction[0], 0.54625 / 0.05 / 539.867, 1e-12);
-  EXPECT_NEAR(trace.velocity[0], 148.1578 * turn / 60 * 0.05, 1e-12);
+  EXPECT_NEAR(trace.velocity[0], 148.1578 * revolution / 60 * 0.05, 1e-12);
   const auto [low, high] = std::minmax_element(trace.load.begin(), trace.load.end());
   EXPECT_NEAR(*low, 340, 1);
   EXPECT_NEAR(*high, 743, 1);
@@ -116,7 +116,7 @@ TEST_F(RealFiles, EveryDevelopmentTrace) {
   const Trace temperature = read_trace((folder / "tempdep.csv").string());
   EXPECT_DOUBLE_EQ(temperature.temperature[0], 24);
   const Trace speed = read_trace((folder / "asym.csv").string());
-  EXPECT_NEAR(speed.disc_speed[0], 0.00063 * turn / 60, 1e-15);
+  EXPECT_NEAR(speed.disc_speed[0], 0.00063 * revolution / 60, 1e-15);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace tribofit {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 struct Case {
   const char* text;
@@ -32,15 +32,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"0.015", Quantity::length, 0.015}, Case{"1.5e1mm", Quantity::length, 0.015},
         Case{"+15 mm", Quantity::length, 0.015}, Case{"50 \u00b5m", Quantity::length, 50e-6},
         Case{"50 \u03bcm", Quantity::length, 50e-6}, Case{"50um", Quantity::length, 50e-6},
-        Case{"1in", Quantity::length, 0.0254}, Case{"4rpm", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 RPM", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 1/min", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 min^-1", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 r/min", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 U/min", Quantity::angular_velocity, 4 * turn / 60},
-        Case{"4 rev/min", Quantity::angular_velocity, 4 * turn / 60},
+        Case{"1in", Quantity::length, 0.0254}, Case{"4rpm", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 RPM", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 1/min", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 min^-1", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 r/min", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 U/min", Quantity::angular_velocity, 4 * full_turn / 60},
+        Case{"4 rev/min", Quantity::angular_velocity, 4 * full_turn / 60},
         Case{"0.419rad/s", Quantity::angular_velocity, 0.419},
-        Case{"24 \u00b0/s", Quantity::angular_velocity, 24 * turn / 360}, Case{"50N", Quantity::force, 50},
+        Case{"24 \u00b0/s", Quantity::angular_velocity, 24 * full_turn / 360}, Case{"50N", Quantity::force, 50},
         Case{"3 mN", Quantity::force, 0.003}, Case{"3 MN", Quantity::force, 3e6}, Case{"1.2kN", Quantity::force, 1200},
         Case{"2 kgf", Quantity::force, 19.6133}, Case{"2.5 Nm", Quantity::torque, 2.5},
         Case{"2.5 N\u00b7m", Quantity::torque, 2.5}, Case{"2.5 N*mm", Quantity::torque, 0.0025},
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"0.01 1/s", Quantity::inverse_time, 0.01}, Case{"0.01 1/K", Quantity::inverse_temperature, 0.01},
         Case{"23\u00b0C", Quantity::temperature, 23}, Case{"23 degC", Quantity::temperature, 23},
         Case{"296.15 K", Quantity::temperature, 23}, Case{"73.4 \u00b0F", Quantity::temperature, 23},
-        Case{"90\u00b0", Quantity::angle, turn / 4}, Case{"2 rev", Quantity::angle, 2 * turn},
+        Case{"90\u00b0", Quantity::angle, full_turn / 4}, Case{"2 rev", Quantity::angle, 2 * full_turn},
         Case{"100 g", Quantity::mass, 0.1}, Case{"10 mV", Quantity::voltage, 0.01}));
 
 TEST(Units, BareNumbersTakeTheNamedUnit) {

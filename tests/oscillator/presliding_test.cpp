@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDiscVelocity = 0.015 * 4 * 2 * std::numbers::pi / 60;
 
-double exponential(const Case& c, double speed) {
+double exponential_law(const Case& c, double speed) {
   return c.p[1] + (c.p[0] - c.p[1]) * std::exp(-c.p[2] * speed);
 }
 
@@ -149,7 +149,7 @@ TEST(Memory, RateStateFollowsItsDistance) {
   for (std::size_t i = 1; i + 1 < motion.size(); ++i) {
     if (motion.sticks[i - 1] || motion.sticks[i + 1] || motion.relative_velocity[i] < 0.01) continue;
     const double slope = (phi(i + 1) - phi(i - 1)) / (motion.distance[i + 1] - motion.distance[i - 1]);
-    const double expected = (exponential(c, motion.relative_velocity[i]) - phi(i)) / critical_distance;
+    const double expected = (exponential_law(c, motion.relative_velocity[i]) - phi(i)) / critical_distance;
     EXPECT_NEAR(slope, expected, 0.02 + 2e-4 * std::abs(expected));
     ++checked;
   }
@@ -172,14 +172,14 @@ TEST(Memory, HealingContactsAgeThroughStickAndSlip) {
     theta = v > 0 ? theta * std::exp(-v * h) - std::expm1(-v * h) / v : theta + h;
     if (next < motion.slips.size() && motion.time[i] >= motion.slips[next].break_away_time) {
       const double waited = motion.slips[next].break_away_time - motion.time[i - 1];
-      const double level = exponential(c, critical_distance / (before + waited));
+      const double level = exponential_law(c, critical_distance / (before + waited));
       EXPECT_NEAR(motion.slips[next].break_away_friction, level, 1e-6) << next;
       ++next;
     }
     if (motion.sticks[i - 1] || motion.sticks[i]) continue;
     ++slipping;
     const double expected =
-        exponential(c, critical_distance / theta) + direct * std::asinh(motion.relative_velocity[i] / 2e-3);
+        exponential_law(c, critical_distance / theta) + direct * std::asinh(motion.relative_velocity[i] / 2e-3);
     worst = std::max(worst, std::abs(motion.friction[i] - expected));
   }
   EXPECT_GT(slipping, 40000u);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-json parsed(const Identification& result) {
+json written_as_json(const Identification& result) {
   return json::parse(to_json(result, {{"--radius", "15mm"}}));
 }
 
@@ -23,7 +23,7 @@ std::vector<std::string> keys(const json& object) {
 }
 
 TEST(Json, HasTheAgreedNames) {
-  const json j = parsed(made_up_result());
+  const json j = written_as_json(made_up_result());
   using ::testing::IsSupersetOf;
   EXPECT_THAT(keys(j),
               IsSupersetOf({"tool", "trace", "conditions", "health", "stick_slip", "fits", "best", "warnings"}));
@@ -41,7 +41,7 @@ TEST(Json, HasTheAgreedNames) {
 }
 
 TEST(Json, ConvertsFromSiToTheUnitsItNames) {
-  const json j = parsed(made_up_result());
+  const json j = written_as_json(made_up_result());
   const json& alpha = j["fits"][0]["parameters"][2];
   EXPECT_EQ(alpha["name"], "alpha");
   EXPECT_EQ(alpha["unit"], "s/mm");
@@ -69,17 +69,17 @@ TEST(Json, ConvertsFromSiToTheUnitsItNames) {
 TEST(Json, WhatIsNotKnownIsNull) {
   Identification result = made_up_result();
   result.fits[0].error.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
-  const json j = parsed(result);
+  const json j = written_as_json(result);
   EXPECT_TRUE(j["conditions"]["load_N"].is_null());
   EXPECT_TRUE(j["fits"][0]["error"]["held_out_rmse"].is_null());
   EXPECT_TRUE(j["fits"][0]["parameters"][0]["profile_ci95"][0].is_null());
   EXPECT_TRUE(j["fits"][0]["parameters"][0]["systematic_error"].is_null());  // nothing declared
   result.fits[0].parameters[0].systematic = 0.005;
-  EXPECT_EQ(parsed(result)["fits"][0]["parameters"][0]["systematic_error"], 0.005);
+  EXPECT_EQ(written_as_json(result)["fits"][0]["parameters"][0]["systematic_error"], 0.005);
 }
 
 TEST(Json, HoldsBothProtocolsAndPointsAtTheBest) {
-  const json j = parsed(made_up_result());
+  const json j = written_as_json(made_up_result());
   ASSERT_EQ(j["fits"].size(), 3u);
   EXPECT_EQ(j["fits"][0]["protocol"], "joint");
   EXPECT_EQ(j["fits"][2]["protocol"], "published");
@@ -92,7 +92,7 @@ TEST(Json, EffectsCarryTheirKey) {
   Fit& fit = result.fits[0];
   fit.model = FrictionModel(ExponentialLaw{}, {make_effect("viscous")});
   fit.parameters.push_back(made_up_parameter(fit.model, 3, 0.5, 0.1));
-  const json j = parsed(result);
+  const json j = written_as_json(result);
   EXPECT_EQ(j["fits"][0]["effects"], json({"viscous"}));
   EXPECT_EQ(j["fits"][0]["parameters"][3]["effect"], "viscous");
   EXPECT_NEAR(j["fits"][0]["parameters"][3]["value"].get<double>(), 0.0005, 1e-15);  // 0.5 s/m
@@ -101,7 +101,7 @@ TEST(Json, EffectsCarryTheirKey) {
 TEST(Json, FrictionAsAForceIsInNewtons) {
   Identification result = made_up_result();
   result.motion.friction_kind = FrictionKind::force;
-  const json j = parsed(result);
+  const json j = written_as_json(result);
   EXPECT_EQ(j["trace"]["friction_unit"], "N");
   EXPECT_EQ(j["fits"][0]["parameters"][0]["unit"], "N");
   EXPECT_EQ(j["fits"][0]["parameters"][2]["unit"], "s/mm");
@@ -112,7 +112,7 @@ TEST(Json, ATraceThatCouldNotBeAnalysedIsStillOneObject) {
   result.fits.clear();
   result.analysed = false;
   result.warnings = {"fewer than three cycles"};
-  const json j = parsed(result);
+  const json j = written_as_json(result);
   EXPECT_TRUE(j["best"].is_null());
   EXPECT_EQ(j["fits"].size(), 0u);
   EXPECT_EQ(j["warnings"][0], "fewer than three cycles");
@@ -121,7 +121,7 @@ TEST(Json, ATraceThatCouldNotBeAnalysedIsStillOneObject) {
 TEST(Json, AFileNameThatIsNotUtf8DoesNotBreakIt) {
   Identification result = made_up_result();
   result.path = "r\xe9sultat.csv";
-  EXPECT_NO_THROW(parsed(result));
+  EXPECT_NO_THROW(written_as_json(result));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ void expect_sound(const Report& report) {
 }
 
 TEST(StudyReport, CoulombPortraitIsAnArcAndAStraightLine) {
-  Machine machine = tribofit::testing::published_machine();
+  Machine machine = tribofit::studies::published_machine();
   machine.model = FrictionModel(CoulombLaw{});
   machine.parameters = {0.5, 0.3};
   machine.rig.damping = 0;
@@ -107,7 +107,7 @@ TEST(StudyReport, CoulombPortraitIsAnArcAndAStraightLine) {
 }
 
 TEST(StudyReport, TheBlockThatIsDrawnMovesAsItIsSimulated) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   const Report report = report_of(studied(machine), study_phase(machine, {machine.disc_velocity()}));
   const auto animations = items_of<Animation>(report);
   ASSERT_EQ(animations.size(), 1u);
@@ -126,7 +126,7 @@ TEST(StudyReport, TheBlockThatIsDrawnMovesAsItIsSimulated) {
 }
 
 TEST(StudyReport, ResponseHasItsPeakAtTheResonance) {
-  Machine machine = tribofit::testing::published_machine();
+  Machine machine = tribofit::studies::published_machine();
   constexpr double kRatio = 0.2;
   machine.rig = rig_with_damping_ratio(machine.rig.mass, machine.rig.stiffness, kRatio);
   const Response study = study_response(machine);
@@ -146,7 +146,7 @@ TEST(StudyReport, ResponseHasItsPeakAtTheResonance) {
 }
 
 TEST(StudyReport, CriticalSpeedsAreMarkedWhereTheyAre) {
-  const Machine machine = tribofit::testing::uradnicek_machine(330, 0.5e-3);
+  const Machine machine = tribofit::studies::uradnicek_machine(330, 0.5e-3);
   SpeedStudyOptions options;
   options.points = 12;
   options.draws = 0;
@@ -169,7 +169,7 @@ TEST(StudyReport, CriticalSpeedsAreMarkedWhereTheyAre) {
 }
 
 TEST(StudyReport, BarsAreRankedBySize) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   const std::vector<Sensitivity> study = study_sensitivity(machine, {.variables = {}, .factor = 1.5, .count = 5});
   const Report report = report_of(studied(machine), study);
   expect_sound(report);
@@ -192,7 +192,7 @@ TEST(StudyReport, BarsAreRankedBySize) {
 }
 
 TEST(StudyReport, ASingleLargeCellOfALargeMapIsDrawn) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   MapRequest request{machine,
                      {variable_named(machine, "stiffness"), spread(8e3, 20e3, 700)},
                      {variable_named(machine, "mass"), spread(0.5, 1.5, 500)},
@@ -220,7 +220,7 @@ TEST(StudyReport, ASingleLargeCellOfALargeMapIsDrawn) {
 }
 
 TEST(StudyReport, ManyPortraitsStaySmall) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   const std::vector<double> velocities = spread(1e-3, 8e-3, 30);
   const Report report = report_of(studied(machine), study_phase(machine, velocities));
   std::size_t points = 0;

@@ -34,7 +34,7 @@ Recorded recorded(const Machine& machine) {
 }
 
 TEST(BlockMotion, DisplacementIsThatOfTheSimulation) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   const Recorded one = recorded(machine);
   const BlockMotion block = block_motion(one.motion, one.cycles, machine.load / machine.rig.stiffness);
   ASSERT_EQ(block.cycles, 3u);
@@ -57,7 +57,7 @@ TEST(BlockMotion, DisplacementIsThatOfTheSimulation) {
 }
 
 TEST(BlockMotion, IsEmptyWhereNoCyclesAreWhole) {
-  const Machine machine = tribofit::testing::published_machine();
+  const Machine machine = tribofit::studies::published_machine();
   const Recorded one = recorded(machine);
   EXPECT_EQ(block_motion(one.motion, one.cycles, 1, 1000).size(), 0u);
   Segmentation sliding = one.cycles;

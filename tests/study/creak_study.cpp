@@ -12,7 +12,7 @@
 #include "tribofit/study/sweep.hpp"
 #include "tribofit/study/vary.hpp"
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 namespace {
 
@@ -164,4 +164,4 @@ std::vector<Map> maps_of_creak(const Machine& machine, std::size_t count) {
   return maps;
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

@@ -14,8 +14,8 @@
 namespace tribofit {
 namespace {
 
-using testing::published_machine;
-using testing::uradnicek_machine;
+using studies::published_machine;
+using studies::uradnicek_machine;
 
 TEST(CriticalSpeed, LinearOneOfTheExponentialLawHasAClosedForm) {
   // c = N (mu_s - mu_k) alpha exp(-alpha v).

@@ -3,7 +3,7 @@
 #include "tribofit/oscillator/machine.hpp"
 #include "tribofit/oscillator/presets.hpp"
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 /// The 15 mm test of [D] with a rig of ours.
 inline Machine published_machine(Law law = Law(ExponentialLaw{})) {
@@ -18,4 +18,4 @@ inline Machine uradnicek_machine(double decay, double velocity) {
   return {{1000, 200, 5000}, FrictionModel(ExponentialLaw{}), {0.6, 0.1, decay}, 10, kRadius, velocity / kRadius};
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

@@ -13,7 +13,7 @@
 // What of the studies of [U], [C] and [D] can be computed anew: the numbers that stand in the README, printed by
 // scripts/reproduce-studies and asserted by published_studies_test.cpp. SI throughout.
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 // ---- [U]
 
@@ -134,4 +134,4 @@ CalibratedRadius calibrated_radius(const PublishedRadius& published, Law law, do
 /// middle of its bin); NaN where none does [Hz].
 std::array<double, 4> frequencies_with_published_ratios(Law law);
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

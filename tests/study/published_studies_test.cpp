@@ -14,7 +14,7 @@
 // What of [U], [C] and [D] reproduces and what does not. Published numbers are marked as such; the others follow from
 // the equations, which are written out.
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 namespace {
 
 // ---- [U]
@@ -260,4 +260,4 @@ TEST(Radii, PublishedRatiosOfLinesLieWithinTheBins) {
 }
 
 }  // namespace
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

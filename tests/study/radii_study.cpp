@@ -9,7 +9,7 @@
 #include "roots.hpp"
 #include "tribofit/oscillator/presets.hpp"
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::array<double, 4> frequencies_with_published_ratios(Law law) {
   return found;
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

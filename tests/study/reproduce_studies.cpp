@@ -12,7 +12,7 @@
 #include "tribofit/study/critical_speed.hpp"
 #include "tribofit/study/vary.hpp"
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 namespace {
 
 constexpr double kMm = 1e-3, kPerMm = 1e3;
@@ -220,12 +220,12 @@ void radii() {
 }
 
 }  // namespace
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies
 
 int main(int argc, char** argv) {
   const bool maps = argc > 1 && std::string(argv[1]) == "--maps";
-  tribofit::testing::sharpness_table();
-  tribofit::testing::uradnicek();
-  tribofit::testing::creak(maps);
-  tribofit::testing::radii();
+  tribofit::studies::sharpness_table();
+  tribofit::studies::uradnicek();
+  tribofit::studies::creak(maps);
+  tribofit::studies::radii();
 }

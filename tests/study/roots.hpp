@@ -1,6 +1,6 @@
 #pragma once
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 /// Zero of f between low and high, where its sign changes, by bisection until the bracket is `tolerance` of its place.
 template <class F>
@@ -13,4 +13,4 @@ double root_of(F&& f, double low, double high, double tolerance) {
   return 0.5 * (low + high);
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

@@ -14,8 +14,8 @@
 namespace tribofit {
 namespace {
 
-using testing::published_machine;
-using testing::uradnicek_machine;
+using studies::published_machine;
+using studies::uradnicek_machine;
 
 TEST(SteadySliding, IsLostWhereDampingNoLongerOutweighsTheFallOfFriction) {
   // m s^2 + (c + N mu'(v)) s + k = 0: the real part is -(c + N mu')/(2 m), to the last figures.

@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 /// [U]'s machine at 0.5 mm/s, integrated by the classical Runge-Kutta method in small equal steps. It shares nothing
 /// with the library, so that a frequency the library was solved for can be wrong here.
@@ -61,4 +61,4 @@ inline double frequency_of_rigid(SmallSteps block, double mu_s) {
   return 1 / (slip - (1 - part) * block.step + (break_away - restick) / block.velocity);
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies

@@ -15,9 +15,9 @@
 namespace tribofit {
 namespace {
 
+using studies::published_machine;
+using studies::uradnicek_machine;
 using ::testing::HasSubstr;
-using testing::published_machine;
-using testing::uradnicek_machine;
 
 TEST(Response, EveryHarmonicObeysTheForceBalanceOfTheRig) {
   // Of the settled motion, m x'' + c x' + k x = F(t) holds line by line: X = F/|k - m w^2 + i c w|.

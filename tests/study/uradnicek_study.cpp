@@ -11,7 +11,7 @@
 #include "tribofit/statistics/spectrum.hpp"
 #include "tribofit/study/critical_speed.hpp"
 
-namespace tribofit::testing {
+namespace tribofit::studies {
 
 namespace {
 
@@ -110,4 +110,4 @@ Lines lines_of(const Machine& machine, const SettleOptions& options) {
   return out;
 }
 
-}  // namespace tribofit::testing
+}  // namespace tribofit::studies
