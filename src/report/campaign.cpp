@@ -63,11 +63,6 @@ Json missing_json(const MissingRun& run) {
 /// A row of summary.csv, values under the names of their columns: what every run has, further conditions, the analysis.
 using SummaryRow = std::array<Json, 3>;
 
-/// A column of a further condition; one that is called like a column of ours has a longer name.
-std::string column_of(const OtherCondition& other, const Json& fixed) {
-  return fixed.contains(other.name) ? "condition " + other.name : other.name;
-}
-
 void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) {
   const std::string of_fit = fit.law + "_" + fit.protocol + "_";
   const auto add = [&](const std::string& name, const std::string& unit, double value) {
@@ -98,7 +93,7 @@ SummaryRow summary_row(const RunResult& result) {
   auto& [fixed, conditions, analysis] = row;
   add_members(fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
               c.speed.value / kRpm, "load_N", c.load.value, "repeat", repeat_json(run));
-  for (const OtherCondition& other : run.others) conditions[column_of(other, fixed)] = other.value;
+  for (const OtherCondition& other : run.others) conditions[other.name] = other.value;
   if (!result.was_read()) return row;
   analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
   analysis.update(measures_json(result));
@@ -107,17 +102,27 @@ SummaryRow summary_row(const RunResult& result) {
   return row;
 }
 
-/// The columns of summary.csv: those that any run has, in the order in which they are met.
+/// The columns of summary.csv: those that any run has, in the order in which they are met. A further condition that is
+/// called like a column of ours has a longer name.
 class SummaryColumns {
  public:
   void declare(const SummaryRow& row) {
     for (std::size_t part = 0; part < row.size(); ++part) {
       for (const auto& [name, value] : row[part].items()) {
-        if (known_.insert(name).second) names_[part].push_back(name);
+        if (known_[part].insert(name).second) names_[part].push_back(name);
       }
     }
   }
-  std::string header() const { return csv_line(Json(names_)); }
+  std::string header() const {
+    const auto& [fixed, conditions, analysis] = known_;
+    std::vector<std::string> header = names_[0];
+    for (const std::string& name : names_[1]) {
+      const bool is_ours = fixed.contains(name) || analysis.contains(name);
+      header.push_back(is_ours ? "condition " + name : name);
+    }
+    header.insert(header.end(), names_[2].begin(), names_[2].end());
+    return csv_line(Json(header));
+  }
   std::string line(const SummaryRow& row) const {
     CsvLine line;
     for (std::size_t part = 0; part < row.size(); ++part) {
@@ -128,7 +133,7 @@ class SummaryColumns {
 
  private:
   std::array<std::vector<std::string>, 3> names_;
-  std::set<std::string> known_;
+  std::array<std::set<std::string>, 3> known_;
 };
 
 std::string error_line(const RunRecord& run) {

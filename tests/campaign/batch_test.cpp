@@ -1,6 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "runs.hpp"
 
 namespace {
@@ -8,6 +14,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+
+/// Cells of a line of CSV without quotes.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line + ",");
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  return cells;
+}
 
 class Batch : public ::testing::Test {
  protected:
@@ -31,6 +45,22 @@ TEST_F(Batch, WritesAFileARunAndASummaryInTheOrderOfTheManifest) {
   EXPECT_EQ(summary["runs"].size(), 5u);
   EXPECT_EQ(summary["runs"][1]["conditions"]["radius_mm"], 15.0);
   EXPECT_EQ(json_in(shop_ / "runs-results/a1.json")["trace"]["path"], "a1.csv");
+}
+
+TEST_F(Batch, AColumnOfTheManifestCalledLikeOneOfOursHidesNone) {
+  shop_.write("runs/manifest.csv", "file,radius,load,repeat,status,cycles\na1.csv,15mm,50N,0,mine,many\n");
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  const auto lines = lines_of(contents(shop_ / "res/summary.csv"));
+  ASSERT_GE(lines.size(), 2u);
+  const auto header = cells_of(lines[0]), cells = cells_of(lines[1]);
+  const auto cell = [&](const char* name) {
+    const auto found = std::find(header.begin(), header.end(), name);
+    return found == header.end() ? "none" : cells.at(static_cast<std::size_t>(found - header.begin()));
+  };
+  EXPECT_EQ(cell("status"), "ok");
+  EXPECT_EQ(cell("condition status"), "mine");
+  EXPECT_EQ(cell("condition cycles"), "many");
+  EXPECT_GT(std::atoi(cell("cycles").c_str()), 3);
 }
 
 TEST_F(Batch, EveryNumberOfThreadsGivesTheSameBytes) {
