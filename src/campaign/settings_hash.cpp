@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "ingest/content_hash.hpp"
 #include "tribofit/campaign/batch.hpp"
@@ -61,23 +58,6 @@ std::string settings_hash(const Run& run, const std::string& hash_of_options) {
   }
   text.add_all(run.warnings);
   return text.hash();
-}
-
-std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
-  using Json = nlohmann::ordered_json;
-  const std::string hash = options_hash(options);
-  std::error_code ignored;
-  const Json folder =
-      campaign.folder.empty() ? Json() : Json(std::filesystem::weakly_canonical(campaign.folder, ignored).string());
-  Json runs = Json::array();
-  for (const Run& run : campaign.runs) {
-    runs.push_back({{"name", run.name}, {"file", run.file}, {"settings", settings_hash(run, hash)}});
-  }
-  const Json json = {{"tool", {{"name", "tribofit"}, {"version", version}}},
-                     {"folder", folder},
-                     {"runs", std::move(runs)},
-                     {"problems", campaign.problems}};
-  return sealed(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace tribofit
