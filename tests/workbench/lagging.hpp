@@ -1,18 +1,25 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "cli/command.hpp"
 #include "tribofit/workbench/session.hpp"
 
 namespace workbench_test {
 
-/// A trace in which friction follows v_r with a delay of 4 ms, made by the command under test.
+/// A trace in which friction follows v_r with a delay of 4 ms, made by the command under test; the recorded example
+/// where a program has no command (tests/sanitized).
 struct Lagging {
   Workshop workshop;
   std::string path;
 
   explicit Lagging(const std::string& duration = "8s") : path((workshop / "lag.csv").string()) {
+    if (std::string_view(TRIBOFIT_IDENTIFY).empty()) {
+      std::filesystem::copy_file(TRIBOFIT_SOURCE_DIR "/data/example.csv", path);
+      return;
+    }
     workshop.identify("simulate --radius 15mm --speed 4rpm --duration " + duration +
                       " --rate 10kHz --effect frictional-lag:tau=4ms --noise-mu 0.003 --noise-v 0.02mm/s --seed 7 "
                       "--out lag.csv");
