@@ -16,7 +16,13 @@ bool bends(const DiagnosisContext& context, const Trial& trial) {
 
 }  // namespace
 
-std::vector<Law> base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects) {
+CompetingLaws base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects) {
+  CompetingLaws out;
+  const bool chosen = given.size() == 1;
+  for (const Law& law : law_catalogue()) {
+    const bool known = std::find(given.begin(), given.end(), law) != given.end();
+    if (!chosen && !known && !constant_in_slip(law)) out.others.push_back(law);
+  }
   const bool sticks = std::any_of(records.begin(), records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;
   });
@@ -24,7 +30,8 @@ std::vector<Law> base_laws(std::span<const Record> records, std::vector<Law> giv
   const bool possible = std::all_of(effects.begin(), effects.end(),
                                     [](const Effect& effect) { return obstacle_on(CoulombLaw{}, effect).empty(); });
   if (given.size() > 1 && !sticks && !present && possible) given.push_back(CoulombLaw{});
-  return given;
+  out.first = std::move(given);
+  return out;
 }
 
 std::size_t reported_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders) {

@@ -9,10 +9,10 @@
 namespace tribofit::diagnosis {
 
 /// Base laws to climb from. Where a choice is given and no record ever sticks, Coulomb friction is one more: nothing in
-/// such records shows a level of break-away, and a drop from it must be found in sliding alone.
+/// such records shows a level of break-away, and a drop from it must be found in sliding alone. The other laws of the
+/// list then compete too.
 /// effects: part of the model from the start; the law must be one that they can act on.
-std::vector<Law> base_laws(std::span<const Record> records, std::vector<Law> given,
-                           std::span<const Effect> effects = {});
+CompetingLaws base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects = {});
 
 /// The ladder to tell: see better_ladder. Where Coulomb friction is among them, a law that only rises in a straight
 /// line does not compete: it is Coulomb friction with something more, and the ladder from there says what.

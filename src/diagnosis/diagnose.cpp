@@ -98,7 +98,7 @@ Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
 }
 
 /// The ladder to report, of those from every base law.
-Ladder reported_of(const DiagnosisContext& context, const std::vector<Law>& laws, const std::vector<Candidate>& all,
+Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, const std::vector<Candidate>& all,
                    const DiagnosisOptions& options, ProgressReporter& progress) {
   std::vector<Candidate> from_the_start;
   for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});

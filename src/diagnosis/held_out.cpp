@@ -140,23 +140,45 @@ std::vector<double> held_out_squares(const Linearised& model, const Blocks& bloc
   return out;
 }
 
-double design_effect(const Linearised& model, std::size_t k, double noise) {
-  if (!model.free[k] || !(noise > 0)) return 1;
+namespace {
+
+/// Rows of a cycle as all friction is raised alike.
+Eigen::VectorXd level_rows(const Linearised& model, std::size_t cycle) {
+  return model.rows[cycle].leftCols(model.level.size()) * model.level;
+}
+
+}  // namespace
+
+SlowNoise slow_noise_of(const Linearised& model) {
+  if (model.level.size() == 0) return {};
+  std::vector<double> levels;
+  for (std::size_t c = 0; c < model.rows.size(); ++c) {
+    const Eigen::VectorXd shape = level_rows(model, c);
+    const double norm = shape.squaredNorm();
+    levels.push_back(norm > 0 ? shape.dot(model.rows[c].col(model.rows[c].cols() - 1)) / norm : 0);
+  }
+  return slow_noise(levels);
+}
+
+DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow) {
+  if (!model.free[k] || !(noise > 0)) return {};
   const auto index = free_indices(model);
   const auto at = std::find(index.begin(), index.end(), static_cast<Eigen::Index>(k)) - index.begin();
   const Normal all = normal_of(model, index, {});
   const Eigen::MatrixXd basis = whitener(all.curvature);
   const Eigen::RowVectorXd direction = basis.row(at) * basis.transpose();  // row of the inverse curvature
   const double independent = noise * direction(at);
-  if (!(independent > 0)) return 1;
-  std::vector<double> influences;
-  for (const Eigen::MatrixXd& rows : model.rows) {
-    const Eigen::MatrixXd jacobian = rows(Eigen::all, index);
+  if (!(independent > 0)) return {};
+  std::vector<double> influences, of_level;
+  for (std::size_t c = 0; c < model.rows.size(); ++c) {
+    const Eigen::MatrixXd jacobian = model.rows[c](Eigen::all, index);
+    const Eigen::RowVectorXd pull = direction * jacobian.transpose();
     influences.push_back(static_cast<double>(model.rows.size()) *
-                         (direction * (jacobian.transpose() * rows.col(rows.cols() - 1)))(0));
+                         pull.dot(model.rows[c].col(model.rows[c].cols() - 1)));
+    if (!slow.covariance.empty()) of_level.push_back(pull.dot(level_rows(model, c)));
   }
   const double error = standard_error_of_mean(influences).std_error;
-  return std::max(1.0, error * error / independent);
+  return {std::max(1.0, error * error / independent), 1 + slow.variance_of_sum(of_level) / independent};
 }
 
 double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom) {

@@ -9,6 +9,7 @@
 #include "fit/model_residuals.hpp"
 #include "limits.hpp"
 #include "tribofit/fit/observations.hpp"
+#include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -36,6 +37,7 @@ class Blocks {
 struct Linearised {
   std::vector<Eigen::MatrixXd> rows;  ///< of each cycle
   std::vector<bool> free;             ///< parameters that may move
+  Eigen::VectorXd level = {};         ///< change of the parameters that raises all friction alike; empty: none known
 
   bool finite() const { return !rows.empty(); }
   std::size_t parameters() const { return free.size(); }
@@ -56,9 +58,16 @@ std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd
 /// Whitened squares of each cycle, with the parameters that the other blocks suggest.
 std::vector<double> held_out_squares(const Linearised& model, const Blocks& blocks);
 
-/// How much larger the variance of parameter k is than independent residuals of one variance would make it: what
-/// correlation within and between cycles does. At least 1. `noise`: variance of a residual.
-double design_effect(const Linearised& model, std::size_t k, double noise);
+/// What the level of friction does slowly from cycle to cycle beside the model.
+SlowNoise slow_noise_of(const Linearised& model);
+
+/// How much larger the variance of a parameter is than independent residuals of one variance would make it.
+struct DesignEffect {
+  double of_cycles = 1;  ///< correlation within and between cycles, as the cycles themselves show it. At least 1
+  double of_slow = 1;    ///< the same where all correlation is that of slow noise. At least 1
+};
+/// Of parameter k. noise: variance of a residual.
+DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow);
 
 /// p-value of a fall of the squares by `fall` for `parameters` more parameters, when independent residuals of variance
 /// `noise` count for 1/design_effect each and the variance is known with `freedom` degrees of freedom (F test).

@@ -55,16 +55,21 @@ bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Can
 
 /// The larger of the design effects of the free parameters of an effect, and how many of them there are.
 struct Added {
-  double design_effect = 1;
+  DesignEffect design;
   std::size_t free = 0;
+
+  double design_effect() const { return std::max(design.of_cycles, design.of_slow); }
 };
 
 Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, double noise) {
   Added out;
+  const SlowNoise slow = slow_noise_of(linear);
   for (std::size_t k = offset; k < offset + count; ++k) {
     if (!linear.free[k]) continue;
     ++out.free;
-    out.design_effect = std::max(out.design_effect, design_effect(linear, k, noise));
+    const DesignEffect own = design_effect(linear, k, noise, slow);
+    out.design.of_cycles = std::max(out.design.of_cycles, own.of_cycles);
+    out.design.of_slow = std::max(out.design.of_slow, own.of_slow);
   }
   out.free = std::max<std::size_t>(1, out.free);
   return out;
@@ -95,7 +100,7 @@ double level_p_value(const Level& level, const Trial& poorer, const Trial& trial
   const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
   const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
-  return fall_p_value(fall, added.free, noise, added.design_effect, freedom);
+  return fall_p_value(fall, added.free, noise, added.design_effect(), freedom);
 }
 
 }  // namespace
@@ -109,13 +114,14 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   if (!trial.usable) return out;
   const double noise = noise_of(level, trial);
   const Added added = added_by(trial.linear, trial.model.offset_of(info.key), info.parameters.size(), noise);
-  out.design_effect = added.design_effect;
+  out.design_effect = added.design_effect();
   // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
   // line stands among as many frequencies as it likes.
   const auto cycles = static_cast<double>(trial.held_out.size());
   const bool few = out.design_effect > limits::kCorrelated && !info.needs_full_resolution;
-  const double freedom = few ? few_frequencies(cycles) : std::max(3.0, cycles / 3);
-  const double of_squares = fall_p_value(poorer.squares - trial.squares, added.free, noise, out.design_effect, freedom);
+  const double known = std::max(3.0, cycles / 3), freedom = few ? few_frequencies(cycles) : known;
+  const double fall = poorer.squares - trial.squares;
+  const double of_squares = fall_p_value(fall, added.free, noise, out.design_effect, freedom);
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = context.floor_squares(trial.whitening);
   out.size = std::max(out.fall / context.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
@@ -125,7 +131,9 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const auto breaks = std::count_if(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
   const bool has_level = info.needs.stick_time && breaks >= limits::kBreakAwaysOfStickSlip;
   // A line is one among many frequencies: its cycles are no evidence beside that of its own frequency.
-  const double of_pairs = info.needs_full_resolution ? 1 : paired_p_value(poorer, trial);
+  // Slow noise is predicted by what changes slowly, on held-out cycles too: their losses are no evidence against it.
+  const double of_slow = fall_p_value(fall, added.free, noise, added.design.of_slow, known);
+  const double of_pairs = info.needs_full_resolution ? 1 : std::max(of_slow, paired_p_value(poorer, trial));
   const double of_level = has_level ? level_p_value(level, poorer, trial, info, floor) : 1;
   const double views = 1 + (info.needs_full_resolution ? 0 : 1) + (has_level ? 1 : 0);
   const double of_cycles = std::min(of_squares, of_pairs);

@@ -1,8 +1,10 @@
 #include "ladder.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "fit/starts.hpp"
 #include "ladder_steps.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -76,11 +78,25 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
   return ladder;
 }
 
+/// By how much slow noise makes two shapes of friction differ more than independent noise would: the largest design
+/// effect of what no change of level can do.
+double slow_design(const Level& level, const Trial& trial) {
+  const SlowNoise slow = slow_noise_of(trial.linear);
+  if (slow.covariance.empty()) return 1;
+  double largest = 1;
+  for (std::size_t k = 0; k < trial.p.size(); ++k) {
+    if (trial.linear.level(static_cast<Eigen::Index>(k)) != 0) continue;
+    largest = std::max(largest, design_effect(trial.linear, k, noise_of(level, trial), slow).of_slow);
+  }
+  return largest;
+}
+
 /// The second predicts held-out cycles better, or as well with fewer parameters.
-bool is_better(const DiagnosisContext& context, const Trial& first, const Trial& second) {
+bool is_better(const DiagnosisContext& context, const Level& level, const Trial& first, const Trial& second) {
   if (!second.usable || !first.usable) return second.usable;
   const double difference = first.held_out_squares - second.held_out_squares;
-  const double noise = std::min(noise_of(context.fine, first), noise_of(context.fine, second));
+  const double noise = std::min(noise_of(level, first), noise_of(level, second)) *
+                       slow_design(level, first.p.size() > second.p.size() ? first : second);
   // A longer ladder must earn every rung that the other does without.
   const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
   const double least = std::max(limits::kDistinguishableSize, limits::kSizeOfParameter * static_cast<double>(more)) *
@@ -93,39 +109,92 @@ bool is_better(const DiagnosisContext& context, const Trial& first, const Trial&
 bool is_beaten(const DiagnosisContext& context, const Ladder& ladder, const std::vector<Ladder>& all) {
   return std::any_of(all.begin(), all.end(), [&](const Ladder& other) {
     return other.finished && other.top().usable && largest_fall(other.steps.back()) == 0 &&
-           ladder.steps.size() >= other.steps.size() && !is_better(context, other.top(), ladder.top());
+           ladder.steps.size() >= other.steps.size() && !is_better(context, context.fine, other.top(), ladder.top());
   });
+}
+
+/// The ladder that predicts best of those that are still worth a rung; none left: nullptr.
+Ladder* next_to_climb(const DiagnosisContext& context, std::vector<Ladder>& ladders, bool all_matter) {
+  Ladder* next = nullptr;
+  for (Ladder& ladder : ladders) {
+    if (ladder.finished || (!all_matter && is_beaten(context, ladder, ladders))) continue;
+    if (next == nullptr || ladder.top().held_out_squares < next->top().held_out_squares) next = &ladder;
+  }
+  return next;
+}
+
+/// Another law with the effects of a trial but one (npos: with all of them), at low resolution.
+Trial try_other_law(const DiagnosisContext& context, const Law& law, const Trial& known, std::size_t without) {
+  std::vector<Effect> effects(known.model.effects().begin(), known.model.effects().end());
+  if (without < effects.size()) effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(without));
+  if (!std::all_of(effects.begin(), effects.end(), [&](const Effect& e) { return obstacle_on(law, e).empty(); }))
+    return {};
+  const FrictionModel model(law, std::move(effects));
+  const Observations& observations = context.coarse.observations;
+  std::vector<double> start = start_from_data(model, observations, bounds_of(model, observations));
+  for (std::size_t k = model.base_count(); k < start.size(); ++k) {
+    for (std::size_t i = known.model.base_count(); i < known.p.size(); ++i) {
+      const bool same = model.parameters()[k].full_name() == known.model.parameters()[i].full_name();
+      if (same) start[k] = known.p[i];
+    }
+  }
+  return try_model(context, context.coarse, model, std::move(start));
+}
+
+/// A law does without one of the effects of a ladder what that ladder's law does with it, or better as it stands.
+bool does_as_well(const DiagnosisContext& context, const Law& law, const Ladder& ladder) {
+  const Trial& top = ladder.steps.back().coarse;
+  if (!top.usable) return false;
+  if (ladder.steps.size() == 1)
+    return is_better(context, context.coarse, top, try_other_law(context, law, top, std::string::npos));
+  for (std::size_t e = 0; e < top.model.effects().size(); ++e) {
+    const Trial other = try_other_law(context, law, top, e);
+    if (other.usable && !is_better(context, context.coarse, other, top)) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<Law>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& least, int most_effects,
                           const std::function<void(std::string_view, double)>& progress) {
-  std::vector<Ladder> ladders(laws.size());
-  run_tasks(laws.size(), context.threads,
-            [&](std::size_t k) { ladders[k] = start_ladder(context, laws[k], from_the_start); });
-  // Beside Coulomb friction the better ladder need not be the one to report (see reported_ladder): all are climbed.
-  const bool all_matter = std::any_of(laws.begin(), laws.end(), constant_in_slip);
-  for (double rounds = 0;; ++rounds) {
-    Ladder* next = nullptr;
-    for (Ladder& ladder : ladders) {
-      if (ladder.finished || (!all_matter && is_beaten(context, ladder, ladders))) continue;
-      if (next == nullptr || ladder.top().held_out_squares < next->top().held_out_squares) next = &ladder;
+  std::vector<Ladder> ladders;
+  double rounds = 0;
+  const auto start_all = [&](const std::vector<Law>& from) {
+    std::vector<Ladder> started(from.size());
+    run_tasks(from.size(), context.threads,
+              [&](std::size_t k) { started[k] = start_ladder(context, from[k], from_the_start); });
+    std::move(started.begin(), started.end(), std::back_inserter(ladders));
+  };
+  const auto climb_all = [&] {
+    // Beside Coulomb friction the better ladder need not be the one to report (see reported_ladder): all are climbed.
+    const bool all_matter =
+        std::any_of(ladders.begin(), ladders.end(), [](const Ladder& ladder) { return constant_in_slip(ladder.law); });
+    while (Ladder* next = next_to_climb(context, ladders, all_matter)) {
+      if (progress) progress(next->top().model.name(), rounds / (rounds + 3));
+      ++rounds;
+      extend(context, *next, candidates, least, most_effects);
+      if (next->finished) finish(context, *next, candidates, least);
     }
-    if (next == nullptr) break;
-    if (progress) progress(next->top().model.name(), rounds / (rounds + 3));
-    extend(context, *next, candidates, least, most_effects);
-    if (next->finished) finish(context, *next, candidates, least);
+  };
+  start_all(laws.first);
+  climb_all();
+  const Ladder& best = ladders[better_ladder(context, ladders)];
+  std::vector<Law> instead;
+  for (const Law& law : laws.others) {
+    if (does_as_well(context, law, best)) instead.push_back(law);
   }
+  start_all(instead);
+  climb_all();
   return ladders;
 }
 
 std::size_t better_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < ladders.size(); ++k) {
-    if (is_better(context, ladders[best].top(), ladders[k].top())) best = k;
+    if (is_better(context, context.fine, ladders[best].top(), ladders[k].top())) best = k;
   }
   return best;
 }

@@ -33,12 +33,18 @@ struct Ladder {
   const Trial& top() const { return steps.back().trial; }
 };
 
+/// Laws to climb from.
+struct CompetingLaws {
+  std::vector<Law> first;
+  std::vector<Law> others = {};  ///< climbed from where, with an effect less, they do as well as the best of the first
+};
+
 /// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.
 ///
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
-std::vector<Ladder> climb(const DiagnosisContext& context, const std::vector<Law>& laws,
+std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& laws,
                           const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
                           const Limits& least, int most_effects,
                           const std::function<void(std::string_view, double)>& progress = {});

@@ -101,6 +101,7 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   const auto width = static_cast<std::size_t>(wide.rows[0].cols() - 1), own = trial.p.size();
   wide.free = trial.linear.free;
   wide.free.resize(width, true);
+  wide.level = trial.linear.level;
   const Eigen::VectorXd step = gauss_newton_step(wide);
   const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
   const double after = sum(squares_after(wide, step));
@@ -115,7 +116,11 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
   const double noise = (after - trial.stick.left) / level.values;
   double design = 1;
-  for (std::size_t k = own; k < width; ++k) design = std::max(design, design_effect(wide, k, noise));
+  const SlowNoise slow = slow_noise_of(wide);
+  for (std::size_t k = own; k < width; ++k) {
+    const DesignEffect of_column = design_effect(wide, k, noise, slow);
+    design = std::max({design, of_column.of_cycles, of_column.of_slow});
+  }
   const double freedom = few_frequencies(static_cast<double>(wide.rows.size()));
   probe.p_value = std::min(1.0, places * fall_p_value(before - after, width - own, noise, design, freedom));
   return step.tail(static_cast<Eigen::Index>(width - own));

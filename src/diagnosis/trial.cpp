@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "fit/influence.hpp"
 #include "fit/starts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/solver.hpp"
@@ -60,6 +61,7 @@ double judge(const DiagnosisContext& context, const ModelResiduals& residuals, c
     trial.at_bound[k] = trial.p[k] <= bounds.lower[k] + 1e-3 * tolerance || trial.p[k] >= bounds.upper[k] - tolerance;
     trial.linear.free[k] = !trial.at_bound[k];
   }
+  trial.linear.level = level_change(trial.model, trial.p);
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
   trial.held_out = held_out_squares(trial.linear, context.blocks);
   pay_for_scatter(trial.whitening, squares);
@@ -85,6 +87,7 @@ void judge_plainly(const Blocks& blocks, const ModelResiduals& residuals, double
   Linearised& plain = trial.plain;
   plain.rows = residuals.white_rows(trial.p.data());
   plain.free = trial.linear.free;
+  plain.level = trial.linear.level;
   const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(trial.p.size()));
   trial.plain_squares = sum(squares_after(plain, stay)) - off;
   const Eigen::VectorXd step = gauss_newton_step(plain);

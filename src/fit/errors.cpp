@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tribofit/friction/evaluate.hpp"
 
@@ -49,6 +50,11 @@ Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   return slip;
 }
 
+std::size_t noise_stretch(std::size_t samples) {
+  constexpr std::size_t kFewest = 12, kMost = 200;
+  return std::clamp(samples / 4, kFewest, kMost);
+}
+
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations) {
   SampleErrors out;
@@ -61,10 +67,13 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
     mu.resize(slip.size());
     evaluate<double>(model, p.data(), slip, slip.velocity, mu);
     const std::span<const double> measured = record.friction(range);
-    double squares = 0;
+    double squares = 0, stretch = 0;
+    const std::size_t length = noise_stretch(mu.size());
     for (std::size_t i = 0; i < mu.size(); ++i) {
       const double r = measured[i] - mu[i];
       squares += r * r;
+      stretch += r;
+      if ((i + 1) % length == 0) out.levels.push_back(std::exchange(stretch, 0) / static_cast<double>(length));
       const double level = measured[i] * range.direction;
       sum += level;
       sum_squares += level * level;

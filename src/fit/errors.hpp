@@ -27,12 +27,16 @@ class FullRecord {
   mutable std::vector<double> acceleration_, load_;  // of the slip asked for last
 };
 
+/// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
+std::size_t noise_stretch(std::size_t samples);
+
 /// What a model leaves on every sample.
 struct SampleErrors {
   ErrorFigures figures;         ///< held_out_rmse not set
   std::vector<double> squares;  ///< sum of squares of each cycle, break-away included
   std::vector<double> counts;   ///< residuals of each cycle
   double constant_rmse = 0;     ///< what a constant |friction| would leave
+  std::vector<double> levels;   ///< mean residual of each stretch of noise_stretch() samples, in order
 };
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations);

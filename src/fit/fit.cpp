@@ -16,6 +16,7 @@
 #include "profile.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
+#include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit {
 
@@ -89,6 +90,17 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
 }
 
+/// Standard deviation of 1/f noise in what the model leaves; 0 where that is of another kind, which may be a cause that
+/// was not recorded.
+double flicker_of(const std::vector<double>& levels) {
+  const SlowNoise slow = slow_noise(levels);
+  if (!slow.is_flicker) return 0;
+  // What a fit takes away at low frequencies is not left.
+  double squares = 0;
+  for (const double level : levels) squares += level * level / static_cast<double>(levels.size());
+  return std::sqrt(std::min(slow.variance_within(), squares));
+}
+
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
@@ -98,7 +110,11 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   const double scatter = std::pow(floor.scatter, 2) * sensitivity / std::max(1.0, count);
-  floor.rmse = std::sqrt(std::pow(floor.noise, 2) + scatter);
+  const bool sticks = std::any_of(context.records.begin(), context.records.end(), [](const Record& record) {
+    return record.segmentation->kind != MotionKind::always_slipping;
+  });
+  if (!sticks) floor.wander = flicker_of(errors.levels);
+  floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.wander, 2) + scatter);
   set_floor(floor, fit);
 }
 

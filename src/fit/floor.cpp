@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "errors.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -68,7 +69,7 @@ std::vector<Remainder> slip_residuals(const Motion& motion, const Segmentation& 
   const bool sticks = segmentation.kind == MotionKind::stick_slip;
   for (const Cycle& cycle : segmentation.cycles) {
     if (sticks && !segmentation.is_selected(cycle)) continue;
-    const std::size_t stretch = std::clamp<std::size_t>(cycle.slip.size() / 4, 12, kStretch);
+    const std::size_t stretch = noise_stretch(cycle.slip.size());
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
       if (segmentation.is_selected(SampleRange{i, i + stretch})) {
         parts.push_back(about_parabola(motion.friction, i, i + stretch));

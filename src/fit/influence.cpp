@@ -1,7 +1,9 @@
 #include "influence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
@@ -131,7 +133,44 @@ std::vector<std::vector<std::size_t>> undetermined(const Eigen::MatrixXd& total,
   return groups;
 }
 
-Spread spread_of(const Eigen::MatrixXd& influence) {
+Eigen::VectorXd level_change(const FrictionModel& model, const std::vector<double>& p) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
+  for (std::size_t k = 0; k < model.base_count(); ++k) {
+    if (model.parameters()[k].parameter.scales_with_friction) change(static_cast<Eigen::Index>(k)) = p[k];
+  }
+  return change;
+}
+
+SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free) {
+  SlowLevels out;
+  const std::size_t cycles = equations.curvature.size();
+  out.influence.resize(static_cast<Eigen::Index>(cycles), level.size());
+  const Eigen::MatrixXd inverse = inverse_over(equations.total, free);
+  std::vector<double> levels;
+  for (std::size_t c = 0; c < cycles; ++c) {
+    const Eigen::VectorXd pull = equations.curvature[c] * level;
+    const double norm = level.dot(pull);
+    levels.push_back(norm > 0 ? level.dot(equations.gradient[c]) / norm : 0);
+    out.influence.row(static_cast<Eigen::Index>(c)) = (inverse * pull).transpose();
+  }
+  out.noise = slow_noise(levels);
+  return out;
+}
+
+namespace {
+
+/// Standard error of a parameter where scatter is independent from cycle to cycle but for slow noise of the level.
+double beside_slow_noise(const Eigen::VectorXd& influence, const SlowNoise& noise, const Eigen::VectorXd& of_level) {
+  const auto n = static_cast<double>(influence.size());
+  const double independent = (influence.array() - influence.mean()).square().sum() / (n * n);
+  const double own = noise.covariance[0] * of_level.squaredNorm();  // of which `independent` knows already
+  const std::span weights(of_level.data(), static_cast<std::size_t>(of_level.size()));
+  return std::sqrt(std::max(0.0, independent + noise.variance_of_sum(weights) - own));
+}
+
+}  // namespace
+
+Spread spread_of(const Eigen::MatrixXd& influence, const SlowLevels& slow) {
   const Eigen::Index n = influence.cols();
   const Eigen::Index cycles = influence.rows();
   Spread spread;
@@ -141,6 +180,8 @@ Spread spread_of(const Eigen::MatrixXd& influence) {
     const Eigen::VectorXd column = influence.col(k);
     const MeanError error = standard_error_of_mean({column.data(), static_cast<std::size_t>(cycles)});
     spread.std_error(k) = error.std_error;
+    if (!slow.noise.covariance.empty())
+      spread.std_error(k) = std::max(error.std_error, beside_slow_noise(column, slow.noise, slow.influence.col(k)));
     spread.degrees_of_freedom(k) = error.degrees_of_freedom;
   }
   const Eigen::MatrixXd centred = influence.rowwise() - influence.colwise().mean();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model_residuals.hpp"
+#include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit {
 
@@ -35,12 +36,23 @@ Eigen::MatrixXd influence(const NormalEquations& equations, const std::vector<bo
 /// groups. One parameter of each group is taken out of `free`, so that the others have errors beside it.
 std::vector<std::vector<std::size_t>> undetermined(const Eigen::MatrixXd& total, std::vector<bool>& free);
 
-/// What the influences say of the parameters.
+/// The change of the parameters of a model by which all friction rises in proportion.
+Eigen::VectorXd level_change(const FrictionModel& model, const std::vector<double>& p);
+
+/// What friction does slowly from cycle to cycle beside a fit, and how it moves the parameters.
+struct SlowLevels {
+  SlowNoise noise;            ///< of the levels, in parts of friction
+  Eigen::MatrixXd influence;  ///< of the level of each cycle on each parameter: cycles x parameters
+};
+SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free);
+
+/// What the influences say of the parameters. An error is no smaller than slow noise makes it beside scatter that is
+/// independent from cycle to cycle.
 struct Spread {
   Eigen::VectorXd std_error, degrees_of_freedom;
   Eigen::MatrixXd covariance;
 };
-Spread spread_of(const Eigen::MatrixXd& influence);
+Spread spread_of(const Eigen::MatrixXd& influence, const SlowLevels& slow = {});
 
 /// The inverse of `kept` over the free parameters, along directions about which `kept` knows at least a tenth of what
 /// `total` knows; nothing along the others.

@@ -99,7 +99,10 @@ Freedom freedom_of(const FitContext& context, const std::vector<double>& p, cons
 
 void fill_parameters(const FitContext& context, const Solution& solution, const NormalEquations& equations,
                      const Freedom& freedom, Fit& fit) {
-  const Spread spread = spread_of(influences_of(context, solution, equations, freedom));
+  SlowLevels slow;
+  if (!context.by_extremes())
+    slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside);
+  const Spread spread = spread_of(influences_of(context, solution, equations, freedom), slow);
   for (std::size_t k = 0; k < solution.values().size(); ++k) {
     fit.parameters.push_back(fitted_parameter(context, solution, spread, k));
     fit.degrees_of_freedom = spread.degrees_of_freedom(static_cast<Eigen::Index>(k));

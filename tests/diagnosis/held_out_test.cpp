@@ -112,12 +112,26 @@ TEST(Evidence, TheDesignEffectIsThatOfAnAutoregression) {
     for (int run = 0; run < kRuns; ++run) {
       boost::random::mt19937_64 engine(static_cast<std::uint64_t>(100 + run));
       const Problem shape = {100, 20, 1, rho, true};
-      mean += design_effect(draw(shape, engine), 0, 1.0) / kRuns;
+      mean += design_effect(draw(shape, engine), 0, 1.0, tribofit::SlowNoise()).of_cycles / kRuns;
     }
     const double truth = (1 + rho) / (1 - rho);
     // At least 1 by definition, which lifts the mean where the truth is 1.
     EXPECT_NEAR(mean, rho > 0 ? truth : 1.1, 0.15 * truth) << rho;
   }
+}
+
+/// Of the mean of levels with a slow part of known covariance: 1 + (sum of the covariances) / (n noise / rows).
+TEST(Evidence, TheDesignEffectHoldsSlowNoise) {
+  boost::random::mt19937_64 engine(5);
+  Linearised problem = draw({40, 20, 1, 0, true}, engine);
+  problem.level = Eigen::VectorXd::Ones(1);
+  tribofit::SlowNoise slow;
+  double sum = 0;
+  for (int k = 0; k < 40; ++k) {
+    slow.covariance.push_back(0.3 * std::pow(0.9, k));
+    sum += (k == 0 ? 1 : 2) * (40 - k) * slow.covariance.back();
+  }
+  EXPECT_NEAR(design_effect(problem, 0, 1.0, slow).of_slow, 1 + sum / 40 * 20, 1e-9 * sum);
 }
 
 TEST(Evidence, PValuesOfNothingAreUniform) {

@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../fit/synthetic.hpp"
@@ -86,6 +89,44 @@ std::vector<TraceInput> constant_friction(std::uint64_t seed) {
     inputs.push_back({trace->path, {}, trace});
   }
   return inputs;
+}
+
+/// Speed steps in a random order, 0.5 to 200 mm/s; friction mu(v in mm/s) with white noise.
+TraceInput speed_steps(const std::function<double(double)>& mu, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> speeds;
+  for (int k = 0; k < 24; ++k) speeds.push_back(0.5 * std::pow(400.0, k / 23.0));
+  std::shuffle(speeds.begin(), speeds.end(), engine);
+  auto trace = std::make_shared<Trace>();
+  trace->path = "steps";
+  trace->velocity_kind = VelocityKind::relative;
+  for (const double v : speeds) {
+    for (int i = 0; i < 300; ++i) {
+      trace->time.push_back(0.01 * static_cast<double>(trace->time.size()));
+      trace->friction.push_back(mu(v) + 0.003 * normal(engine));
+      trace->velocity.push_back(1e-3 * (v + 0.01 * normal(engine)));
+    }
+  }
+  trace->steps.resize(1);
+  trace->steps[0].end = trace->size();
+  return {trace->path, {}, trace};
+}
+
+/// Another law of the list says with fewer parameters what one of the first laws says with an effect.
+TEST(BaseLaw, TheLawsOfTheListCompete) {
+  const std::vector<std::pair<std::string, std::function<double(double)>>> truths = {
+      {"logarithmic", [](double v) { return 0.4 - 0.02 * std::log(v); }},
+      {"logarithmic", [](double v) { return 0.3 + 0.01 * std::log(v); }},
+      {"gaussian", [](double v) { return 0.3 + 0.2 * std::exp(-v * v / 400); }},
+      {"exponential", [](double v) { return 0.3 + 0.2 * std::exp(-0.05 * v); }},
+      {"fractional", [](double v) { return 0.3 + 0.2 / (1 + 0.05 * v); }}};
+  for (const auto& [law, mu] : truths) {
+    const Diagnosis out = diagnose(std::vector<TraceInput>{speed_steps(mu, 7)}).diagnosis;
+    EXPECT_EQ(to_string(out.law), law);
+    EXPECT_THAT(names(out), IsEmpty()) << law;
+    EXPECT_EQ(out.verdict, Verdict::sufficient) << law;
+  }
 }
 
 TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {

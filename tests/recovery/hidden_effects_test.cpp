@@ -92,6 +92,13 @@ TEST(HiddenEffects, AreNamedInOtherKindsOfRecord) {
   EXPECT_GE(count_right(run_cases(cases, 0)), cases.size() - 1);
 }
 
+/// Sliding with white, AR(1) and 1/f noise in turn.
+TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
+  for (const Outcome& o : run_cases(plan_record_kinds({"steps", "ramps", "sines", "reversals"}, 6, 0), 0)) {
+    EXPECT_TRUE(o.right) << o.of.name << ": " << names(o);
+  }
+}
+
 /// A slow rig makes the same record with another clock.
 TEST(HiddenEffects, ASlowRigIsAnExactImage) {
   Case c = plan_record_kinds({"stick-slip-white"}, 0, 3)[2];

@@ -1,0 +1,197 @@
+#include "tribofit/statistics/slow_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+namespace tribofit {
+
+namespace {
+
+constexpr std::size_t kFewestValues = 16;
+constexpr double kRounding = 1e-20;  ///< of the squares of a series: what is left of one that is constant
+/// By how much the logarithm of its likelihood must exceed that of 1/f noise: an autoregression has a parameter more,
+/// and a record that is not much longer than its memory cannot tell the two from each other.
+constexpr double kClearlyLikelier = 5;
+
+/// By how much it must exceed that of independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
+constexpr double kLikelier = 1;
+
+/// Below as many periods in the record a model that was fitted has taken power away.
+constexpr double kFirstBin = 3;
+
+/// 1/f noise has power below the lowest frequency of its record too: down to that of one eight times as long.
+constexpr std::size_t kLonger = 8;
+
+using Transform = std::vector<std::complex<double>>;
+
+/// Power of two that is no less than n: other lengths can cost the transform much.
+std::size_t padded(std::size_t n) {
+  std::size_t out = 1;
+  while (out < n) out *= 2;
+  return out;
+}
+
+/// Squares of the Fourier transform of a series over its length, at frequencies finer than it resolves.
+struct Periodogram {
+  std::vector<double> frequency, power;  ///< per value, from kFirstBin periods in the series up to a half
+  double resolved = 0;                   ///< values that are independent of each other, as a part of all of them
+};
+
+Periodogram windowed_periodogram(std::span<const double> series) {
+  const auto n = static_cast<double>(series.size());
+  const std::size_t size = padded(series.size());
+  double mean = 0;
+  for (const double x : series) mean += x / n;
+  constexpr double kBandwidth = 1.5;  // of the window, in 1/n
+  // A Hann window keeps a line and a slope at their own frequencies.
+  std::vector<double> windowed(series.begin(), series.end());
+  double weights = 0;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const double weight = std::pow(std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / n), 2);
+    windowed[i] = weight * (windowed[i] - mean);
+    weights += weight * weight;
+  }
+  windowed.resize(size, 0.0);
+  Eigen::FFT<double> fft;
+  Transform spectrum;
+  fft.fwd(spectrum, windowed);
+  Periodogram out;
+  out.resolved = n / kBandwidth / static_cast<double>(size);
+  for (std::size_t j = 1; 2 * j <= size; ++j) {
+    const double f = static_cast<double>(j) / static_cast<double>(size);
+    if (f * n < kFirstBin) continue;
+    out.frequency.push_back(f);
+    out.power.push_back(std::norm(spectrum[j]) / weights);
+  }
+  return out;
+}
+
+/// Spectra of slow noise; the covariance of a series with that of 1/f noise is covariance_of_flicker().
+std::vector<double> flicker(const std::vector<double>& frequency) {
+  std::vector<double> out;
+  for (const double f : frequency) out.push_back(1 / f);
+  return out;
+}
+
+std::vector<double> autoregression(const std::vector<double>& frequency, double memory) {
+  std::vector<double> out;
+  for (const double f : frequency) {
+    const double swing = std::cos(2 * std::numbers::pi * f);
+    out.push_back((1 - memory * memory) / (1 - 2 * memory * swing + memory * memory));
+  }
+  return out;
+}
+
+std::vector<double> covariance_of_flicker(std::size_t n) {
+  const std::size_t longer = padded(kLonger * n);
+  Transform spectrum(longer), covariance;
+  for (std::size_t j = 1; j < longer; ++j) {
+    spectrum[j] = static_cast<double>(longer) / static_cast<double>(std::min(j, longer - j));
+  }
+  Eigen::FFT<double> fft;
+  fft.inv(covariance, spectrum);
+  std::vector<double> out(n);
+  for (std::size_t k = 0; k < n; ++k) out[k] = covariance[k].real();
+  return out;
+}
+
+/// Independent noise plus slow noise of one shape, as likely as it can be.
+struct Likeliest {
+  double slow = 0;         ///< factor of the shape
+  double independent = 0;  ///< variance
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  double gain = 0;  ///< of that over independent noise alone
+};
+
+Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
+  Likeliest best;
+  constexpr double kLeast = 1.0 / 256, kMost = 256, kStep = 1.5;
+  const auto n = static_cast<double>(seen.power.size());
+  const auto try_ratio = [&](double ratio) {  // of slow to independent noise
+    double scale = 0, logs = 0;
+    for (std::size_t j = 0; j < seen.power.size(); ++j) {
+      const double expected = 1 + ratio * shape[j];
+      scale += seen.power[j] / expected / n;
+      logs += std::log(expected);
+    }
+    const double likelihood = -seen.resolved * (logs + n * std::log(scale));
+    if (scale > 0 && likelihood > best.log_likelihood) best = {ratio * scale, scale, likelihood};
+  };
+  try_ratio(0);
+  const double without = best.log_likelihood;
+  for (double ratio = kLeast; ratio < kMost; ratio *= kStep) try_ratio(ratio);
+  best.gain = best.log_likelihood - without;
+  return best;
+}
+
+/// The same where no value of the periodogram counts for more than chance would give the largest of them.
+Likeliest robust_fit(Periodogram seen, const std::vector<double>& shape) {
+  constexpr double kChance = 0.5;
+  constexpr int kRounds = 3;
+  const double most = -std::log(kChance / (seen.resolved * static_cast<double>(seen.power.size())));
+  Likeliest out = likeliest(seen, shape);
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t j = 0; j < seen.power.size(); ++j) {
+      seen.power[j] = std::min(seen.power[j], most * (out.independent + out.slow * shape[j]));
+    }
+    out = likeliest(seen, shape);
+  }
+  return out;
+}
+
+}  // namespace
+
+double SlowNoise::variance_of_sum(std::span<const double> weights) const {
+  const std::size_t n = std::min(covariance.size(), weights.size());
+  if (n == 0) return 0;
+  // Products of weights k apart, summed, are the transform of their squared spectrum.
+  std::vector<double> longer(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(n)), products;
+  longer.resize(padded(2 * n), 0.0);
+  Eigen::FFT<double> fft;
+  Transform spectrum;
+  fft.fwd(spectrum, longer);
+  for (auto& x : spectrum) x = std::norm(x);
+  fft.inv(products, spectrum);
+  double sum = 0;
+  for (std::size_t k = 0; k < n; ++k) sum += (k == 0 ? 1 : 2) * covariance[k] * products[k];
+  return std::max(0.0, sum);
+}
+
+double SlowNoise::variance_within() const {
+  const std::size_t n = covariance.size();
+  if (n == 0) return 0;
+  return std::max(0.0, covariance[0] - variance_of_sum(std::vector<double>(n, 1 / static_cast<double>(n))));
+}
+
+SlowNoise slow_noise(std::span<const double> series) {
+  const std::size_t n = series.size();
+  if (n < kFewestValues) return {};
+  const Periodogram seen = windowed_periodogram(series);
+  double squares = 0, left = 0;
+  for (const double x : series) squares += x * x;
+  for (const double x : seen.power) left += x;
+  if (!(left > kRounding * squares)) return {};
+  const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
+  Likeliest best;
+  double memory = 0;
+  for (const double m : {0.3, 0.5, 0.65, 0.8, 0.9, 0.95}) {
+    const Likeliest own = robust_fit(seen, autoregression(seen.frequency, m));
+    if (own.log_likelihood > best.log_likelihood) best = own, memory = m;
+  }
+  SlowNoise out;
+  if (std::max(best.gain, of_flicker.gain) < kLikelier) return out;
+  if (best.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) {
+    for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
+  } else if (of_flicker.slow > 0) {
+    out.is_flicker = true;
+    out.covariance = covariance_of_flicker(n);
+    for (double& c : out.covariance) c *= of_flicker.slow;
+  }
+  return out;
+}
+
+}  // namespace tribofit
