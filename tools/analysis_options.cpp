@@ -61,8 +61,9 @@ void add_pairs(const std::string& text, const std::string& option, std::map<std:
     const std::size_t equals = item.find('=');
     const std::string channel = item.substr(0, equals);
     if (equals == std::string::npos || equals + 1 == item.size()) {
-      throw InputError(option + ": '" + item + "' is not CHANNEL=" + (option == "--units" ? "UNIT" : "COLUMN"),
-                       option == "--units" ? "write it as v_b=mm/s" : "write it as v_b=Velocity or v_b=Velocity:mm/s");
+      throw InputError(
+          option + ": '" + item + "' is not CHANNEL=" + (option.ends_with("units") ? "UNIT" : "COLUMN"),
+          option.ends_with("units") ? "write it as v_b=mm/s" : "write it as v_b=Velocity or v_b=Velocity:mm/s");
     }
     if (std::find(kChannels.begin(), kChannels.end(), channel) == kChannels.end()) {
       std::string known;
@@ -120,6 +121,11 @@ void read_reading(const Settings& s, ReadOptions& read) {
   read_conditions(s, read.conditions, read.step_radii);
   for (const std::string& text : s.columns) add_pairs(text, "--columns", read.columns);
   for (const std::string& text : s.units) add_pairs(text, "--units", read.units);
+  if (s.second_file.empty() && !(s.second_columns.empty() && s.second_units.empty())) {
+    throw UsageError("--with-columns and --with-units are of the second file; name it with --with");
+  }
+  for (const std::string& text : s.second_columns) add_pairs(text, "--with-columns", read.second_columns);
+  for (const std::string& text : s.second_units) add_pairs(text, "--with-units", read.second_units);
   if (!s.rate.empty()) read.rate = positive(s.rate, Quantity::frequency, "--rate");
   read.second_file = s.second_file;
   read.continued_in = s.continued_in;

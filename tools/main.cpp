@@ -13,7 +13,7 @@
 namespace {
 
 constexpr const char* kDescription =
-    "Identifies the friction law of a tribometer trace (CSV): stick-slip measures, parameters with\n"
+    "Identifies the friction law of a tribometer trace: stick-slip measures, parameters with\n"
     "uncertainties, errors against the noise floor.";
 
 constexpr const char* kProgramFooter =
@@ -26,6 +26,7 @@ constexpr const char* kProgramFooter =
     "  identify rig --radius 15mm --load 50N trace.csv    mass, damping and stiffness behind it\n"
     "  identify twin --radius 15mm --load 50N trace.csv   the motion that law and rig predict\n"
     "  identify runs/                     every trace of a folder, results in runs-results/\n"
+    "  identify columns export.mat        what a file holds, and the --columns line for it\n"
     "  identify --radius 15mm --columns time=t,mu=COF,v_b=Velocity:mm/s trace.csv\n\n"
     "Exit status: 0 done; 1 data read but no analysis possible, or one of several traces failed;\n"
     "2 wrong usage; 3 unreadable or invalid input.";
@@ -34,6 +35,7 @@ ExitStatus run(int argc, char** argv) {
   const Program program{"identify", kDescription, kProgramFooter, "identify " + std::string(tribofit::version)};
   return run_program(program, argc, argv, [](const Command& identify) {
     add_identify(identify);
+    add_columns(identify);
     add_manifest(identify);
     add_merge(identify);
     add_diagnose(identify);

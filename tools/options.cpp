@@ -6,7 +6,7 @@
 #include "parameter_options.hpp"
 
 void add_input_options(const Command& app, Settings& s) {
-  app.add_option("TRACE", s.traces, "Traces (CSV), or folders of them");
+  app.add_option("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
   app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm").group("Conditions");
   app.add_option("--speed", s.speed, "Disc speed, 4rpm (else from the file or the stick plateau)").group("Conditions");
   app.add_option("--load", s.load, "Normal force, 50N").group("Conditions");
@@ -15,10 +15,13 @@ void add_input_options(const Command& app, Settings& s) {
   const auto input = [&](const char* name, auto& value, const char* help) {
     return app.add_option(name, value, help).group("Reading");
   };
-  input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s").one_value_each();
+  input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)")
+      .one_value_each();
   input("--units", s.units, "Units or sensitivities: v_b=mm/s").one_value_each();
   input("--rate", s.rate, "Samples per second where there is no time column, 20kHz");
   input("--with", s.second_file, "Second file of the same run, from the other instrument");
+  input("--with-columns", s.second_columns, "--columns of the second file: v_b=Velocity:mm/s").one_value_each();
+  input("--with-units", s.second_units, "--units of the second file").one_value_each();
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
   app.add_flag("--never-sticks", s.never_sticks, "The block never sticks: every sample is sliding, however slow")
       .group("Reading");

@@ -9,6 +9,7 @@ struct Settings {
   std::string radius, speed, load, rate, instruments;
   std::vector<std::string> columns, units;
   std::string second_file;
+  std::vector<std::string> second_columns, second_units;
   std::vector<std::string> continued_in;
   std::vector<std::string> confirm;  // diagnose: runs held back
   bool trim = true;

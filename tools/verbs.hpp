@@ -4,6 +4,7 @@
 
 /// Each verb adds its options and what it runs. It may throw UsageError and tribofit::InputError, which main() prints.
 void add_identify(const Command& app);
+void add_columns(const Command& app);
 void add_manifest(const Command& app);
 void add_merge(const Command& app);
 void add_diagnose(const Command& app);

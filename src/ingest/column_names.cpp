@@ -206,6 +206,7 @@ ColumnName parse_column_name(std::string_view text) {
   const auto unbracketed = [&](char open, char close) -> std::optional<ColumnName> {
     const std::size_t at = name.find(open);
     if (name.empty() || name.back() != close || at == std::string::npos || at == 0) return std::nullopt;
+    if (name[at + 1] == ':' || name.ends_with(",:)")) return std::nullopt;  // "a(:,1)" of a matrix
     return ColumnName{base_of(trimmed(std::string_view(name).substr(0, at))), strip_brackets(name.substr(at))};
   };
   if (const auto split = unbracketed('[', ']')) return *split;

@@ -63,6 +63,7 @@ struct RawColumn {
   std::size_t line = 0;         ///< that names it; 0: none does
   std::size_t unit_line = 0;    ///< that states its unit
   std::size_t rows = 0;         ///< which of RawTable::rows
+  std::size_t count = 0;        ///< of its values, where that is known before they are loaded
   bool is_text = false;         ///< holds text, as far as is known before its values are loaded
   std::vector<double> numbers;  ///< as written, not yet in SI
   std::vector<std::string> texts;
@@ -83,6 +84,7 @@ struct RawDefect {
 /// RawRows, whose clocks agree. Values may be loaded later: `load` fills the columns it is asked for, by index.
 struct RawTable {
   std::string path;
+  std::string format;               ///< of the reader that made it
   std::vector<RawColumn> columns;  ///< in the order of the file
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;

@@ -1,6 +1,14 @@
 #include "tribofit/ingest/read_trace.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <initializer_list>
+#include <iterator>
+#include <map>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -14,18 +22,56 @@
 namespace tribofit {
 namespace {
 
-/// With two files a column may be in either; in one of them it must be.
-void check_requests(const FileRecord& first, const FileRecord& second, const ReadOptions& options) {
+using Names = std::map<std::string, std::string>;
+
+bool is_named(const Names& columns, std::string_view channel) {
+  const auto request = columns.find(std::string(channel));
+  return request != columns.end() && !request->second.empty() && request->second != "none";
+}
+
+/// With two files a column may be in either; in one of those it is asked of it must be.
+void check_requests(const Names& columns, std::initializer_list<const FileRecord*> files) {
   for (std::size_t k = 0; k < channel_count; ++k) {
     const auto channel = static_cast<Channel>(k);
-    const auto request = options.columns.find(std::string(to_string(channel)));
-    if (request == options.columns.end() || request->second.empty() || request->second == "none") continue;
-    if (first.columns.find(channel) != nullptr || second.columns.find(channel) != nullptr) continue;
-    throw InputError("there is no column '" + request->second + "' for " + request->first + " in either file",
-                     "the columns are: " + listed(first.column_names) + "; " + listed(second.column_names) + "; " +
-                         lists_columns(second.path),
-                     {first.path, 0, ""});
+    if (!is_named(columns, to_string(channel))) continue;
+    const auto holds = [&](const FileRecord* file) { return file->columns.find(channel) != nullptr; };
+    if (std::any_of(files.begin(), files.end(), holds)) continue;
+    std::string names;
+    for (const FileRecord* file : files) names += (names.empty() ? "" : "; ") + listed(file->column_names);
+    const FileRecord& last = **std::prev(files.end());
+    throw InputError(fmt::format("there is no column '{}' for {}{}", columns.at(std::string(to_string(channel))),
+                                 to_string(channel), files.size() > 1 ? " in either file" : ""),
+                     "the columns are: " + names + "; " + lists_columns(last.path), {(*files.begin())->path, 0, ""});
   }
+}
+
+/// What one file is asked for is not looked for in the other.
+void leave_to_other(const Names& named, Names& other) {
+  const std::array<std::vector<std::string>, 2> descriptions = {{{"mu", "force", "torque"}, {"v_b", "v_r"}}};
+  const auto set_aside = [&](const std::string& channel) {
+    if (!is_named(other, channel)) other[channel] = "none";
+  };
+  for (const auto& channels : descriptions) {
+    const auto in = [&](const Names& columns) {
+      return std::any_of(channels.begin(), channels.end(), [&](const auto& c) { return is_named(columns, c); });
+    };
+    if (in(named) && !in(other)) std::for_each(channels.begin(), channels.end(), set_aside);
+  }
+  for (const auto& [channel, column] : named) {
+    if (channel != "time" && is_named(named, channel)) set_aside(channel);
+  }
+}
+
+/// Reads the second file and joins it.
+void join_second(FileRecord& run, const ReadOptions& options, ReadOptions second, std::span<const Reader> readers) {
+  FileRecord other = read_recording(options.second_file, second, readers);
+  if (options.second_columns.empty()) {
+    check_requests(options.columns, {&run, &other});
+  } else {
+    check_requests(options.columns, {&run});
+    check_requests(options.second_columns, {&other});
+  }
+  join(run, std::move(other), options.clock_offset);
 }
 
 void refuse_twice(const std::string& path, const std::string& next) {
@@ -37,17 +83,20 @@ void refuse_twice(const std::string& path, const std::string& next) {
 }  // namespace
 
 Trace read_trace(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
-  FileRecord run = read_recording(path, options, readers);
+  ReadOptions first = options, second = options;
+  if (!options.second_columns.empty()) {
+    second.columns = options.second_columns;
+    leave_to_other(options.second_columns, first.columns);
+    leave_to_other(options.columns, second.columns);
+  }
+  if (!options.second_columns.empty() || !options.second_units.empty()) second.units = options.second_units;
+  FileRecord run = read_recording(path, first, readers);
   for (std::size_t i = 0; i < options.continued_in.size(); ++i) {
     refuse_twice(path, options.continued_in[i]);
     for (std::size_t k = 0; k < i; ++k) refuse_twice(options.continued_in[k], options.continued_in[i]);
-    continue_recording(run, read_recording(options.continued_in[i], options, readers), i + 2);
+    continue_recording(run, read_recording(options.continued_in[i], first, readers), i + 2);
   }
-  if (!options.second_file.empty()) {
-    FileRecord other = read_recording(options.second_file, options, readers);
-    check_requests(run, other, options);
-    join(run, std::move(other), options.clock_offset);
-  }
+  if (!options.second_file.empty()) join_second(run, options, std::move(second), readers);
   return assemble(std::move(run), options);
 }
 

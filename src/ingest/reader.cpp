@@ -6,13 +6,16 @@
 
 #include "csv/csv_reader.hpp"
 #include "csv/encoding.hpp"
+#include "matlab/matlab_reader.hpp"
+#include "tdms/tdms_reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "uff/uff_reader.hpp"
 
 namespace tribofit {
 
 std::span<const Reader> all_readers() {
-  static const std::array readers = {csv_reader};
+  static const std::array readers = {matlab_reader, tdms_reader, uff_reader, csv_reader};
   return readers;
 }
 
@@ -22,7 +25,11 @@ RawTable read_table(const std::string& path, std::span<const Reader> readers) {
   head.resize(file->read(0, head));
   const auto known =
       std::find_if(readers.begin(), readers.end(), [&](const Reader& reader) { return reader.recognises(head); });
-  if (known != readers.end()) return known->read(file);
+  if (known != readers.end()) {
+    RawTable table = known->read(file);
+    table.format = known->format;
+    return table;
+  }
   refuse_unless_text(head, path);
   std::vector<std::string> formats;
   for (const Reader& reader : readers) formats.emplace_back(reader.format);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clock.hpp"
+#include "column_names.hpp"
 #include "content_hash.hpp"
 #include "gaps.hpp"
 #include "join.hpp"
@@ -49,6 +50,18 @@ struct RowsPlan {
   std::optional<Sampling> sampling;
 };
 
+/// Throws InputError where the file has times, but for other rows than this column's.
+void refuse_without_time(const RawTable& table, const Column& column) {
+  const std::size_t count = table.columns[column.index].count;
+  const auto is_time = [](const RawColumn& c) {
+    return name_rank(parse_column_name(c.name).base, Channel::time, std::nullopt) != no_rank;
+  };
+  if (count == 0 || std::none_of(table.columns.begin(), table.columns.end(), is_time)) return;
+  throw InputError(fmt::format("holds {} values, and no time of as many", count),
+                   "choose columns of one length with --columns; " + lists_columns(table.path),
+                   table.heading(column.index));
+}
+
 /// Throws InputError where nothing says when the rows were recorded.
 std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, const ReadOptions& options) {
   std::vector<RowsPlan> plans;
@@ -57,7 +70,10 @@ std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, c
     for (const Column& column : file.columns.used) {
       if (table.columns[column.index].rows == rows) plan.columns.used.push_back(column);
     }
-    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling) refuse_columns(file, "no time column");
+    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling) {
+      refuse_without_time(table, plan.columns.used.front());
+      refuse_columns(file, "no time column");
+    }
     plans.push_back(std::move(plan));
   }
   return plans;

@@ -157,5 +157,23 @@ TEST_F(Join, ColumnsMayBeNamedInEitherFile) {
   EXPECT_THROW(read_trace(friction, options), InputError);
 }
 
+TEST_F(Join, TheSecondFileHasColumnsOfItsOwn) {
+  std::string ni = "Time [s],Force [V]\n", drive = "Time [ms],Speed [mm/s],Torque\n";
+  for (int i = 0; i < 60; ++i) {
+    ni += fmt::format("{},{}\n", 0.001 * i, 0.1 + 0.001 * i);
+    drive += fmt::format("{},{},-3\n", i, 100 + i);
+  }
+  const std::string first = write(ni, "ni.csv");
+  ReadOptions options;
+  options.columns = {{"force", "Force:10N/V"}};
+  options.second_file = write(drive, "drive.csv");
+  options.second_columns = {{"v_r", "Speed"}};
+  const Trace trace = read_trace(first, options);
+  EXPECT_NEAR(trace.friction[7], 1.07, 1e-12) << "the drive's torque is not friction where the first file names it";
+  EXPECT_NEAR(trace.velocity[7], 0.107, 1e-9);
+  options.second_columns = {{"v_r", "Velocity"}};
+  EXPECT_THROW(read_trace(first, options), InputError);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -37,6 +37,9 @@ struct ReadOptions {
   std::vector<double> step_radii;
   /// A second file holding the other instrument's channels; joined on time.
   std::string second_file;
+  /// As `columns` and `units`, of the second file. Where these name friction, or velocity, in one of the files, it is
+  /// not looked for in the other. Empty: `columns` and `units` are for both.
+  std::map<std::string, std::string> second_columns, second_units;
   /// Finds the offset between the clocks of the two files: estimate_clock_offset (kinematics/clock_offset.hpp). Empty:
   /// the times are taken as written.
   ClockOffsetFinder clock_offset;
@@ -47,11 +50,14 @@ struct ReadOptions {
 
 /// Reads one run from a file, with the reader that recognises its content (src/ingest/reader.hpp lists them).
 ///
-/// CSV: comma, semicolon, tab; decimal comma; BOM; CR LF; quotes; preamble and comment lines; units in the header or in
-/// a row of their own; Latin-1 and GBK headers; trailing separators; text rows between data.
-/// Any format: a clock that restarts at each step; without a time column the rate of the user, else that of the file;
-/// friction as mu, as tangential force with a load channel or a nominal load, or as torque with a radius.
-/// Throws InputError with file, line (or value), column, what is wrong and what to do. Cost: linear in bytes.
+/// Text: columns divided by comma, semicolon, tab or blanks; decimal comma; BOM; LF, CR LF or CR; quotes; preamble,
+/// comment lines and footers; units in the header or in a row of their own; Latin-1 and GBK headers; trailing
+/// separators; blocks with a time each beside one another; text between data, which may divide steps and state their
+/// conditions. MATLAB 5 to 7.3, UFF 58 and 58b, TDMS. Any format: radius, speed and load that the file states with a
+/// unit; rows with a cell that is no number left out as gaps, where they are isolated and one in a thousand at most; a
+/// clock that restarts at each step; without a time column the rate of the user, else that of the file; friction as mu,
+/// as tangential force with a load channel or a nominal load, or as torque with a radius. Throws InputError with file,
+/// line (or value), column, what is wrong and what to do. Cost: linear in bytes.
 Trace read_trace(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace tribofit

@@ -90,8 +90,6 @@ constexpr std::array signatures = {
     Signature{"\xD0\xCF\x11\xE0", "an old Excel or Office file", "save the sheet as CSV"},
     Signature{"\x1F\x8B", "compressed with gzip", "unpack it with gunzip"},
     Signature{"\x89HDF", "an HDF5 file", "export the channels as CSV"},
-    Signature{"MATLAB 5.0", "a MATLAB file", "export the channels with writetable"},
-    Signature{"TDSm", "a LabVIEW TDMS file", "export the channels as CSV"},
     Signature{"%PDF", "a PDF document", "export the data as CSV"},
 };
 

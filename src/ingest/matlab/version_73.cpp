@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <mutex>
+#include <utility>
+
+#include "contents.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
+
+namespace tribofit {
+namespace {
+
+using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+std::mutex& matio_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// What went wrong is said by an InputError, not by libmatio on standard error.
+void ignore_message(int, char*) {}
+
+bool is_numeric(const matvar_t& v) {
+  return v.class_type >= MAT_C_DOUBLE && v.class_type <= MAT_C_UINT64 && v.isComplex == 0;
+}
+
+const char* kind_of(const matvar_t& v) {
+  if (v.isComplex != 0) return "a complex array";
+  switch (v.class_type) {
+    case MAT_C_CELL:
+      return "a cell array";
+    case MAT_C_SPARSE:
+      return "a sparse array";
+    case MAT_C_STRUCT:
+      return "an array of structures";
+    case MAT_C_FUNCTION:
+      return "a function";
+    default:
+      return "an object";
+  }
+}
+
+template <class Number>
+void convert(const void* data, std::vector<double>& out) {
+  const auto* values = static_cast<const Number*>(data);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<double>(values[i]);
+}
+
+void convert(const matvar_t& v, std::vector<double>& out) {
+  switch (v.class_type) {
+    case MAT_C_DOUBLE:
+      return convert<double>(v.data, out);
+    case MAT_C_SINGLE:
+      return convert<float>(v.data, out);
+    case MAT_C_INT8:
+      return convert<std::int8_t>(v.data, out);
+    case MAT_C_UINT8:
+      return convert<std::uint8_t>(v.data, out);
+    case MAT_C_INT16:
+      return convert<std::int16_t>(v.data, out);
+    case MAT_C_UINT16:
+      return convert<std::uint16_t>(v.data, out);
+    case MAT_C_INT32:
+      return convert<std::int32_t>(v.data, out);
+    case MAT_C_UINT32:
+      return convert<std::uint32_t>(v.data, out);
+    case MAT_C_INT64:
+      return convert<std::int64_t>(v.data, out);
+    default:
+      return convert<std::uint64_t>(v.data, out);
+  }
+}
+
+class Version73 : public MatContents {
+ public:
+  explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
+
+  void describe(const std::function<void(MatArray&&)>& see) override {
+    const Opened mat(*file_);
+    while (true) {
+      const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
+      if (!variable) return;
+      if (variable->name != nullptr) describe(mat, *variable, variable->name, 0, see);
+    }
+  }
+
+  std::vector<std::vector<double>> load(std::span<const std::string> names, int) override {
+    const Opened mat(*file_);
+    std::vector<std::vector<double>> values;
+    for (const std::string& name : names) values.push_back(read(mat, name));
+    return values;
+  }
+
+ private:
+  /// The file in the hands of libmatio, and of nobody else meanwhile.
+  class Opened {
+   public:
+    explicit Opened(const InputFile& file) : lock_(matio_mutex()), mat_(nullptr, &Mat_Close) {
+      Mat_LogInitFunc("", ignore_message);
+      mat_.reset(Mat_Open(file.path().c_str(), MAT_ACC_RDONLY));
+      if (mat_) return;
+      throw InputError("is a MATLAB file of version 7.3 that cannot be opened: it is cut off or damaged",
+                       "copy it again, or save it again with save(..., '-v7')", {file.path(), 0, ""});
+    }
+    mat_t* get() const { return mat_.get(); }
+
+   private:
+    std::unique_lock<std::mutex> lock_;
+    std::unique_ptr<mat_t, decltype(&Mat_Close)> mat_;
+  };
+
+  void describe(const Opened& mat, matvar_t& v, const std::string& name, int depth,
+                const std::function<void(MatArray&&)>& see) {
+    MatArray array;
+    array.name = name;
+    for (int k = 0; k < v.rank; ++k) array.sizes.push_back(v.dims[k]);
+    if (v.class_type == MAT_C_STRUCT && array.elements() == 1 && depth < deepest_mat_structure) {
+      const unsigned count = Mat_VarGetNumberOfFields(&v);
+      char* const* names = Mat_VarGetStructFieldnames(&v);
+      for (unsigned k = 0; k < count; ++k) {
+        matvar_t* field = Mat_VarGetStructFieldByIndex(&v, k, 0);
+        if (field != nullptr) describe(mat, *field, name + "." + names[k], depth + 1, see);
+      }
+      return;
+    }
+    array.is_text = v.class_type == MAT_C_CHAR;
+    if (is_numeric(v)) {
+      refuse_beyond_file(array, v);
+    } else if (v.class_type == MAT_C_EMPTY) {
+      array.sizes = {0, 0};
+    } else if (!array.is_text) {
+      array.kind = kind_of(v);
+    }
+    const bool is_short = array.elements() > 0 && array.elements() <= (array.is_text ? longest_mat_text : 1);
+    if (array.kind.empty() && is_short) take_fact(mat, v, array);
+    see(std::move(array));
+  }
+
+  static void take_fact(const Opened& mat, matvar_t& v, MatArray& array) {
+    if (v.data == nullptr) Mat_VarReadDataAll(mat.get(), &v);
+    if (v.data == nullptr) return;
+    if (!array.is_text) {
+      if (v.nbytes < Mat_SizeOfClass(v.class_type)) return;
+      array.scalar.resize(1);
+      convert(v, array.scalar);
+    } else if (v.data_size == 1) {
+      array.text.assign(static_cast<const char*>(v.data), v.nbytes);
+    } else if (v.data_size == 2) {
+      const auto* letters = static_cast<const std::uint16_t*>(v.data);
+      for (std::size_t i = 0; i < v.nbytes / 2; ++i)
+        array.text += letters[i] < 0x80 ? static_cast<char>(letters[i]) : '?';
+    }
+  }
+
+  /// Zeros that were never written, and those deflated, take no room: but not for ever.
+  void refuse_beyond_file(const MatArray& array, const matvar_t& v) const {
+    const std::uint64_t most = file_->size() * most_inflated;
+    if (array.elements() <= most / Mat_SizeOfClass(v.class_type)) return;
+    throw InputError(
+        fmt::format("holds {} values, more than the file of {} bytes can", array.elements(), file_->size()),
+        "the file is damaged; save it again", {file_->path(), 0, array.name});
+  }
+
+  std::vector<double> read(const Opened& mat, const std::string& name) const {
+    const std::vector<std::string> path = split(name, '.');
+    const Variable variable(Mat_VarReadInfo(mat.get(), path.front().c_str()), &Mat_VarFree);
+    matvar_t* v = variable.get();
+    for (std::size_t k = 1; k < path.size() && v != nullptr; ++k) {
+      v = v->class_type == MAT_C_STRUCT ? Mat_VarGetStructFieldByName(v, path[k].c_str(), 0) : nullptr;
+    }
+    if (v != nullptr && v->data == nullptr) Mat_VarReadDataAll(mat.get(), v);
+    if (v == nullptr || v->data == nullptr || !is_numeric(*v)) {
+      throw InputError("the values cannot be read", "the file is damaged; save it again", {file_->path(), 0, name});
+    }
+    std::vector<double> values(v->nbytes / Mat_SizeOfClass(v->class_type));
+    convert(*v, values);
+    return values;
+  }
+
+  std::shared_ptr<const InputFile> file_;
+};
+
+}  // namespace
+
+std::unique_ptr<MatContents> contents_of_version_73(std::shared_ptr<const InputFile> file) {
+  return std::make_unique<Version73>(std::move(file));
+}
+
+}  // namespace tribofit

@@ -1,0 +1,316 @@
+#include "uff_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "ingest/column_names.hpp"
+#include "ingest/numbers.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr std::size_t header_lines = 11;
+constexpr int frequency_abscissa = 18;
+
+bool is_mark(std::string_view line) {
+  return trimmed(line) == "-1";
+}
+
+/// What stands in columns [begin, begin + width) of a line.
+std::string_view field(std::string_view line, std::size_t begin, std::size_t width) {
+  return begin < line.size() ? trimmed(line.substr(begin, width)) : std::string_view();
+}
+
+/// A text of the file; "NONE" stands for none.
+std::string label(std::string_view text) {
+  const std::string result(trimmed(text));
+  return lower_case(result) == "none" ? std::string() : result;
+}
+
+/// The eleven lines above the values.
+struct Function {
+  std::string title, response;
+  int type = 2;  // of the values: 2 and 4 real, 5 and 6 complex; 4 and 6 of double precision
+  std::uint64_t count = 0;
+  bool even = true;
+  double start = 0, interval = 0;
+  int abscissa = 0;
+  std::string abscissa_unit, ordinate, unit;
+
+  bool is_complex() const { return type == 5 || type == 6; }
+  bool is_double() const { return type == 4 || type == 6; }
+};
+
+/// The head of a dataset: "    58" or "    58b     1     2          11      317168 ...".
+struct Kind {
+  int number = 0;
+  bool binary = false, big_endian = false;
+  int format = 2;  // of floating point numbers: 2 is IEEE 754
+  std::uint64_t lines = header_lines, bytes = 0;
+};
+
+class File {
+ public:
+  File(const InputFile& file, RawTable& table) : path_(file.path()), table_(table) {
+    bytes_.resize(static_cast<std::size_t>(file.size()));
+    bytes_.resize(file.read(0, bytes_));
+  }
+
+  void read() {
+    while (find_mark()) {
+      dataset_at_ = at_;
+      const std::string_view head = line();
+      const Kind kind = kind_of(head);
+      ++datasets_;
+      if (kind.number == 58) {
+        read_function(kind);
+      } else {
+        ++others_;
+      }
+      skip_to_end();
+    }
+    if (others_ > 0)
+      skipped_.push_back(fmt::format("{} dataset{} of another number", others_, others_ == 1 ? "" : "s"));
+    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_));
+    if (!table_.columns.empty()) return;
+    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_)),
+                     "export the time histories as dataset 58", {path_, 0, ""});
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& problem) const {
+    throw InputError(fmt::format("byte {}, in dataset {} (from byte {}): {}", at_, datasets_, dataset_at_, problem),
+                     "the file is cut off or damaged; export it again", {path_, 0, ""});
+  }
+
+  std::string_view line() {
+    const std::size_t begin = at_, end = std::min(bytes_.find('\n', at_), bytes_.size());
+    at_ = std::min(end + 1, bytes_.size());
+    std::string_view text = std::string_view(bytes_).substr(begin, end - begin);
+    if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+    return text;
+  }
+
+  /// Goes behind the mark that begins a dataset; false at the end of the file.
+  bool find_mark() {
+    while (at_ < bytes_.size()) {
+      if (is_mark(line())) return at_ < bytes_.size();
+    }
+    return false;
+  }
+
+  void skip_to_end() {
+    while (at_ < bytes_.size()) {
+      if (is_mark(line())) return;
+    }
+  }
+
+  template <class Number>
+  Number number(std::string_view text, const char* what) const {
+    std::string word(text);
+    std::replace(word.begin(), word.end(), 'D', 'E');  // of Fortran
+    if (word.starts_with('+')) word.erase(0, 1);
+    Number value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size())
+      refuse(fmt::format("{} is '{}', not a number", what, text));
+    return value;
+  }
+
+  Kind kind_of(std::string_view head) const {
+    Kind kind;
+    kind.number = number<int>(field(head, 0, 6), "the number of the dataset");
+    kind.binary = head.size() > 6 && lower_case(head.substr(6, 1)) == "b";
+    if (kind.number != 58 || !kind.binary) return kind;
+    kind.big_endian = number<int>(field(head, 7, 6), "the order of bytes") == 2;
+    kind.format = number<int>(field(head, 13, 6), "the format of numbers");
+    kind.lines = number<std::uint64_t>(field(head, 19, 12), "the number of lines");
+    kind.bytes = number<std::uint64_t>(field(head, 31, 12), "the number of bytes");
+    return kind;
+  }
+
+  Function header() {
+    Function f;
+    std::vector<std::string_view> lines;
+    for (std::size_t i = 0; i < header_lines; ++i) {
+      if (at_ >= bytes_.size()) refuse("the lines above the values are cut off");
+      lines.push_back(line());
+    }
+    f.title = label(lines[0]);
+    f.response = label(field(lines[5], 31, 10));
+    f.type = number<int>(field(lines[6], 0, 10), "the type of the values");
+    f.count = number<std::uint64_t>(field(lines[6], 10, 10), "the number of values");
+    f.even = number<int>(field(lines[6], 20, 10), "the spacing") == 1;
+    f.start = number<double>(field(lines[6], 30, 13), "the first abscissa");
+    f.interval = number<double>(field(lines[6], 43, 13), "the increment");
+    f.abscissa = number<int>(field(lines[7], 0, 10), "the type of the abscissa");
+    f.abscissa_unit = label(field(lines[7], 47, 20));
+    f.ordinate = label(field(lines[8], 26, 20));
+    f.unit = label(field(lines[8], 47, 20));
+    const std::string below = label(field(lines[9], 47, 20));
+    if (!below.empty()) f.unit = (f.unit.empty() ? "1" : f.unit) + "/(" + below + ")";
+    if (f.type != 2 && f.type != 4 && !f.is_complex()) refuse(fmt::format("values of type {}", f.type));
+    return f;
+  }
+
+  void read_function(const Kind& kind) {
+    const Function f = header();
+    if (kind.lines != header_lines) refuse(fmt::format("{} lines above the values, not {}", kind.lines, header_lines));
+    const bool is_time = f.abscissa != frequency_abscissa && lower_case(f.abscissa_unit) != "hz";
+    if (kind.binary && kind.bytes > bytes_.size() - at_) {
+      refuse(fmt::format("{} bytes of values, of which {} are there", kind.bytes, bytes_.size() - at_));
+    }
+    if (f.is_complex() || !is_time) {
+      skipped_.push_back(fmt::format("'{}' ({})", f.title, f.is_complex() ? "complex" : "a spectrum"));
+      at_ += kind.binary ? static_cast<std::size_t>(kind.bytes) : 0;
+      return;
+    }
+    if (kind.format != 2) refuse(fmt::format("numbers of format {}, not IEEE 754", kind.format));
+    if (f.count > bytes_.size()) refuse(fmt::format("{} values in a file of {} bytes", f.count, bytes_.size()));
+    if (f.even && !(f.interval > 0 && std::isfinite(f.interval) && std::isfinite(f.start))) {
+      refuse(fmt::format("an increment of {:g}", f.interval));
+    }
+    std::vector<double> abscissa, ordinate;
+    kind.binary ? binary_values(kind, f, abscissa, ordinate) : text_values(f, abscissa, ordinate);
+    add(f, std::move(abscissa), std::move(ordinate));
+  }
+
+  void binary_values(const Kind& kind, const Function& f, std::vector<double>& abscissa,
+                     std::vector<double>& ordinate) {
+    const std::size_t size = f.is_double() ? 8 : 4;
+    const bool wide = f.is_double() && kind.bytes >= f.count * 16;  // writers differ in the precision of the abscissa
+    const std::size_t before = f.even ? 0 : wide ? 8 : 4;
+    if (kind.bytes / (before + size) < f.count) {
+      refuse(fmt::format("{} values in {} bytes", f.count, kind.bytes));
+    }
+    const std::string_view view(bytes_);
+    const auto value = [&](std::size_t at, std::size_t width) {
+      return width == 8 ? number_at<double>(view, at, kind.big_endian)
+                        : static_cast<double>(number_at<float>(view, at, kind.big_endian));
+    };
+    for (std::size_t i = 0; i < f.count; ++i) {
+      const std::size_t at = at_ + i * (before + size);
+      if (before > 0) abscissa.push_back(value(at, before));
+      ordinate.push_back(value(at + before, size));
+    }
+    at_ += static_cast<std::size_t>(kind.bytes);
+  }
+
+  void text_values(const Function& f, std::vector<double>& abscissa, std::vector<double>& ordinate) {
+    const std::uint64_t wanted = f.even ? f.count : 2 * f.count;
+    for (std::uint64_t done = 0; done < wanted;) {
+      const std::size_t begin = at_;
+      std::string text(at_ < bytes_.size() ? line() : std::string_view());
+      if (begin >= bytes_.size() || is_mark(text)) {
+        at_ = begin;
+        refuse(fmt::format("{} of {} values are there", f.even ? done : done / 2, f.count));
+      }
+      std::replace(text.begin(), text.end(), 'D', 'E');
+      const char *at = text.data(), *end = at + text.size();
+      while (done < wanted) {
+        while (at != end && (*at == ' ' || *at == '+')) ++at;
+        if (at == end) break;
+        double value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc{}) {
+          at_ = begin + static_cast<std::size_t>(at - text.data());
+          refuse(fmt::format("'{}' is not a number",
+                             std::string_view(at, static_cast<std::size_t>(end - at)).substr(0, 20)));
+        }
+        at = next;
+        (f.even || done % 2 == 1 ? ordinate : abscissa).push_back(value);
+        ++done;
+      }
+    }
+  }
+
+  void add(const Function& f, std::vector<double> abscissa, std::vector<double> ordinate) {
+    RawColumn column;
+    const bool known = is_field_name(parse_column_name(f.title).base);
+    const bool by_ordinate = f.title.empty() || (!known && is_field_name(parse_column_name(f.ordinate).base));
+    column.name = by_ordinate ? f.ordinate : f.title;
+    if (column.name.empty()) column.name = f.response;
+    column.named = !column.name.empty();
+    if (!column.named) column.name = fmt::format("#{}", table_.columns.size() + 1);
+    column.place = by_ordinate && !f.title.empty() ? f.title : "";
+    column.unit = f.unit;
+    column.count = ordinate.size();
+    column.rows = rows_of(f, abscissa);
+    column.numbers = std::move(ordinate);
+    table_.columns.push_back(std::move(column));
+  }
+
+  /// Functions of one spacing share rows; those of uneven spacing have the abscissa as a column of their own.
+  std::size_t rows_of(const Function& f, std::vector<double>& abscissa) {
+    const auto same =
+        std::tuple(f.count, f.even ? f.start : -1.0 - static_cast<double>(times_), f.even ? f.interval : 0.0);
+    const auto [at, is_new] = rows_.emplace(same, rows_.size());
+    if (!is_new) return at->second;
+    if (table_.rows.size() <= at->second) table_.rows.emplace_back();
+    RawRows& rows = table_.rows[at->second];
+    if (f.even) {
+      const auto unit = f.abscissa_unit.empty() ? std::nullopt : find_unit(f.abscissa_unit, Quantity::time);
+      const double factor = unit ? unit->factor : 1;
+      rows.interval = f.interval * factor;
+      rows.start = f.start * factor;
+      return at->second;
+    }
+    RawColumn time;
+    time.name = "time";
+    time.unit = f.abscissa_unit.empty() ? "s" : f.abscissa_unit;
+    time.place = f.title;
+    time.rows = at->second;
+    time.count = abscissa.size();
+    time.numbers = std::move(abscissa);
+    table_.columns.push_back(std::move(time));
+    ++times_;
+    return at->second;
+  }
+
+  std::string path_, bytes_;
+  RawTable& table_;
+  std::size_t at_ = 0, dataset_at_ = 0, datasets_ = 0, others_ = 0, times_ = 0;
+  std::vector<std::string> skipped_;
+  std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_;
+};
+
+/// A mark alone in the first line that says something, then the number of a dataset.
+bool is_universal_file(std::string_view head) {
+  bool marked = false;
+  for (std::size_t at = 0; at < head.size();) {
+    const std::size_t end = std::min(head.find('\n', at), head.size());
+    const std::string_view text = trimmed(head.substr(at, end - at));
+    at = end + 1;
+    if (text.empty()) continue;
+    if (!marked) {
+      if (text != "-1") return false;
+      marked = true;
+      continue;
+    }
+    const std::string_view number = text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
+    const std::string_view rest = text.substr(number.size());
+    return !number.empty() && number.size() <= 4 && (rest.empty() || rest.front() == 'b' || rest.front() == 'B');
+  }
+  return false;
+}
+
+RawTable read_universal_file(std::shared_ptr<const InputFile> file) {
+  RawTable table;
+  table.path = file->path();
+  File(*file, table).read();
+  return table;
+}
+
+}  // namespace
+
+const Reader uff_reader = {"UFF 58", is_universal_file, read_universal_file};
+
+}  // namespace tribofit
