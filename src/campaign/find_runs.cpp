@@ -23,13 +23,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_trace_name(const fs::path& path) {
+/// Traces of a folder by their names: text, or the binary formats where there is no text.
+enum class Named { no, text, binary };
+
+Named named_as(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   // The manifest of a folder of runs holds their conditions, not a run.
-  return (extension == ".csv" || extension == ".tsv") && path.filename() != manifest_name &&
-         path.filename().string().front() != '.';
+  if (path.filename() == manifest_name || path.filename().string().front() == '.') return Named::no;
+  if (extension == ".csv" || extension == ".tsv") return Named::text;
+  return is_one_of(extension, {".mat", ".uff", ".unv", ".tdms"}) ? Named::binary : Named::no;
 }
 
 /// The manifest's condition where the command line says nothing; where both speak and differ, a warning.
@@ -170,11 +174,15 @@ void name_runs(std::vector<Run>& runs) {
 
 FolderTraces traces_in(const std::string& folder) {
   FolderTraces found;
+  std::vector<std::string> binary;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string path = it->path().string();
-    if (!is_trace_name(it->path()) || it->is_directory(error)) continue;
-    if (!is_output_table(path)) {
+    const Named named = named_as(it->path());
+    if (named == Named::no || it->is_directory(error)) continue;
+    if (named == Named::binary) {
+      binary.push_back(path);
+    } else if (!is_output_table(path)) {
       found.paths.push_back(path);
     } else {
       found.left_out += (found.left_out.empty() ? "" : ", ") + it->path().filename().string();
@@ -183,10 +191,12 @@ FolderTraces traces_in(const std::string& folder) {
   if (error) {
     throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
   }
+  if (found.paths.empty()) found.paths = std::move(binary);
   if (found.paths.empty()) {
     const std::string only = ", only tables that --csv wrote (" + found.left_out + ")";
     throw InputError("the folder has no traces" + (found.left_out.empty() ? "" : only),
-                     "name a folder with .csv files, or a trace itself", {folder, 0, ""});
+                     "name a folder with .csv, .tsv, .mat, .uff, .unv or .tdms files, or a trace itself",
+                     {folder, 0, ""});
   }
   std::sort(found.paths.begin(), found.paths.end());
   return found;

@@ -187,7 +187,7 @@ std::optional<Sampling> sampling_from(const RawFact& fact) {
                        "abtastfrequenz", "\u91c7\u6837\u9891\u7387", "\u91c7\u6837\u7387"})) {
     sampling.rate = value_of(fact, Quantity::frequency, "Hz").value_or(0);
   } else if (is_one_of(base, {"dt", "interval", "sampleinterval", "samplinginterval", "samplingtimeinterval",
-                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "abtastintervall",
+                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "deltax", "abtastintervall",
                               "\u91c7\u6837\u95f4\u9694"})) {
     sampling.interval = value_of(fact, Quantity::time, "s").value_or(0);
   }

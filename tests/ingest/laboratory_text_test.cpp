@@ -170,6 +170,26 @@ TEST_F(LaboratoryText, UnitsOfASecondHeaderRow) {
   EXPECT_NEAR(trace.friction[3], -0.015, 1e-15);
 }
 
+TEST_F(LaboratoryText, MeasurementFilesOfLabVIEW) {
+  const std::string above =
+      "LabVIEW Measurement\t\nSeparator\tTab\nTime\t17:04:51.123\n***End_of_Header***\t\n\t\nChannels\t2\t\n"
+      "Samples\t40\t40\t\nY_Unit_Label\tNewton\tmm/s\t\nX0\t0.0E+0\t0.0E+0\t\nDelta_X\t0.002\t0.002\t\n"
+      "***End_of_Header***\t\t\t\n";
+  std::string with = above + "X_Value\tFriction force\tVelocity\tComment\n",
+              without = above + "\tFriction force\tVelocity\tComment\n";
+  for (int i = 0; i < 40; ++i) {
+    with += fmt::format("{:.6f}\t{}\t{}\t\n", 0.002 * i, 10 + i, 6.5);
+    without += fmt::format("\t{}\t{}\t\n", 10 + i, 6.5);
+  }
+  for (const std::string& text : {with, without}) {
+    const Trace trace = read_trace(write(text, "run.lvm"));
+    ASSERT_EQ(trace.size(), 40U);
+    EXPECT_NEAR(trace.rate(), 500, 1e-6);
+    EXPECT_EQ(trace.friction[3], 13);
+    EXPECT_DOUBLE_EQ(trace.velocity[3], 6.5e-3);
+  }
+}
+
 TEST_F(LaboratoryText, UnitsOfForceAndTorque) {
   const auto reads = [&](const std::string& unit) {
     return read_trace(write("time [s],Ft [" + unit + "],v_b [mm/s]\n0,2,1\n1,2,2\n2,2,3\n")).friction[0];

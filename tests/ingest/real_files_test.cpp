@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "temp_files.hpp"
+#include "tribofit/ingest/list_columns.hpp"
 
 namespace tribofit {
 namespace {
@@ -117,6 +118,70 @@ TEST_F(RealFiles, EveryDevelopmentTrace) {
   EXPECT_DOUBLE_EQ(temperature.temperature[0], 24);
   const Trace speed = read_trace((folder / "asym.csv").string());
   EXPECT_NEAR(speed.disc_speed[0], 0.00063 * revolution / 60, 1e-15);
+}
+
+/// Files as laboratories have them.
+class LaboratoryFiles : public RealFiles {
+ protected:
+  void SetUp() override {
+    RealFiles::SetUp();
+    if (!IsSkipped() && !std::filesystem::exists(shared_ / "lab-files")) GTEST_SKIP() << "no files in " << shared_;
+  }
+  std::string file(const char* name) const { return (shared_ / "lab-files" / name).string(); }
+  /// Read with these columns, at a stated speed and radius.
+  Trace read(const char* name, std::map<std::string, std::string> columns) const {
+    ReadOptions options;
+    options.columns = std::move(columns);
+    options.conditions.speed = {1, "command line"};
+    return read_trace(file(name), options);
+  }
+};
+
+TEST_F(LaboratoryFiles, TextOfInstruments) {
+  const Trace umt = read("cetr_umt.csv", {{"v_b", "none"}});
+  EXPECT_EQ(umt.size(), 217U);
+  ASSERT_EQ(umt.steps.size(), 2U);
+  EXPECT_NEAR(umt.steps[1].conditions.radius.value, 3.9493e-3, 1e-12);
+  EXPECT_NEAR(umt.steps[1].conditions.load.value, 0.2 * 9.80665, 1e-9);
+  EXPECT_NEAR(mean(umt.load), 0.2 * 9.80665, 0.01);
+  const Trace mtm = read("pcs_mtm_5.txt", {});
+  EXPECT_EQ(mtm.size(), 1000U);
+  EXPECT_EQ(mtm.velocity_kind, VelocityKind::relative);
+  EXPECT_NEAR(mtm.conditions.radius.value, 21.232e-3, 1e-12);
+  EXPECT_NEAR(mean(mtm.load), 20, 0.1);
+  EXPECT_EQ(list_columns(file("pcs_mtm_1.txt")).columns.size(), 8U) << "a map of a film, no trace";
+}
+
+TEST_F(LaboratoryFiles, OneRunOnTwoClocks) {
+  ReadOptions options;
+  options.columns = {{"force", "Force:100N/V"}};
+  options.second_file = file("konrad_a3MR.csv");
+  options.second_columns = {{"v_r", "Servo motor speed:mm/s"}};
+  const Trace trace = read_trace(file("konrad_a3NI.csv"), options);
+  EXPECT_NEAR(trace.rate(), 2000, 1e-6);
+  EXPECT_EQ(trace.friction_kind, FrictionKind::force);
+  EXPECT_GT(trace.size(), 1000U);
+}
+
+TEST_F(LaboratoryFiles, Binary) {
+  ReadOptions pull;
+  pull.columns = {{"mu", "Fnorm"}, {"v_b", "none"}};
+  pull.conditions = {{0.01, "command line"}, {0.11, "command line"}, {}};
+  const Trace paper = read_trace(file("npusteln_k168Nm_v1100.mat"), pull);
+  EXPECT_EQ(paper.size(), 28721U);
+  EXPECT_NEAR(paper.rate(), 2000, 1e-6);
+  const ColumnListing frame = list_columns(file("marino_s_b_250g_x.mat"));
+  EXPECT_EQ(frame.columns.size(), 2U);
+  EXPECT_EQ(frame.columns[1].count, 2501U);
+  const ColumnListing text = list_columns(file("pyuff_58_ascii.uff")),
+                      binary = list_columns(file("pyuff_58b_binary.uff"));
+  EXPECT_EQ(text.columns[0].count, 79292U);
+  EXPECT_EQ(binary.columns[0].count, 79292U);
+  EXPECT_NEAR(text.columns[0].highest, binary.columns[0].highest, 1e-6);
+  EXPECT_EQ(text.columns[0].unit, "Pa");
+  EXPECT_EQ(list_columns(file("nptdms_big_endian.tdms")).columns[1].count, 3500U);
+  EXPECT_EQ(list_columns(file("nptdms_raw_timestamps.tdms")).columns[0].count, 128U);
+  EXPECT_THROW(list_columns(file("nptdms_raw1.tdms")), InputError) << "raw values of DAQmx";
 }
 
 }  // namespace

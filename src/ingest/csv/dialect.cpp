@@ -33,6 +33,7 @@ struct Census {
   std::size_t cells = 0;  // without empty ones at the end
   std::size_t filled = 0;
   std::size_t numbers = 0;
+  bool starts = false;  // with a number
   bool mostly_numbers() const { return numbers > 0 && 2 * numbers >= filled; }
 };
 
@@ -42,8 +43,9 @@ Census take_census(std::string_view line, char separator, char decimal) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i].empty()) continue;
     census.cells = i + 1;
-    ++census.filled;
-    if (is_number(cells[i], decimal)) ++census.numbers;
+    const bool number = is_number(cells[i], decimal);
+    if (census.filled++ == 0) census.starts = number;
+    if (number) ++census.numbers;
   }
   return census;
 }
@@ -80,15 +82,24 @@ std::size_t usual_numbers(const std::vector<Census>& lines, std::size_t columns)
   return most_frequent(count);
 }
 
+bool rows_start_with_numbers(const std::vector<Census>& lines, std::size_t columns) {
+  std::ptrdiff_t with = 0;
+  for (const Census& line : lines) {
+    if (line.cells == columns && line.mostly_numbers()) with += line.starts ? 1 : -1;
+  }
+  return with > 0;
+}
+
 struct Layout {
   Form form{',', '.'};
   std::size_t columns = 0;
   std::vector<Census> lines;
   std::size_t numbers = 0;  // in most rows
+  bool starts = false;      // most rows do, with a number
 
-  /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is none.
+  /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is none, and no more is "Samples,100,100".
   bool is_row(const Census& line) const {
-    return line.cells == columns && line.mostly_numbers() && 2 * line.numbers > numbers;
+    return line.cells == columns && line.mostly_numbers() && 2 * line.numbers > numbers && (line.starts || !starts);
   }
 };
 
@@ -99,12 +110,13 @@ Layout find_layout(const std::vector<HeadLine>& lines) {
   Layout best;
   double best_score = 0;
   for (const Form& form : forms) {
-    Layout layout{form, 0, {}, 0};
+    Layout layout{form, 0, {}, 0, false};
     for (const HeadLine& line : lines) {
       layout.lines.push_back(is_comment(line.text) ? Census{} : take_census(line.text, form.separator, form.decimal));
     }
     layout.columns = usual_cells(layout.lines);
     layout.numbers = usual_numbers(layout.lines, layout.columns);
+    layout.starts = rows_start_with_numbers(layout.lines, layout.columns);
     double score = 0;
     for (const Census& line : layout.lines) {
       if (line.cells != layout.columns || line.filled == 0) continue;

@@ -114,6 +114,17 @@ void take_names_above(const std::vector<HeadLine>& lines, Encoding encoding, Dia
   }
 }
 
+/// LabVIEW's measurement files: "Y_Unit_Label" is followed by the units of the columns after the first, which is X.
+void take_labels_of_units(const std::vector<HeadLine>& lines, std::size_t first, Encoding encoding, Dialect& dialect) {
+  for (std::size_t i = 0; i < first && dialect.units_line == 0; ++i) {
+    auto cells = heading_cells(lines[i].text, dialect, encoding);
+    if (cells.size() < 2 || lower_case(cells.front()) != "y_unit_label") continue;
+    cells.front() = "s";
+    dialect.units = std::move(cells);
+    dialect.units_line = i + 1;
+  }
+}
+
 void name_times_of_channels(Dialect& dialect) {
   for (std::size_t k = 0; k + 1 < dialect.names.size(); ++k) {
     if (lower_case(dialect.names[k]) != "channel name") continue;
@@ -167,6 +178,7 @@ void find_heading(const std::vector<HeadLine>& lines, std::size_t first, Encodin
     dialect.units_line = units_line;
   }
   take_names_above(lines, encoding, dialect);
+  take_labels_of_units(lines, first, encoding, dialect);
   name_times_of_channels(dialect);
 }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -17,6 +15,7 @@
 #include "fccp.hpp"
 
 #include "ingest/content_hash.hpp"
+#include "ingest/huge_pages.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -79,15 +78,6 @@ class ChunkSource : public io::ByteSourceBase {
   std::uint64_t at_, end_;
   Chunk& chunk_;
 };
-
-/// Asks for memory in pages of 2 MB: a column of millions of numbers is touched for the first time here, and page by
-/// page that costs as much as reading the numbers. Only an advice; nothing depends on it.
-void prefer_huge_pages(std::vector<double>& values) {
-  constexpr std::uintptr_t page = std::uintptr_t{1} << 21;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) & ~(page - 1);
-  const auto end = reinterpret_cast<std::uintptr_t>(values.data() + values.capacity()) & ~(page - 1);
-  if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-}
 
 class RowReader {
  public:

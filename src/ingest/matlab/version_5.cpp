@@ -11,6 +11,7 @@
 
 #include "byte_stream.hpp"
 #include "contents.hpp"
+#include "ingest/huge_pages.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -199,6 +200,8 @@ class Walk {
   }
 
   void read_numbers(const Tag& tag, std::uint64_t count, std::vector<double>& out) {
+    out.reserve(count);
+    prefer_huge_pages(out);
     out.resize(count);
     const bool as_here = tag.type == 9 && big_endian_ == (std::endian::native == std::endian::big);
     if (as_here && !tag.is_small) {
