@@ -11,7 +11,7 @@ namespace tribofit {
 namespace {
 
 /// Form of the result files; a new one makes old results be done again.
-constexpr int kForm = 2;  // 1: the checksum of a trace was another hash
+constexpr int kForm = 3;  // 1, 2: the checksum of a trace was another one
 
 /// Texts with their lengths, so that no two lists of texts become the same one.
 class Text {

@@ -33,7 +33,7 @@ const std::vector<Names>& names_of_the_field() {
         "\u6ed1\u52a8\u901f\u5ea6"}},
       {Channel::force,
        {"ft", "frictionforce", "tangentialforce", "fx", "ff", "ffriction", "force", "lateralforce", "tractionforce",
-        "reibkraft", "\u6469\u64e6\u529b"}},
+        "kraft", "reibkraft", "\u6469\u64e6\u529b"}},
       {Channel::torque,
        {"torque", "frictiontorque", "m", "moment", "drehmoment", "reibmoment", "\u626d\u77e9", "\u8f6c\u77e9"}},
       {Channel::load,

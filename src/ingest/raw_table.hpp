@@ -88,7 +88,6 @@ struct RawTable {
   std::vector<RawColumn> columns;  ///< in the order of the file
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;
-  std::uint64_t checksum = 0;  ///< of the bytes that hold the values; 0: taken of the values themselves
   bool is_finite = false;      ///< the reader knows that there is no other than finite numbers below largest_value
   std::optional<RawDefect> first_gap;  ///< the first cell without a number, where the reader can say what it holds
   std::vector<std::string> notes, warnings;

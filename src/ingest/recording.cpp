@@ -85,12 +85,12 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
   if (table.load) table.load(table, wanted, threads);
 }
 
-std::uint64_t checksum_of(const RawTable& table, const std::vector<Column>& used) {
-  if (table.checksum != 0) return table.checksum;
+/// Of the values of each channel in SI: a record is the same in whatever format it was written.
+std::uint64_t checksum_of(const FileRecord& run) {
   std::uint64_t hash = 0;
-  for (const Column& column : used) {
-    const auto& values = table.columns[column.index].numbers;
-    hash = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, hash);
+  for (const auto& values : run.channels) {
+    if (!values.empty())
+      hash = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, hash);
   }
   return hash;
 }
@@ -116,7 +116,6 @@ void to_si(const Column& column, std::vector<double>& values) {
 FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   FileRecord recording;
   recording.path = file.path;
-  recording.checksum = file.checksum;
   recording.column_names = file.column_names;
   recording.has_names = file.has_names;
   recording.file_conditions = file.file_conditions;
@@ -161,7 +160,6 @@ FileRecord read_recording(const std::string& path, const ReadOptions& options, s
 
   load_columns(table, file.columns.used, options.threads);
   take_messages(table, file);
-  file.checksum = checksum_of(table, file.columns.used);
   std::vector<FileRecord> parts;
   for (RowsPlan& plan : plans) parts.push_back(take_rows(table, std::move(plan), file));
   const auto with_friction =
@@ -171,6 +169,7 @@ FileRecord read_recording(const std::string& path, const ReadOptions& options, s
   run.notes.insert(run.notes.begin(), file.notes.begin(), file.notes.end());
   run.warnings.insert(run.warnings.begin(), file.warnings.begin(), file.warnings.end());
   for (std::size_t i = 1; i < parts.size(); ++i) join_on_one_clock(run, std::move(parts[i]));
+  run.checksum = checksum_of(run);
   return run;
 }
 

@@ -17,7 +17,7 @@ namespace tribofit {
 /// What one file holds: channels in SI as recorded, before friction and motion are made of them.
 struct FileRecord {
   std::string path;
-  std::uint64_t checksum = 0;
+  std::uint64_t checksum = 0;  ///< as in Trace
   Columns columns;
   std::vector<std::string> column_names;
   bool has_names = true;                                    ///< the file names its columns

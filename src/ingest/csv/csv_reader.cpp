@@ -72,7 +72,6 @@ void load_columns(const InputFile& file, const Dialect& dialect, RawTable& table
   }
   table.rows.front().steps = find_steps(dialect, rows, table);
   say_text_rows(rows, table);
-  table.checksum = rows.checksum;
   table.is_finite = !rows.first_gap;
   table.first_gap = rows.first_gap;
   for (RawRows& block : table.rows) block.lines = rows.lines;

@@ -14,7 +14,6 @@
 
 #include "fccp.hpp"
 
-#include "ingest/content_hash.hpp"
 #include "ingest/huge_pages.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -35,7 +34,6 @@ struct Chunk {
   std::size_t text_rows = 0;
   std::vector<TextLine> text;  // rows and lines of the chunk
   std::optional<RawDefect> first_gap;
-  std::uint64_t checksum = 0;
   std::size_t wrong_line = 0;
   std::optional<RowParser::Defect> defect;
   std::optional<std::size_t> long_line;
@@ -59,7 +57,6 @@ class ChunkSource : public io::ByteSourceBase {
   int read(char* buffer, int size) override {
     const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(size), end_ - at_));
     const std::size_t count = file_.read(at_, {buffer, wanted});
-    chunk_.checksum = xxh64({buffer, count});
     // io::LineReader ends its lines with NUL, so that one in the file would cut a line unseen.
     if (const void* zero = std::memchr(buffer, '\0', count)) {
       const char* at = static_cast<const char*>(zero);
@@ -218,7 +215,6 @@ class RowReader {
       rows_.values[k].insert(rows_.values[k].end(), chunk.values[k].begin(), chunk.values[k].end());
     }
     rows_.text_rows += chunk.text_rows;
-    rows_.checksum = xxh64(chunk.checksum, rows_.checksum);
     next_line_ += chunk.lines;
   }
 

@@ -24,7 +24,6 @@ struct TextLine {
 struct Rows {
   std::vector<std::vector<double>> values;  ///< one vector for each wanted cell, in the same order
   LineMap lines;
-  std::uint64_t checksum = 0;          ///< of the bytes read, XXH64
   std::size_t text_rows = 0;           ///< dropped because they hold text, not numbers
   std::vector<TextLine> text;          ///< the first of them
   std::optional<RawDefect> first_gap;  ///< the first cell that holds no number of a usable size: its value is NaN

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contents.hpp"
+#include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -74,7 +75,7 @@ void convert(const matvar_t& v, std::vector<double>& out) {
 
 class Version73 : public MatContents {
  public:
-  explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
+  explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) { refuse_cut_off(); }
 
   void describe(const std::function<void(MatArray&&)>& see) override {
     const Opened mat(*file_);
@@ -93,6 +94,24 @@ class Version73 : public MatContents {
   }
 
  private:
+  /// The superblock of HDF5 (versions 0 and 1), behind MATLAB's own head, states where the file ends.
+  void refuse_cut_off() const {
+    constexpr std::uint64_t superblock = 512;
+    std::string bytes(64, '\0');
+    bytes.resize(file_->read(superblock, bytes));
+    if (bytes.size() < 64 || !bytes.starts_with("\x89HDF")) {
+      throw InputError(fmt::format("byte {}: no HDF5 file begins here", superblock),
+                       "the file is cut off or damaged; copy or save it again", {file_->path(), 0, ""});
+    }
+    const int version = bytes[8];
+    if (version > 1 || bytes[13] != 8) return;
+    const auto end = number_at<std::uint64_t>(bytes, version == 0 ? 40 : 44, false);
+    const auto base = number_at<std::uint64_t>(bytes, version == 0 ? 24 : 28, false);
+    if (end <= file_->size() || end + base <= file_->size()) return;
+    throw InputError(fmt::format("is cut off at byte {}: it states {} bytes", file_->size(), end),
+                     "copy or save the file again", {file_->path(), 0, ""});
+  }
+
   /// The file in the hands of libmatio, and of nobody else meanwhile.
   class Opened {
    public:

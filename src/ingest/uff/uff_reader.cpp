@@ -250,8 +250,11 @@ class File {
 
   /// Functions of one spacing share rows; those of uneven spacing have the abscissa as a column of their own.
   std::size_t rows_of(const Function& f, std::vector<double>& abscissa) {
-    const auto same =
-        std::tuple(f.count, f.even ? f.start : -1.0 - static_cast<double>(times_), f.even ? f.interval : 0.0);
+    for (const std::size_t time : times_) {
+      if (!f.even && table_.columns[time].numbers == abscissa) return table_.columns[time].rows;
+    }
+    const auto uneven = -1.0 - static_cast<double>(times_.size());
+    const auto same = std::tuple(f.count, f.even ? f.start : uneven, f.even ? f.interval : 0.0);
     const auto [at, is_new] = rows_.emplace(same, rows_.size());
     if (!is_new) return at->second;
     if (table_.rows.size() <= at->second) table_.rows.emplace_back();
@@ -270,14 +273,15 @@ class File {
     time.rows = at->second;
     time.count = abscissa.size();
     time.numbers = std::move(abscissa);
+    times_.push_back(table_.columns.size());
     table_.columns.push_back(std::move(time));
-    ++times_;
     return at->second;
   }
 
   std::string path_, bytes_;
   RawTable& table_;
-  std::size_t at_ = 0, dataset_at_ = 0, datasets_ = 0, others_ = 0, times_ = 0;
+  std::size_t at_ = 0, dataset_at_ = 0, datasets_ = 0, others_ = 0;
+  std::vector<std::size_t> times_;  // columns of abscissas
   std::vector<std::string> skipped_;
   std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_;
 };
