@@ -51,10 +51,10 @@ TEST(FormatsOfFiles, OneRecordGivesOneResult) {
   const auto result_of = [&](const std::string& name) {
     const Outcome outcome = shop.identify("--radius 15mm --quiet --json r.json " + name);
     EXPECT_EQ(outcome.status, 0) << name << ": " << outcome.err;
-    auto json = nlohmann::json::parse(contents(shop / "r.json"));
-    EXPECT_EQ(json["trace"]["path"], name);
-    json["trace"].erase("path");
-    return json;
+    auto result = nlohmann::json::parse(contents(shop / "r.json"));
+    EXPECT_EQ(result["trace"]["path"], name);
+    result["trace"].erase("path");
+    return result;
   };
   const auto expected = result_of("trace.csv");
   for (const char* name : {"blanks.txt", "v5.mat", "packed.mat", "big-endian.mat", "v73.mat", "text.uff", "binary.uff",

@@ -36,7 +36,7 @@ struct Step {
 /// clock at each step the steps follow one another.
 struct Trace {
   std::string path;
-  std::uint64_t checksum = 0;  ///< of the bytes of the rows of the input file(s), by XXH64
+  std::uint64_t checksum = 0;  ///< of the values of the channels in SI, by XXH64
 
   std::vector<double> time;      ///< [s]
   std::vector<double> friction;  ///< [1] or [N], see friction_kind

@@ -50,7 +50,7 @@ struct Function {
 };
 
 /// The head of a dataset: "    58" or "    58b     1     2          11      317168 ...".
-struct Kind {
+struct DatasetHead {
   int number = 0;
   bool binary = false, big_endian = false;
   int format = 2;  // of floating point numbers: 2 is IEEE 754
@@ -68,7 +68,7 @@ class File {
     while (find_mark()) {
       dataset_at_ = at_;
       const std::string_view head = line();
-      const Kind kind = kind_of(head);
+      const DatasetHead kind = kind_of(head);
       ++datasets_;
       if (kind.number == 58) {
         read_function(kind);
@@ -125,8 +125,8 @@ class File {
     return value;
   }
 
-  Kind kind_of(std::string_view head) const {
-    Kind kind;
+  DatasetHead kind_of(std::string_view head) const {
+    DatasetHead kind;
     kind.number = number<int>(field(head, 0, 6), "the number of the dataset");
     kind.binary = head.size() > 6 && lower_case(head.substr(6, 1)) == "b";
     if (kind.number != 58 || !kind.binary) return kind;
@@ -161,7 +161,7 @@ class File {
     return f;
   }
 
-  void read_function(const Kind& kind) {
+  void read_function(const DatasetHead& kind) {
     const Function f = header();
     if (kind.lines != header_lines) refuse(fmt::format("{} lines above the values, not {}", kind.lines, header_lines));
     const bool is_time = f.abscissa != frequency_abscissa && lower_case(f.abscissa_unit) != "hz";
@@ -183,7 +183,7 @@ class File {
     add(f, std::move(abscissa), std::move(ordinate));
   }
 
-  void binary_values(const Kind& kind, const Function& f, std::vector<double>& abscissa,
+  void binary_values(const DatasetHead& kind, const Function& f, std::vector<double>& abscissa,
                      std::vector<double>& ordinate) {
     const std::size_t size = f.is_double() ? 8 : 4;
     const bool wide = f.is_double() && kind.bytes >= f.count * 16;  // writers differ in the precision of the abscissa
