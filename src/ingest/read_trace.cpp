@@ -22,15 +22,15 @@
 namespace tribofit {
 namespace {
 
-using Names = std::map<std::string, std::string>;
+using NamedColumns = std::map<std::string, std::string>;
 
-bool is_named(const Names& columns, std::string_view channel) {
+bool is_named(const NamedColumns& columns, std::string_view channel) {
   const auto request = columns.find(std::string(channel));
   return request != columns.end() && !request->second.empty() && request->second != "none";
 }
 
 /// With two files a column may be in either; in one of those it is asked of it must be.
-void check_requests(const Names& columns, std::initializer_list<const FileRecord*> files) {
+void check_requests(const NamedColumns& columns, std::initializer_list<const FileRecord*> files) {
   for (std::size_t k = 0; k < channel_count; ++k) {
     const auto channel = static_cast<Channel>(k);
     if (!is_named(columns, to_string(channel))) continue;
@@ -46,13 +46,13 @@ void check_requests(const Names& columns, std::initializer_list<const FileRecord
 }
 
 /// What one file is asked for is not looked for in the other.
-void leave_to_other(const Names& named, Names& other) {
+void leave_to_other(const NamedColumns& named, NamedColumns& other) {
   const std::array<std::vector<std::string>, 2> descriptions = {{{"mu", "force", "torque"}, {"v_b", "v_r"}}};
   const auto set_aside = [&](const std::string& channel) {
     if (!is_named(other, channel)) other[channel] = "none";
   };
   for (const auto& channels : descriptions) {
-    const auto in = [&](const Names& columns) {
+    const auto in = [&](const NamedColumns& columns) {
       return std::any_of(channels.begin(), channels.end(), [&](const auto& c) { return is_named(columns, c); });
     };
     if (in(named) && !in(other)) std::for_each(channels.begin(), channels.end(), set_aside);
