@@ -98,7 +98,7 @@ TEST(FormatsOfFiles, DamagedOnesAreRefusedWithAPlace) {
   shop.write("c.mat", whole.substr(0, whole.size() / 2));
   const Outcome outcome = shop.identify("--radius 15mm c.mat");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("cut off or damaged"));
+  EXPECT_THAT(outcome.err, HasSubstr("is cut off at byte"));
 }
 
 TEST(FormatsOfFiles, ColumnsOfTheSecondFileNeedOne) {
