@@ -94,7 +94,7 @@ TEST(HiddenEffects, AreNamedInOtherKindsOfRecord) {
 
 /// Sliding with white, AR(1) and 1/f noise in turn.
 TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
-  for (const Outcome& o : run_cases(plan_record_kinds({"steps", "ramps", "sines", "reversals"}, 6, 0), 0)) {
+  for (const Outcome& o : run_cases(plan_record_kinds({"steps", "ramps", "sines", "reversals"}, 3, 0), 0)) {
     EXPECT_TRUE(o.right) << o.of.name << ": " << names(o);
   }
 }

@@ -29,7 +29,7 @@ inline Fit made_up_fit(Law law, double decay, Protocol protocol = Protocol::join
   fit.parameters = {made_up_parameter(fit.model, 0, 0.509, 0.0012), made_up_parameter(fit.model, 1, 0.318, 0.0021),
                     made_up_parameter(fit.model, 2, decay, 0.43)};
   fit.error = {0.0031, 0.006, 0.05, 0.0032};
-  fit.floor = {0.0030, 0.0040, 0.0031, "stick"};
+  fit.floor = {.noise = 0.0030, .scatter = 0.0040, .rmse = 0.0031, .source = "stick"};
   fit.explained = 0.9987;
   fit.converged = true;
   fit.observations = 6;
