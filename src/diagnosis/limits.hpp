@@ -70,7 +70,9 @@ inline constexpr double kPutOffLine = 0.3;      ///< of the best fall: a line is
 inline constexpr double kHopelessChance = 0.5;  ///< p-value at low resolution: full resolution does not mend it
 inline constexpr double kFarPart = 0.08;        ///< of the best fall behind the best: resolution changes less
 inline constexpr double kFarNoise = 0.05;       ///< and of the squares of the noise
-inline constexpr std::size_t kMostStarts = 2;   ///< the linear step ranks starts well, but not always the first two
+/// Of the fastest slip: where a law that nothing holds at rest may fall; a factor of three is what a search bridges.
+inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
+inline constexpr std::size_t kMostStarts = 2;  ///< the linear step ranks starts well, but not always the first two
 
 // The ladder.
 inline constexpr double kWithdrawnPart = 0.7;     ///< of what a free function explains: less, and the name is wrong

@@ -219,18 +219,40 @@ struct Promise {
 };
 
 /// The start with the effect's `values` among the parameters of the base: the model has an order of its own.
-Promise start_with(const Trial& base, const EffectInfo& effect, std::size_t offset, const std::vector<double>& values,
-                   const Bounds& bounds) {
+Promise start_with(const std::vector<double>& base, const EffectInfo& effect, std::size_t offset,
+                   const std::vector<double>& values, const Bounds& bounds) {
   Promise promise;
   std::size_t from_base = 0;
   const std::size_t added = effect.parameters.size();
-  for (std::size_t k = 0; k < base.p.size() + added; ++k) {
+  for (std::size_t k = 0; k < base.size() + added; ++k) {
     const bool own = k >= offset && k < offset + added;
-    promise.start.push_back(std::clamp(own ? values[k - offset] : base.p[from_base], bounds.lower[k], bounds.upper[k]));
+    promise.start.push_back(std::clamp(own ? values[k - offset] : base[from_base], bounds.lower[k], bounds.upper[k]));
     if (!own) ++from_base;
     if (own && !effect.parameters[k - offset].periodic) promise.place.push_back(values[k - offset]);
   }
   return promise;
+}
+
+/// Parameters of the base from which a search begins: as fitted, and where nothing sticks also with the law falling at
+/// other speeds. Without a break-away to hold it a law may have taken the place of the effect, and from there no step
+/// leads back.
+std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial& base) {
+  std::vector<std::vector<double>> out = {base.p};
+  const auto& slips = level.observations.slips;
+  if (std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; })) return out;
+  std::vector<double> anew = start_from_data(base.model, level.observations, bounds_of(base.model, level.observations));
+  std::copy(base.p.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()), base.p.end(),
+            anew.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()));
+  for (std::size_t k = 0; k < base.model.base_count(); ++k) {
+    const BoundScaling scaling = base.model.parameters()[k].parameter.bound_scaling;
+    if (scaling != BoundScaling::against_speed && scaling != BoundScaling::with_speed) continue;
+    for (const double part : limits::kFallsWithin) {  // of the fastest slip
+      const double speed = part * level.observations.fastest;
+      out.push_back(anew);
+      out.back()[k] = scaling == BoundScaling::with_speed ? speed : 1 / speed;
+    }
+  }
+  return out;
 }
 
 /// Squares at a start and after a linear step from it, less those of a rigid stick; nothing where they are not finite.
@@ -271,19 +293,24 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   const std::size_t offset = model.offset_of(candidate.info.key);
   const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
   std::vector<Promise> promises;
-  for (const auto& values : starts.values) {
-    Promise promise = start_with(base, candidate.info, offset, values, bounds);
+  const std::vector<std::vector<double>> bases = bases_of_search(level, base);
+  const auto try_start = [&](std::size_t from, const std::vector<double>& values) {
+    Promise promise = start_with(bases[from], candidate.info, offset, values, bounds);
+    promise.place.push_back(static_cast<double>(from));
     const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds);
-    if (!step) continue;
+    if (!step) return;
     promise.squares = std::min(step->here, step->there);
     // A linear step promises the same from every phase; the start that is lower now is the nearer one.
     promise.score = step->there + 1e-2 * step->here;
     keep_best_of_place(std::move(promise), promises);
+  };
+  for (const auto& values : starts.values) {
+    for (std::size_t from = 0; from < bases.size(); ++from) try_start(from, values);
   }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.score < b.score; });
   SearchStart found;
-  found.places = starts.places;
+  found.places = starts.places * static_cast<double>(bases.size());
   if (promises.empty()) return found;
   const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
   found.promised = sum(squares_after(base.linear, stay)) - base.stick.rigid - promises[0].squares;

@@ -154,7 +154,13 @@ std::string command(const std::vector<std::string>& words, const ReportOptions& 
   return command_line(words, inputs);
 }
 
-/// The user's own options for `identify`, then the effects of the final model and `more`.
+/// The law found is none of those that `identify` fits unless it is told.
+bool must_name_law(const Law& law, const ReportOptions& options) {
+  const std::vector<Law> fitted = IdentifyOptions().laws;
+  return std::find(fitted.begin(), fitted.end(), law) == fitted.end() && !has_option(options.arguments, "--law");
+}
+
+/// The user's own options for `identify`, then the law and the effects of the final model and `more`.
 std::string final_model_command(const DiagnosedTraces& result, const ReportOptions& options,
                                 const std::vector<std::string>& more = {}) {
   // Options that only `diagnose` knows go, and effects that the command names itself.
@@ -162,6 +168,7 @@ std::string final_model_command(const DiagnosedTraces& result, const ReportOptio
   if (!result.fits.empty()) {
     const FrictionModel& model = result.fits[result.best].model;
     const std::vector<std::string> names = model.effect_names();
+    if (must_name_law(model.law(), options)) words.insert(words.end(), {"--law", std::string(to_string(model.law()))});
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (std::holds_alternative<Formula>(model.effects()[k])) {
         std::erase(dropped, "--formula");  // it stays as the user wrote it

@@ -129,6 +129,20 @@ TEST(BaseLaw, TheLawsOfTheListCompete) {
   }
 }
 
+/// The textbook Stribeck curve whose viscous part is the larger: without a break-away to hold it the law alone takes
+/// the place of the rise, and must be let go again.
+TEST(BaseLaw, AStrongViscousPartIsFoundBesideTheStribeckFall) {
+  for (const double sigma : {0.0005, 0.002, -0.0005}) {
+    const auto mu = [sigma](double v) { return 0.35 + 0.15 * std::exp(-v / 8) + sigma * v; };
+    const DiagnosedTraces out = diagnose(std::vector<TraceInput>{speed_steps(mu, 3)});
+    EXPECT_EQ(to_string(out.diagnosis.law), "exponential") << sigma;
+    EXPECT_THAT(names(out.diagnosis), ElementsAre("viscous")) << sigma;
+    const FitParameter& found = out.fits.back().parameters.back();
+    EXPECT_NEAR(found.value, 1e3 * sigma, 4 * found.std_error) << sigma;
+    EXPECT_LT(out.diagnosis.ladder.back().held_out_rmse, 1.1 * out.diagnosis.floor_rmse) << sigma;
+  }
+}
+
 TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const DiagnosedTraces result = diagnose(constant_friction(seed));
