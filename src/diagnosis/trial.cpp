@@ -61,7 +61,8 @@ double judge(const DiagnosisContext& context, const ModelResiduals& residuals, c
     trial.at_bound[k] = trial.p[k] <= bounds.lower[k] + 1e-3 * tolerance || trial.p[k] >= bounds.upper[k] - tolerance;
     trial.linear.free[k] = !trial.at_bound[k];
   }
-  trial.linear.level = level_change(trial.model, trial.p);
+  // Several records have levels of their own, which are no noise that wanders from one to the next.
+  if (context.records.size() == 1) trial.linear.level = level_change(trial.model, trial.p);
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
   trial.held_out = held_out_squares(trial.linear, context.blocks);
   pay_for_scatter(trial.whitening, squares);

@@ -100,7 +100,8 @@ Freedom freedom_of(const FitContext& context, const std::vector<double>& p, cons
 void fill_parameters(const FitContext& context, const Solution& solution, const NormalEquations& equations,
                      const Freedom& freedom, Fit& fit) {
   SlowLevels slow;
-  if (!context.by_extremes())
+  // Several records have levels of their own, which are no noise that wanders from one to the next.
+  if (!context.by_extremes() && context.records.size() == 1)
     slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside);
   const Spread spread = spread_of(influences_of(context, solution, equations, freedom), slow);
   for (std::size_t k = 0; k < solution.values().size(); ++k) {

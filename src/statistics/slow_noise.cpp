@@ -46,7 +46,9 @@ Periodogram windowed_periodogram(std::span<const double> series) {
   const std::size_t size = padded(series.size());
   double mean = 0;
   for (const double x : series) mean += x / n;
-  constexpr double kBandwidth = 1.5;  // of the window, in 1/n
+  // Of values about one frequency so many are worth one: n sum(w^4) / sum(w^2)^2 of the Hann window
+  // (P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70).
+  constexpr double kBandwidth = 35.0 / 18;
   // A Hann window keeps a line and a slope at their own frequencies.
   std::vector<double> windowed(series.begin(), series.end());
   double weights = 0;
