@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "../kinematics/stick_slip_truth.hpp"
-#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
@@ -205,22 +204,6 @@ TEST(NotAltered, ARoundedPlateauIsNotOff) {
     rounded(kVelocity, step)(trace, random);
     const Motion motion = compute_motion(std::move(trace));
     EXPECT_LT(std::abs(motion.plateau_ratio - 1), 5 * motion.plateau_ratio_std_error) << step;
-  }
-}
-
-TEST(Diagnosed, NamesNoEffectWhileAProblemStands) {
-  const auto problems = {rounded(kVelocity, 3.2e-3), clipped_velocity(0.6, 5e-6), clipped_friction(0.45, 1e-3)};
-  for (const auto& alter : problems) {
-    Trace trace = truth::simulate(rig_of(11)).trace;
-    Random random;
-    alter(trace, random);
-    const DiagnosedTraces found = diagnose({{"altered", {}, std::make_shared<const Trace>(std::move(trace))}});
-    EXPECT_NE(found.diagnosis.verdict, Verdict::effect_found);
-    EXPECT_THAT(found.diagnosis.messages, ::testing::Contains(::testing::HasSubstr("no effect of friction is named")));
-    for (const EffectFinding& effect : found.diagnosis.effects) {
-      EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
-      EXPECT_NE(effect.status, EffectStatus::equivalent) << effect.key;
-    }
   }
 }
 
