@@ -1,6 +1,5 @@
 #include "tribofit/pipeline.hpp"
 
-#include <span>
 #include <utility>
 
 #include "diagnosis/diagnose_traces.hpp"
@@ -9,7 +8,6 @@
 #include "ingest/declared_conditions.hpp"
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
 
 namespace tribofit {
@@ -46,15 +44,6 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   for (std::string& obstacle : obstacles(out.motion, out.segmentation, purpose == Purpose::law))
     out.refuse(std::move(obstacle));
   return out;
-}
-
-/// A copy of a record is no repeat of it, and confirms nothing. A checksum of 0 is not known.
-void refuse_copy(const Identification& trace, std::span<const Identification> others) {
-  for (const Identification& other : others) {
-    if (trace.checksum == 0 || trace.checksum != other.checksum) continue;
-    throw InputError("holds the same values as " + other.path, "give every run once: a copy is no repeat",
-                     {trace.path, 0, ""});
-  }
 }
 
 }  // namespace
@@ -100,17 +89,11 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     return diagnosis::prepare_to_diagnose(again, options);
   };
   std::vector<diagnosis::PreparedTrace> traces;
-  for (const TraceInput& input : inputs) {
-    traces.push_back(prepared(input));
-    for (std::size_t k = 0; k + 1 < traces.size(); ++k) refuse_copy(traces.back().trace, {&traces[k].trace, 1});
-  }
+  for (const TraceInput& input : inputs) traces.push_back(prepared(input));
   DiagnosedTraces out = diagnosis::diagnose_traces(std::move(traces), options, more.diagnosis);
   if (out.rungs.empty()) return out;
-  for (const TraceInput& input : more.confirm) {
-    const Identification other = prepared(input).trace;
-    refuse_copy(other, out.traces);
-    out.diagnosis.confirmations.push_back(diagnosis::confirm(other, out.rungs));
-  }
+  for (const TraceInput& input : more.confirm)
+    out.diagnosis.confirmations.push_back(diagnosis::confirm(prepared(input).trace, out.rungs));
   diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);
   return out;
 }

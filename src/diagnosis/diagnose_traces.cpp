@@ -16,7 +16,6 @@
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
-#include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -112,16 +111,6 @@ std::vector<Record> records_of(const std::vector<PreparedTrace>& traces) {
   return records;
 }
 
-/// The check that reports a problem in what a fit looks at; empty where none does.
-std::string open_problem(const std::vector<PreparedTrace>& traces) {
-  for (const PreparedTrace& prepared : traces) {
-    for (const HealthItem& item : prepared.trace.motion.health) {
-      if (item.status == HealthItem::Status::problem && health_check::bears_on_values(item.check)) return item.check;
-    }
-  }
-  return {};
-}
-
 /// Refuses traces without what the effects need; false when any is refused.
 bool all_can_be_diagnosed(const std::vector<Effect>& effects, const EffectRoles& roles,
                           std::vector<PreparedTrace>& traces) {
@@ -193,8 +182,6 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
     DiagnosisOptions inner = given;
     inner.threads = options.threads;
     inner.from_the_start = effects.from_the_start;
-    const std::string problem = open_problem(traces);
-    if (!problem.empty()) inner.most_effects = 0;
     const auto diagnose_all = [&] {
       return diagnose(records_of(traces), options.laws, effects.candidates, options.instruments, options.fit, inner);
     };
@@ -205,9 +192,6 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
     if (traces.size() == 1 && !diagnosed.fits.empty())
       uncorrected = fit_uncorrected(traces[0], options, out.diagnosis.law, effects);
     add_motion(records_of(traces), traces[0].trace.load_coupling, options.instruments, uncorrected, out.diagnosis);
-    if (!problem.empty())
-      out.diagnosis.messages.push_back("no effect of friction is named while the check " + problem +
-                                       " reports a problem");
     take_rungs(std::move(diagnosed.fits), out);
   } else {
     out.diagnosis.verdict = Verdict::not_enough_data;
