@@ -79,13 +79,13 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
 }
 
 /// By how much slow noise makes two shapes of friction differ more than independent noise would: the largest design
-/// effect of the parameters of the law that are no levels.
+/// effect of what no change of level can do.
 double slow_design(const Level& level, const Trial& trial) {
   const SlowNoise slow = slow_noise_of(trial.linear);
   if (slow.covariance.empty()) return 1;
   double largest = 1;
-  for (std::size_t k = 0; k < trial.model.base_count(); ++k) {
-    if (trial.model.parameters()[k].parameter.scales_with_friction) continue;
+  for (std::size_t k = 0; k < trial.p.size(); ++k) {
+    if (trial.linear.level(static_cast<Eigen::Index>(k)) != 0) continue;
     largest = std::max(largest, design_effect(trial.linear, k, noise_of(level, trial), slow).of_slow);
   }
   return largest;
@@ -96,7 +96,7 @@ bool is_better(const DiagnosisContext& context, const Level& level, const Trial&
   if (!second.usable || !first.usable) return second.usable;
   const double difference = first.held_out_squares - second.held_out_squares;
   const double noise = std::min(noise_of(level, first), noise_of(level, second)) *
-                       std::max(slow_design(level, first), slow_design(level, second));
+                       slow_design(level, first.p.size() > second.p.size() ? first : second);
   // A longer ladder must earn every rung that the other does without.
   const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
   const double least = std::max(limits::kDistinguishableSize, limits::kSizeOfParameter * static_cast<double>(more)) *
@@ -147,9 +147,12 @@ bool does_as_well(const DiagnosisContext& context, const Law& law, const Ladder&
   if (!top.usable) return false;
   if (ladder.steps.size() == 1)
     return is_better(context, context.coarse, top, try_other_law(context, law, top, std::string::npos));
+  // Slow noise is no excuse here: it would let a law pass that leaves much of what the effect explains.
+  const double least = std::max(limits::kDistinguishable * noise_of(context.coarse, top),
+                                limits::kSizeOfParameter * context.noise_squares());
   for (std::size_t e = 0; e < top.model.effects().size(); ++e) {
     const Trial other = try_other_law(context, law, top, e);
-    if (other.usable && !is_better(context, context.coarse, other, top)) return true;
+    if (other.usable && other.held_out_squares - top.held_out_squares < least) return true;
   }
   return false;
 }

@@ -234,13 +234,16 @@ Promise start_with(const std::vector<double>& base, const EffectInfo& effect, st
   return promise;
 }
 
-/// Parameters of the base from which a search begins: as fitted, and where nothing sticks also with the law falling at
-/// other speeds. Without a break-away to hold it a law may have taken the place of the effect, and from there no step
-/// leads back.
+/// Parameters of the base from which a search begins: as fitted, and where nothing sticks and the law has become a
+/// straight line also with the law falling at other speeds. Without a break-away to hold it a law may have taken the
+/// place of the effect, and from there no step leads back.
 std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial& base) {
   std::vector<std::vector<double>> out = {base.p};
   const auto& slips = level.observations.slips;
   if (std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; })) return out;
+  const bool alone = base.model.effects().empty();
+  if (!alone || remaining_fall(base.model.law(), base.p, level.observations.fastest).value_or(0) < limits::kStraight)
+    return out;
   std::vector<double> anew = start_from_data(base.model, level.observations, bounds_of(base.model, level.observations));
   std::copy(base.p.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()), base.p.end(),
             anew.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()));
