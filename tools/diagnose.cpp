@@ -59,11 +59,13 @@ std::vector<TraceInput> traces_of(const std::vector<Input>& inputs) {
 
 /// What is known of the inputs besides the data stands with the trace it is about, or with the first.
 void add_remarks(const Split& split, DiagnosedTraces& result) {
-  for (std::size_t k = 0; k < std::min(result.traces.size(), split.diagnosed.size()); ++k) {
-    Identification& trace = result.traces[k];
-    const Input& input = split.diagnosed[k];
-    if (k == 0) trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
-    trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  for (const Input& input : split.diagnosed) {
+    for (Identification& trace : result.traces) {  // copies of a run are not among them
+      if (trace.path != input.trace.path) continue;
+      const bool is_first = &trace == &result.traces.front();
+      if (is_first) trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
+      trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+    }
   }
   if (result.traces.empty()) return;
   std::vector<std::string>& notes = result.traces.front().notes;

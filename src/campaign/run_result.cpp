@@ -1,9 +1,12 @@
 #include "tribofit/campaign/run_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
@@ -131,6 +134,7 @@ RunResult result_of(const Json& json) {
     result.samples = count(trace, "samples");
     result.duration = number(trace, "duration_s");
     result.rate = number(trace, "rate_hz");
+    if (trace.contains("checksum")) result.checksum = text(trace, "checksum");
   }
   if (json.contains("stick_slip")) read_stick_slip(json.at("stick_slip"), result);
   for (const Json& fit : json.at("fits")) result.fits.push_back(fit_of(fit));
@@ -273,7 +277,21 @@ CampaignResults read_campaign(const std::string& folder) {
     }
   }
   put_in_order(results.runs);
+  count_copies_once(results.runs);
   return results;
+}
+
+void count_copies_once(std::vector<RunResult>& runs) {
+  std::map<std::string, std::string> first;  // file of each record
+  for (RunResult& run : runs) {
+    if (run.checksum.empty() || run.fits.empty()) continue;
+    const auto [at, is_new] = first.emplace(run.checksum, run.run.file);
+    if (is_new) continue;
+    run.run.status = RunStatus::failed;
+    run.run.message =
+        fmt::format("{} holds the same values as {}: a copy is no repeat, it counts once", run.run.file, at->second);
+    run.fits.clear();
+  }
 }
 
 std::vector<RunResult> read_results(const std::string& folder) {

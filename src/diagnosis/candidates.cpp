@@ -9,6 +9,7 @@
 
 #include "fit/spectral_lines.hpp"
 #include "fit/starts.hpp"
+#include "imitations.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -88,7 +89,8 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
 }
 
 /// Why the data cannot show an effect; empty where they can.
-std::string obstacle(const EffectInfo& info, const Observations& observations, const Excitation& seen) {
+std::string obstacle(const EffectInfo& info, std::span<const Record> records, const Observations& observations,
+                     const Excitation& seen) {
   const Channels& needs = info.needs;
   if (needs.temperature && observations.temperature.empty()) return "there is no temperature channel";
   if (needs.load && observations.load.empty()) return "there is no load channel";
@@ -115,7 +117,7 @@ std::string obstacle(const EffectInfo& info, const Observations& observations, c
   }
   const std::string& purpose = info.excitation.break_away;
   if (!purpose.empty() && !seen.breaks_away) return "there is no break-away " + purpose;
-  return {};
+  return imitated_by(records, info.sketch.view);
 }
 
 /// Values over the bounds from which a search begins, in SI. parameter: see on_scale_of().
@@ -237,14 +239,14 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
   for (const Effect& effect : effect_catalogue()) {
     if (is_kinematic(effect)) continue;
     EffectInfo info = describe(effect);
-    std::string why = obstacle(info, observations, seen);
+    std::string why = obstacle(info, records, observations, seen);
     const Motion& motion = *records[0].motion;
     const auto allowed =
         allowed_beside_declared(instruments, info.declared_by, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
       EffectInfo other_info = describe(other);
-      std::string why_not = obstacle(other_info, observations, seen);
+      std::string why_not = obstacle(other_info, records, observations, seen);
       out.push_back({other, std::move(other_info), std::move(why_not), allowed});
     }
     out.push_back({effect, std::move(info), std::move(why), allowed});

@@ -13,6 +13,7 @@
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
+#include "imitations.hpp"
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
@@ -192,6 +193,7 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
     if (traces.size() == 1 && !diagnosed.fits.empty())
       uncorrected = fit_uncorrected(traces[0], options, out.diagnosis.law, effects);
     add_motion(records_of(traces), traces[0].trace.load_coupling, options.instruments, uncorrected, out.diagnosis);
+    add_open_problems(records_of(traces), out.diagnosis);
     take_rungs(std::move(diagnosed.fits), out);
   } else {
     out.diagnosis.verdict = Verdict::not_enough_data;

@@ -20,6 +20,10 @@ std::span<const double> FullRecord::friction(const Observations::SlipObservation
   return std::span(records_[range.record].motion->friction).subspan(range.samples.begin, range.samples.size());
 }
 
+bool FullRecord::is_spoilt(const Observations::SlipObservation& range, std::size_t i) const {
+  return records_[range.record].motion->has_fault(range.samples.begin + i, SampleFault::any);
+}
+
 Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   const auto part = [&](const std::vector<double>& channel) {
     return part_of(channel, range.samples.begin, range.samples.end);
@@ -67,9 +71,11 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
     mu.resize(slip.size());
     evaluate<double>(model, p.data(), slip, slip.velocity, mu);
     const std::span<const double> measured = record.friction(range);
-    double squares = 0, stretch = 0;
+    double squares = 0, stretch = 0, good = 0;
     const std::size_t length = noise_stretch(mu.size());
     for (std::size_t i = 0; i < mu.size(); ++i) {
+      if (record.is_spoilt(range, i)) continue;
+      good += 1;
       const double r = measured[i] - mu[i];
       squares += r * r;
       stretch += r;
@@ -84,8 +90,8 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
         out.figures.max_relative = std::max(out.figures.max_relative, e);
       }
     }
-    samples += static_cast<double>(mu.size());
-    double count = static_cast<double>(mu.size());
+    samples += good;
+    double count = good;
     if (range.from_stick) {
       const double r = range.break_away_friction - break_away_level(model, p.data(), slip);
       squares += r * r;

@@ -15,6 +15,8 @@ class FullRecord {
   Slip slip(const Observations::SlipObservation& range) const;
   /// Measured friction of a slip, signed.
   std::span<const double> friction(const Observations::SlipObservation& range) const;
+  /// Whether a fault of the recording spoilt sample i of a slip.
+  bool is_spoilt(const Observations::SlipObservation& range, std::size_t i) const;
 
  private:
   struct Channel {

@@ -43,6 +43,13 @@ double pooled_noise(const std::vector<Remainder>& parts) {
   return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
+bool is_spoilt(const Motion& motion, const SampleRange& samples) {
+  for (std::size_t i = samples.begin; i < samples.end; ++i) {
+    if (motion.has_fault(i, SampleFault::friction)) return true;
+  }
+  return false;
+}
+
 constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
 constexpr std::size_t kStretch = 200;       ///< samples over which a ramp, even a creeping one, is a parabola
 constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
@@ -56,7 +63,8 @@ std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation&
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
     const std::size_t pieces = std::max<std::size_t>(1, length / kStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
-      parts.push_back(about_parabola(motion.friction, begin + k * length / pieces, begin + (k + 1) * length / pieces));
+      const SampleRange piece{begin + k * length / pieces, begin + (k + 1) * length / pieces};
+      if (!is_spoilt(motion, piece)) parts.push_back(about_parabola(motion.friction, piece.begin, piece.end));
     }
     if (parts.size() > kStretches) break;
   }
@@ -71,7 +79,7 @@ std::vector<Remainder> slip_residuals(const Motion& motion, const Segmentation& 
     if (sticks && !segmentation.is_selected(cycle)) continue;
     const std::size_t stretch = noise_stretch(cycle.slip.size());
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
-      if (segmentation.is_selected(SampleRange{i, i + stretch})) {
+      if (segmentation.is_selected(SampleRange{i, i + stretch}) && !is_spoilt(motion, {i, i + stretch})) {
         parts.push_back(about_parabola(motion.friction, i, i + stretch));
       }
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assessment.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -29,10 +31,20 @@ void add_correlations(Fit& fit) {
             [](const Correlation& a, const Correlation& b) { return std::abs(a.value) > std::abs(b.value); });
 }
 
+/// Errors are those of a law that holds.
+void add_condition(Fit& fit) {
+  if (!well_above_floor(fit) || !(over_floor(fit) > 1)) return;
+  fit.messages.push_back(fmt::format(
+      "errors and intervals are conditional on a law that does not hold: the held-out error is {:.3g} times "
+      "the noise floor",
+      over_floor(fit)));
+}
+
 }  // namespace
 
 void add_messages(const std::vector<bool>& unconstrained, const std::vector<std::vector<std::size_t>>& groups,
                   Fit& fit) {
+  add_condition(fit);
   for (const std::vector<std::size_t>& group : groups) {
     std::string names;
     for (const std::size_t k : group) {

@@ -14,6 +14,9 @@ namespace tribofit {
 
 namespace {
 
+/// Of a value without a good sample: nothing beside the others, and nothing divides by zero.
+constexpr double kWeightOfSpoilt = 1e-12;
+
 /// Median number of samples of the slips.
 std::size_t median_size(const std::vector<Observations::SlipObservation>& slips) {
   std::vector<double> sizes;
@@ -24,8 +27,8 @@ std::size_t median_size(const std::vector<Observations::SlipObservation>& slips)
 /// Means of `channel` over each value of the observations.
 class Reducer {
  public:
-  Reducer(const std::vector<Observations::SlipObservation>& slips, std::size_t per_value)
-      : slips_(slips), per_value_(per_value) {}
+  Reducer(const Motion& motion, const std::vector<Observations::SlipObservation>& slips, std::size_t per_value)
+      : motion_(motion), slips_(slips), per_value_(per_value) {}
 
   template <class Write>
   void each(Write&& write) const {
@@ -40,14 +43,20 @@ class Reducer {
     std::vector<double> out;
     if (channel.empty()) return out;
     each([&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t i = begin; i < end; ++i) sum += channel[i];
-      out.push_back(sum / static_cast<double>(end - begin));
+      double sum = 0, good = 0, count = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        sum += channel[i];
+        if (motion_.has_fault(i, SampleFault::any)) continue;
+        good += channel[i];
+        ++count;
+      }
+      out.push_back(count > 0 ? good / count : sum / static_cast<double>(end - begin));
     });
     return out;
   }
 
  private:
+  const Motion& motion_;
   const std::vector<Observations::SlipObservation>& slips_;
   std::size_t per_value_;
 };
@@ -356,12 +365,14 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     slip.end = values;
   }
   add_earlier_slips(out.slips);
-  const Reducer reduce(out.slips, out.samples_per_value);
+  const Reducer reduce(motion, out.slips, out.samples_per_value);
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
   out.friction = reduce.means(motion.friction);
   reduce.each([&](std::size_t begin, std::size_t end) {
-    out.weight.push_back(static_cast<double>(end - begin));
+    std::size_t good = 0;
+    for (std::size_t i = begin; i < end; ++i) good += motion.has_fault(i, SampleFault::any) ? 0U : 1U;
+    out.weight.push_back(good > 0 ? static_cast<double>(good) : kWeightOfSpoilt);
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
   if (out.samples_per_value > 1) add_velocity_variance(motion, reduce, out);

@@ -14,6 +14,12 @@ namespace {
 constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show a curve
 constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
 
+std::size_t good_samples(const Motion& motion, const SampleRange& samples) {
+  std::size_t good = 0;
+  for (std::size_t i = samples.begin; i < samples.end; ++i) good += motion.has_fault(i, SampleFault::any) ? 0U : 1U;
+  return good;
+}
+
 /// Mean friction over the beginning of the stick after a slip; NaN where no stick follows.
 double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
   // Of the slip: what rings after re-stick is over after the first, and the spring has raised friction little over the
@@ -132,7 +138,8 @@ std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, con
       if (!pieces && cycle.slip_complete) trim_rest(motion, samples);
       if (samples.size() == 0) continue;
       ranges.push_back(slip_range(motion, segmentation, cycle, samples, from_stick && k == 0));
-      is_selected.push_back(pieces ? segmentation.is_selected(samples) : segmentation.is_selected(cycle));
+      const bool selected = pieces ? segmentation.is_selected(samples) : segmentation.is_selected(cycle);
+      is_selected.push_back(selected && good_samples(motion, samples) >= kShortestSlip);
     }
   }
   fill_stick_times(ranges, is_selected);

@@ -134,4 +134,19 @@ void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, doubl
   notes.push_back(fmt::format("friction: inertia of the declared {:.4g} kg below the sensor added", mass));
 }
 
+void settle_friction_sign(Motion& motion, double scale) {
+  if (scale == 0) return;
+  double agreement = 0, total = 0;
+  const std::size_t stride = std::max<std::size_t>(1, motion.size() / 65536);
+  for (std::size_t i = 0; i < motion.size(); i += stride) {
+    const double v = motion.relative_velocity[i];
+    if (std::abs(v) < 0.1 * scale) continue;
+    agreement += v > 0 ? motion.friction[i] : -motion.friction[i];
+    total += std::abs(motion.friction[i]);
+  }
+  if (agreement >= -0.5 * total || total == 0) return;
+  for (double& mu : motion.friction) mu = -mu;
+  motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");
+}
+
 }  // namespace tribofit::kinematics

@@ -7,6 +7,7 @@
 
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::kinematics {
 
@@ -25,5 +26,9 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
 /// Adds m_s a_b (over N, for a coefficient) that hangs below the force sensor; `block_velocity` is v_b.
 void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, double mass, double step,
                      std::vector<std::string>& notes);
+
+/// Friction opposes sliding: where it is recorded with the other sign throughout, the sign is settled once. `scale`: of
+/// the velocity [m/s].
+void settle_friction_sign(Motion& motion, double scale);
 
 }  // namespace tribofit::kinematics

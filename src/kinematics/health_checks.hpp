@@ -9,7 +9,9 @@
 #include "high_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
+#include "recording_faults.hpp"
 #include "ripple.hpp"
+#include "spoilt_samples.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
@@ -19,7 +21,10 @@ namespace tribofit::kinematics {
 /// Samples that lie in runs of identical values at an end of a channel's range.
 struct EndRuns {
   double at = 0;          ///< the end, in the channel's unit as recorded
+  bool is_far = false;    ///< no other value is further from zero
   std::size_t count = 0;  ///< samples in runs of at least three; 0 where the channel repeats at other values too
+  std::vector<SampleSpan> spans;  ///< those runs
+  PileUp pile;                    ///< the same with noise on it
 };
 
 /// Both ends of both channels as recorded.
@@ -29,13 +34,19 @@ struct RangeEnds {
 };
 RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity);
 
-/// A converter or an amplifier at its limit. `plateau` is where the velocity rests in stick, as recorded: a record
-/// without noise repeats it, and that is no clipping. Nor is a lowest friction that is above zero.
-HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
-                          std::optional<double> plateau);
+/// Where the velocity rests in stick, as recorded.
+struct Resting {
+  std::optional<LevelRange> plateau;  ///< one level, or those of a disc whose speed varies [m/s]
+  bool sticks = false;                ///< v_b of a block that sticks and slips: nothing else holds it at a limit
+};
 
-/// Gaps in time, samples that stand alone far from both neighbours, and stretches in which both channels stand still.
-HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity);
+/// A converter or an amplifier at its limit. A record without noise repeats its plateau, and that is no clipping. Nor
+/// is a lowest friction that is above zero. Adds the samples to those that take no part.
+HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
+                          const Resting& resting, SpoiltSamples& spoilt);
+
+/// Gaps in time, what was spoilt, and stretches in which both channels stand still.
+HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt);
 
 /// What became of the high-pass search. `declared` is the declared corner, if any.
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks);
@@ -51,6 +62,9 @@ HealthItem check_revolutions(const Motion& motion);
 
 /// What became of the search for a ripple of the disc's speed.
 HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate);
+
+/// v_r as measured against rest in stick and, on average, omega r.
+HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
 
 HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found);
 

@@ -59,4 +59,62 @@ inline constexpr double kErrorAfterHighPass = 1e-3;
 /// Standard error of the creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
 inline constexpr double kErrorOfCreep = 0.5;
 
+// ---- v_r as measured
+
+/// How far from zero it may rest in stick, over its largest excursion: creep stays below. alpha is off by some eight
+/// times as much.
+inline constexpr double kZeroPart = 0.005;
+/// How far its mean may be from omega r: the block is where it was but for a part of a slip length.
+inline constexpr double kGainOff = 0.1;
+
+// ---- steps of a converter
+
+/// Values among which steps are looked for, and levels of a channel that has some: more (12 bits) are finer than noise.
+inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
+/// Part of the distances between levels that are whole numbers of the smallest, and how nearly.
+inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05;
+/// Steps of friction over its range that show in a fit.
+inline constexpr double kCoarseStep = 0.01;
+/// Steps of velocity over the fastest from which alpha is off by more than its error (at 4 % by 2 %, at 1 % by
+/// nothing).
+inline constexpr double kTooCoarse = 0.02;
+
+// ---- faults of the recording
+
+/// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
+/// machine leaves its range so far within a sample. The samples beside it lie within the second.
+inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
+/// Samples of markers that are not repeated exactly: a slip of more samples is a slip.
+inline constexpr std::size_t kWidestSpike = 2;
+/// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range. Nearer
+/// ones are as likely noise; leaving those out would bias the floor.
+inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05;
+/// Part of the range by which the other channel changes where a lone sample is a slip: friction falls by most of it.
+inline constexpr double kSlipOfSamples = 0.3;
+/// Samples of one value in a row that a channel with noise and fine steps cannot hold; of zeros, a loose plug's value,
+/// fewer will do.
+inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3;
+/// Samples of a fault over which the motion is not known: a straight line over fewer is as good.
+inline constexpr std::size_t kShortestStretch = 16;
+/// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
+/// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
+inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
+
+/// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range.
+inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 32;
+/// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
+/// the first needs quiet, the second (where a block sticks and slips, so that nothing else holds it) does not.
+inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6;
+/// Noise at the limit over that elsewhere, below which it is the limit that holds the channel still.
+inline constexpr double kQuiet = 0.5;
+/// Samples at a limit: fewer do not bear on a fit.
+inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000;
+/// Samples between two at the limit that are taken for clipped too (noise brings them below it), and beside a stretch.
+inline constexpr std::size_t kClipHole = 32, kClipMargin = 8;
+
+/// Standstill at an end of a stick-slip record: the block rests for so many periods at less than this part of the
+/// plateau.
+inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;
+inline constexpr std::size_t kFewestPeriods = 5;
+
 }  // namespace tribofit::kinematics

@@ -14,7 +14,9 @@
 #include "plateau.hpp"
 #include "plateau_ratio.hpp"
 #include "plateau_search.hpp"
+#include "resolution.hpp"
 #include "ripple.hpp"
+#include "spoilt_samples.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -22,6 +24,7 @@ namespace {
 
 using kinematics::Disc;
 using kinematics::HighPassEstimate;
+using kinematics::LevelRange;
 using kinematics::Plateaus;
 using kinematics::PlateauSearch;
 using kinematics::RecordedPlateau;
@@ -49,7 +52,8 @@ void take_conditions_from_instruments(Conditions& conditions, const Instruments:
   take(conditions.load, rig.load);
 }
 
-void drop_ends(std::vector<double>& channel, std::size_t head, std::size_t tail) {
+template <class T>
+void drop_ends(std::vector<T>& channel, std::size_t head, std::size_t tail) {
   if (channel.empty()) return;
   channel.resize(channel.size() - tail);
   if (head > 0) channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(head));
@@ -73,22 +77,6 @@ void make_relative(std::vector<double>& velocity, const Disc& disc) {
   } else {
     for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = disc.varying[i] - velocity[i];
   }
-}
-
-// Friction opposes sliding: where it is recorded with the other sign throughout, the sign is settled once.
-void settle_friction_sign(Motion& motion, double scale) {
-  if (scale == 0) return;
-  double agreement = 0, total = 0;
-  const std::size_t stride = std::max<std::size_t>(1, motion.size() / 65536);
-  for (std::size_t i = 0; i < motion.size(); i += stride) {
-    const double v = motion.relative_velocity[i];
-    if (std::abs(v) < 0.1 * scale) continue;
-    agreement += v > 0 ? motion.friction[i] : -motion.friction[i];
-    total += std::abs(motion.friction[i]);
-  }
-  if (agreement >= -0.5 * total || total == 0) return;
-  for (double& mu : motion.friction) mu = -mu;
-  motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");
 }
 
 // A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
@@ -122,10 +110,11 @@ class MotionStages {
  private:
   bool is_block() const { return trace_.velocity_kind == VelocityKind::block; }
   bool speed_is_constant() const { return disc_.varying.empty(); }
-  std::optional<double> plateau_as_recorded() const;
+  std::optional<LevelRange> plateau_as_recorded() const;
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;
   Plateaus plateaus_in_motion() const;
+  HealthItem check_level() const;
 
   Trace trace_;
   const Instruments& instruments_;
@@ -133,7 +122,9 @@ class MotionStages {
   Motion motion_;
 
   // Of the channels as recorded.
+  std::optional<kinematics::SpoiltSamples> spoilt_;
   kinematics::RangeEnds range_ends_;
+  kinematics::RecordedSteps steps_;  ///< of a coarse converter
   HealthItem clipping_, drop_outs_;
   kinematics::Ends lost_;  ///< to the corrections
 
@@ -164,10 +155,10 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
 
 /// What the recorder did: its range and its gaps.
 void MotionStages::look_at_recording() {
-  const Chunks friction = chunks_of(trace_.friction);
-  const Chunks velocity = chunks_of(trace_.velocity);
-  range_ends_ = kinematics::range_ends(trace_, friction, velocity);
-  drop_outs_ = kinematics::check_drop_outs(trace_, friction, velocity);
+  spoilt_.emplace(trace_);
+  range_ends_ = kinematics::range_ends(trace_, chunks_of(trace_.friction), chunks_of(trace_.velocity));
+  steps_ = {kinematics::find_resolution(trace_.friction), kinematics::find_resolution(trace_.velocity),
+            range_ends_.friction[1].at - range_ends_.friction[0].at, range_ends_.largest_velocity};
 }
 
 void MotionStages::correct_declared() {
@@ -260,20 +251,27 @@ void MotionStages::undo_ripple_in_high_pass() {
 
 void MotionStages::check_clipping() {
   recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
-  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_, plateau_as_recorded());
+  if (is_block() && search_.sticks && speed_is_constant()) spoilt_->add_standstill(search_, plateau_, trace_);
+  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
+                                         {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
+  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_);
+  motion_.faults = spoilt_->take();
 }
 
-/// Where the velocity as recorded repeats in stick when there is no noise.
-std::optional<double> MotionStages::plateau_as_recorded() const {
-  double level = 0;  // of v_r
+/// Where the velocity as recorded repeats in stick when there is no noise, and crowds when there is.
+std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
+  LevelRange levels;  // of v_r
   if (is_block()) {
     const bool unknown =
         speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
     if (unknown) return std::nullopt;
-    level = speed_is_constant() ? disc_.constant : recorded_->disc;
+    const Extremes disc = speed_is_constant() ? Extremes{disc_.constant, disc_.constant} : extremes(disc_.varying);
+    levels = {disc.low, disc.high};
   }
   const auto& vibrometer = instruments_.vibrometer;
-  return level * vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
+  const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
+  return reading > 0 ? LevelRange{reading * levels.low, reading * levels.high}
+                     : LevelRange{reading * levels.high, reading * levels.low};
 }
 
 void MotionStages::add_sensor_mass() {
@@ -299,6 +297,7 @@ void MotionStages::make_relative_motion() {
                         &trace_.disc_speed, &trace_.disc_angle, &disc_.varying}) {
     drop_ends(*channel, head, lost_.tail);
   }
+  drop_ends(motion_.faults, head, lost_.tail);
   motion_.trimmed = head;
   motion_.time = std::move(trace_.time);
   motion_.friction = std::move(trace_.friction);
@@ -316,14 +315,14 @@ void MotionStages::settle_signs_and_levels() {
   const bool constant = disc_.known && (motion_.disc_velocity.empty() || undoes_ripple_);
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
-  motion_.velocity_noise = search_.noise;
+  motion_.velocity_noise = std::max(search_.noise, steps_.velocity / std::sqrt(12.0));
   if (search_.sticks) {
     const double level = search_.plateaus.level;
     motion_.plateau_velocity = is_block() ? motion_.constant_disc_velocity - level : level;
   }
   double scale = search_.plateaus.depth;
   if (scale == 0) scale = kinematics::largest_of(motion_.relative_velocity);
-  if (disc_.largest > 0 || !is_block()) settle_friction_sign(motion_, scale);
+  if (disc_.largest > 0 || !is_block()) kinematics::settle_friction_sign(motion_, scale);
 }
 
 /// The plateaus that the motion still holds, in its own blocks.
@@ -349,14 +348,25 @@ void MotionStages::check_health() {
       kinematics::check_revolutions(motion_),
       kinematics::check_speed_ripple(motion_, ripple_),
       kinematics::check_run_up(motion_, options_.trim, run_up_),
-      kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_, motion_.conditions.radius.known(),
-                                      recorded_),
+      check_level(),
+      kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
   };
+}
+
+HealthItem MotionStages::check_level() const {
+  const bool can_be_held = motion_.sticks || motion_.constant_disc_velocity != 0;
+  if (motion_.velocity_kind == VelocityKind::relative && can_be_held) {
+    return kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
+  }
+  return kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_, motion_.conditions.radius.known(),
+                                         recorded_);
 }
 
 void MotionStages::compare_plateau() {
   if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
-  const kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
+  kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
+  const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
+  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
   motion_.plateau_ratio = ratio.value;
   motion_.plateau_ratio_std_error = ratio.std_error;
   correct_plateau(motion_, ratio, options_.plateau);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "health_checks.hpp"
+#include "limits.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -26,9 +27,11 @@ bool repeats_elsewhere(std::span<const double> x, const Extremes& range) {
   return 5 * equal > looked_at;
 }
 
-std::size_t samples_in_runs(std::span<const double> x, const Chunks& chunks, double limit) {
+/// Runs of at least three.
+std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks, double limit) {
   constexpr std::size_t least = 3;
-  std::size_t in_runs = 0, run = 0;
+  std::vector<SampleSpan> runs;
+  std::size_t run = 0;
   for (std::size_t c = 0; c < chunks.part.size(); ++c) {
     if (chunks.part[c].low != limit && chunks.part[c].high != limit) {
       run = 0;
@@ -37,60 +40,35 @@ std::size_t samples_in_runs(std::span<const double> x, const Chunks& chunks, dou
     const std::size_t end = std::min(x.size(), (c + 1) * Chunks::length);
     for (std::size_t i = c * Chunks::length; i < end; ++i) {
       run = x[i] == limit ? run + 1 : 0;
-      if (run == least) in_runs += least;
-      if (run > least) ++in_runs;
+      if (run == least) runs.push_back({i + 1 - least, i + 1});
+      if (run > least) runs.back().end = i + 1;
     }
   }
-  return in_runs;
+  return runs;
 }
 
 std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks) {
   const Extremes range = chunks.whole;
-  std::array<EndRuns, 2> ends = {EndRuns{range.low, 0}, EndRuns{range.high, 0}};
+  std::array<EndRuns, 2> ends;
+  ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < 16 || range.low == range.high || repeats_elsewhere(x, range)) return ends;
-  for (EndRuns& end : ends) end.count = samples_in_runs(x, chunks, end.at);
+  const std::array<PileUp, 2> piles = find_pile_ups(x);
+  for (std::size_t k = 0; k < 2; ++k) {
+    ends[k].spans = runs_at(x, chunks, ends[k].at);
+    for (const SampleSpan& run : ends[k].spans) ends[k].count += run.size();
+    ends[k].pile = piles[k];
+    ends[k].is_far = std::abs(ends[k].at) >= std::abs(ends[1 - k].at);
+  }
   return ends;
 }
 
-/// A stretch of samples in which neither channel changes.
-struct Frozen {
-  std::size_t begin = 0, length = 0;
+/// A channel as a person reads it.
+struct Units {
+  const char* name;
+  double factor;
+  const char* unit;
+  std::uint8_t kind;
 };
-
-Frozen longest_frozen(std::span<const double> a, std::span<const double> b) {
-  Frozen longest;
-  if (a.size() != b.size()) return longest;
-  std::size_t run = 1;
-  for (std::size_t i = 1; i < a.size(); ++i) {
-    run = a[i] == a[i - 1] && b[i] == b[i - 1] ? run + 1 : 1;
-    if (run > longest.length) longest = {i + 1 - run, run};
-  }
-  return longest;
-}
-
-// Samples that jump away and back at once, far beyond what neighbouring samples do.
-std::size_t lone_samples(std::span<const double> x, const Chunks& chunks) {
-  if (x.size() < 64) return 0;
-  const std::size_t stride = std::max<std::size_t>(1, x.size() / 8192);
-  std::vector<double> usual;
-  for (std::size_t i = 1; i + 1 < x.size(); i += stride) usual.push_back(std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1])));
-  const double spread = kSigmaPerMad * median(std::move(usual));
-  const double far = std::max(20 * spread, 0.05 * (chunks.whole.high - chunks.whole.low));
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < chunks.part.size(); ++c) {
-    const std::size_t begin = std::max<std::size_t>(1, c * Chunks::length);
-    const std::size_t end = std::min(x.size() - 1, (c + 1) * Chunks::length);
-    // Within a chunk that spans less than the jump only its first or last sample can be alone.
-    const bool wide = chunks.part[c].high - chunks.part[c].low > far;
-    for (std::size_t i = begin; i < end; i += wide || i + 1 >= end ? 1 : end - 1 - i) {
-      const double left = x[i] - x[i - 1], right = x[i] - x[i + 1];
-      const bool alone = (left > far && right > far) || (left < -far && right < -far);
-      // At re-stick friction peaks for a sample too, but between neighbours on different levels.
-      if (alone && std::abs(x[i + 1] - x[i - 1]) < 0.25 * std::min(std::abs(left), std::abs(right))) ++count;
-    }
-  }
-  return count;
-}
 
 struct Gaps {
   std::size_t count = 0;
@@ -121,23 +99,41 @@ RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& v
 }
 
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
-                          std::optional<double> plateau) {
-  HealthItem item{health_check::kClipping, Status::ok, "no runs of identical samples at the end of a channel's range"};
-  const auto add_warning = [&](const char* name, const EndRuns& end, double factor, const char* unit) {
-    if (end.count < 6) return;
-    const double share = static_cast<double>(end.count) / static_cast<double>(trace.size());
+                          const Resting& resting, SpoiltSamples& spoilt) {
+  HealthItem item{health_check::kClipping, Status::ok, "no samples crowd at the end of a channel's range"};
+  const bool is_force = trace.friction_kind == FrictionKind::force;
+  const Units friction{"friction", 1, is_force ? " N" : "", SampleFault::friction};
+  const Units velocity{"velocity", 1e3, " mm/s", SampleFault::velocity};
+  const auto add_warning = [&](const Units& channel, const EndRuns& end, const char* at_stake) {
+    const PileUp& pile = end.pile;
+    // Where nothing sticks a channel may rest at an end of its range, but not far from zero and quiet.
+    const bool holds = resting.sticks ? pile.is_quiet || pile.density >= kCrowdedAlone : pile.is_quiet && end.is_far;
+    const bool is_clipped = pile.count > 0 && holds;
+    if (end.count < 6 && !is_clipped) return;
+    const std::size_t count = std::max(end.count, is_clipped ? pile.count : 0);
+    const double share = static_cast<double>(count) / static_cast<double>(trace.size());
     item.status = share > 0.001 ? Status::problem : Status::warning;
-    item.message = fmt::format("{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small", name,
-                               factor * end.at, unit, end.count, 100 * share);
+    item.message = fmt::format(
+        "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they take no part, {} at stake",
+        channel.name, channel.factor * (end.count < 6 ? pile.level : end.at), channel.unit, count, 100 * share,
+        at_stake);
+    spoilt.add_clipped(is_clipped ? pile.spans : end.spans, channel.kind);
   };
   const auto& [low, high] = ends.friction;
-  const char* unit = trace.friction_kind == FrictionKind::force ? " N" : "";
-  if (low.at <= 0) add_warning("friction", low, 1, unit);
-  if (high.at >= 0) add_warning("friction", high, 1, unit);
+  if (low.at <= 0) add_warning(friction, low, high.at <= 0 ? "mu_s is" : "the lowest friction is");
+  if (high.at >= 0) add_warning(friction, high, "mu_s is");
   const double range = std::abs(ends.velocity[1].at - ends.velocity[0].at);
   for (const EndRuns& end : ends.velocity) {
-    const bool is_plateau = plateau && std::abs(end.at - *plateau) <= 0.02 * std::abs(*plateau) + 1e-6 * range;
-    if (!is_plateau) add_warning("velocity", end, 1e3, " mm/s");
+    const auto rests_at = [&](double level, double width) {
+      if (!resting.plateau) return false;
+      const LevelRange& rest = *resting.plateau;
+      const double off = kSettled * std::max(std::abs(rest.low), std::abs(rest.high)) + width;
+      return level >= rest.low - off && level <= rest.high + off;
+    };
+    EndRuns seen = end;
+    if (rests_at(end.at, 1e-6 * range)) seen.count = 0;
+    if (rests_at(end.at, range / static_cast<double>(kNarrowestRange)) || !resting.plateau) seen.pile.count = 0;
+    add_warning(velocity, seen, "mu_k and alpha are");
   }
   if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
     const double declared = instruments.vibrometer.range->value;
@@ -150,30 +146,33 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   return item;
 }
 
-HealthItem check_drop_outs(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
+HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt) {
   const std::size_t n = trace.size();
   if (n < 16) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
   const double step = trace.interval();
   const Gaps gaps = gaps_of(trace.time, step);
-  const std::size_t spikes = lone_samples(trace.friction, friction) + lone_samples(trace.velocity, velocity);
-  const Frozen frozen = longest_frozen(trace.friction, trace.velocity);
+  const std::vector<std::string>& spoilt_by = spoilt.sentences();
+  const SampleSpan& still = spoilt.longest_still();
   HealthItem item{health_check::kDropOuts, Status::ok,
                   fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
-  if (frozen.length >= 16 && 20 * frozen.length > n && frozen.length < n) {
+  if (still.size() >= kShortestFrozen && 20 * still.size() > n && still.size() < n) {
     item.status = Status::problem;
-    item.message =
-        fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
-                    trace.time[frozen.begin], trace.time[frozen.begin + frozen.length - 1] - trace.time[frozen.begin],
-                    100 * static_cast<double>(frozen.length) / static_cast<double>(n));
+    item.message = fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
+                               trace.time[still.begin], trace.time[still.end - 1] - trace.time[still.begin],
+                               100 * static_cast<double>(still.size()) / static_cast<double>(n));
+    for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
     return item;
   }
-  if (gaps.count == 0 && spikes == 0) return item;
-  const bool many = static_cast<double>(gaps.count + spikes) > 1e-3 * static_cast<double>(n);
+  if (gaps.count == 0 && spoilt_by.empty()) return item;
+  const auto faults = static_cast<double>(gaps.count + spoilt.spikes());
+  const bool many = faults > 1e-3 * static_cast<double>(n) || spoilt.frozen_part() > 0.05;
   item.status = many ? Status::problem : Status::warning;
-  item.message = fmt::format(
-      "{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms), {} lone samples far "
-      "from their neighbours",
-      gaps.count, 1e3 * gaps.longest, 1e3 * step, spikes);
+  item.message.clear();
+  if (gaps.count > 0) {
+    item.message = fmt::format("{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms)", gaps.count,
+                               1e3 * gaps.longest, 1e3 * step);
+  }
+  for (const std::string& sentence : spoilt_by) item.message += (item.message.empty() ? "" : "; ") + sentence;
   return item;
 }
 

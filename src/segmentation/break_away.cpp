@@ -231,6 +231,11 @@ StickFriction friction_at(const Motion& motion, SampleRange stick, double time, 
   std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
   std::size_t end = std::min(stick.end, motion.size());
   while (end > begin && motion.time[end - 1] >= time - motion.step) --end;
+  // The line goes on from the last good sample; lone spoilt ones before it are on the line already.
+  if (end > begin && motion.has_fault(end - 1, SampleFault::friction)) {
+    while (end > stick.begin && motion.has_fault(end - 1, SampleFault::friction)) --end;
+    begin = end > stick.begin + 40 ? stick.begin + (end - stick.begin) / 2 : stick.begin;
+  }
   begin = begin_of_pull(motion, begin, end);
   if (end < begin + 3) {
     result.value = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");

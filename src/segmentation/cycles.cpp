@@ -10,6 +10,7 @@
 #include "break_away.hpp"
 #include "measures.hpp"
 #include "phases.hpp"
+#include "spoilt_stretches.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -131,13 +132,17 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
   return 2 * sliding > motion.size();
 }
 
-/// First samples after a gap in the clock.
+/// First samples after a gap in the clock, and both ends of what a fault of the recording spoilt.
 std::vector<std::size_t> gaps_of(const Motion& motion) {
   constexpr double longest = 1.5;  // samples
   std::vector<std::size_t> gaps;
   for (const Step& step : motion.steps) {
     const std::size_t b = step.begin;
     if (b > 0 && b < motion.size() && motion.time[b] - motion.time[b - 1] > longest * motion.step) gaps.push_back(b);
+  }
+  for (const SampleRange& stretch : segmentation::spoilt_stretches(motion)) {
+    gaps.push_back(stretch.begin);
+    gaps.push_back(stretch.end);
   }
   return gaps;
 }
@@ -163,6 +168,11 @@ void cut_at_gaps(const Motion& motion, std::vector<Cycle>& cycles) {
   }
 }
 
+/// Whether the end of a stick, where friction is largest, was clipped.
+bool ends_spoilt(const Motion& motion, const SampleRange& stick) {
+  return motion.has_fault(stick.end - 1, SampleFault::friction);
+}
+
 void measure(const Motion& motion, std::vector<Cycle>& cycles) {
   const std::vector<std::size_t> gaps = gaps_of(motion);
   const auto torn = [&](std::size_t begin, std::size_t end) {
@@ -175,7 +185,7 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
     const bool has_stick = c.stick.size() > 0 && c.break_away_time == c.break_away_time;
     if (has_stick) {
       const auto [low, high] = extremes(friction.subspan(c.stick.begin, c.stick.size()));
-      c.stick_maximum = c.direction > 0 ? high : -low;
+      c.stick_maximum = ends_spoilt(motion, c.stick) ? unknown : c.direction > 0 ? high : -low;
       const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
       c.plateau_velocity = mean_of(stick);
       const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
@@ -306,6 +316,7 @@ Segmentation find_cycles(const Motion& motion) {
   if (rests_only) result.kind = MotionKind::always_slipping;
   if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
   measure(motion, result.cycles);
+  result.left_out = segmentation::spoilt_stretches(motion);
   summarise(result);
   add_notes(result);
   if (rests_only) result.notes.back() = "the record rests and slides, with too few break-aways for stick-slip";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "spoilt_stretches.hpp"
 #include "tribofit/segmentation/cycles.hpp"
 
 namespace tribofit {
@@ -53,6 +54,7 @@ std::size_t samples_in_slip(const Segmentation& segmentation) {
 }
 
 void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
+  segmentation.left_out = segmentation::spoilt_stretches(motion);
   if (selection.empty()) return;
   if (selection.cycles) exclude_cycles(*selection.cycles, motion, segmentation);
   for (const Selection::Stretch& stretch : selection.excluded) {

@@ -95,6 +95,21 @@ TEST(RunResultTest, OrderInTimeComesFromAConditionThatSaysIt) {
   EXPECT_THAT(order_with("order", "1", "2", ""), ElementsAre(-1, -1, -1));
 }
 
+TEST(RunResultTest, ACopyOfARecordCountsOnce) {
+  std::vector<RunResult> runs(4);
+  const char* checksums[] = {"a", "b", "a", ""};
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    runs[k].run.file = std::string("r") + std::to_string(k) + ".csv";
+    runs[k].checksum = checksums[k];
+    runs[k].fits.resize(1);
+  }
+  count_copies_once(runs);
+  for (const std::size_t k : {0U, 1U, 3U}) EXPECT_EQ(runs[k].fits.size(), 1U) << k;
+  EXPECT_EQ(runs[2].run.status, RunStatus::failed);
+  EXPECT_EQ(runs[2].run.message, "r2.csv holds the same values as r0.csv: a copy is no repeat, it counts once");
+  EXPECT_TRUE(runs[2].fits.empty());
+}
+
 TEST(RunResultTest, AFolderWithoutACampaignIsNamed) {
   const Workshop shop;
   EXPECT_THROW(read_results((shop / "nothing").string()), InputError);

@@ -124,7 +124,8 @@ TEST(Diagnose, ResultsAreTheSameForAnyNumberOfThreads) {
 TEST(Diagnose, AFolderWithAManifestIsDiagnosedTogetherAndRepeatsConfirm) {
   const Workshop shop;
   std::filesystem::create_directory(shop / "runs");
-  for (const char* name : {"runs/a1.csv", "runs/a2.csv"}) shop.write(name, viscous_trace());
+  shop.write("runs/a1.csv", viscous_trace());
+  shop.write("runs/a2.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015", 7));
   shop.write("runs/b1.csv", trace("--speed 8rpm --effect viscous:sigma=0.0015", 5));
   shop.write("runs/manifest.csv", "file,radius [mm],speed_rpm,load,repeat\na*.csv,15,4,50N,\nb1.csv,15,8,50N,1\n");
   const json j = result_of(shop, "runs");
@@ -141,6 +142,19 @@ TEST(Diagnose, AFolderWithAManifestIsDiagnosedTogetherAndRepeatsConfirm) {
   EXPECT_EQ(named["traces"][1]["path"], "runs/a2.csv");
   EXPECT_EQ(named["conditions"][0]["load_N"], 40.0);  // the command line beats the manifest, and says so
   EXPECT_THAT(named["warnings"].dump(), HasSubstr("--load 40 N is used, not the 50 N of runs/manifest.csv:2"));
+}
+
+/// A copy of a run is no repeat of it, and confirms nothing.
+TEST(Diagnose, IdenticalFilesAreOneRun) {
+  const Workshop shop;
+  for (const char* name : {"a.csv", "b.csv", "c.csv"}) shop.write(name, viscous_trace());
+  const json one = result_of(shop, "--radius 15mm --speed 4rpm a.csv");
+  const json three = result_of(shop, "--radius 15mm --speed 4rpm --confirm c.csv a.csv b.csv");
+  EXPECT_EQ(three["fits"], one["fits"]);
+  EXPECT_TRUE(three["diagnosis"]["confirmations"].empty());
+  for (const char* copy : {"b.csv", "c.csv"}) {
+    EXPECT_THAT(three["warnings"].dump(), HasSubstr(std::string(copy) + " holds the same values as a.csv"));
+  }
 }
 
 TEST(Diagnose, IdentifyTakesConditionsFromTheManifestToo) {

@@ -135,7 +135,7 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
   for (const double colour : {0.0, 0.9}) {
     const DiagnosedTraces result = diagnose_hidden("contact-spin", {0.5e-3}, colour);
     const EffectFinding spin = finding_of(result, "contact-spin");
-    ASSERT_EQ(spin.status, EffectStatus::found) << colour;
+    ASSERT_EQ(spin.status, EffectStatus::found) << colour << ": " << spin.reason;
     EXPECT_NEAR(spin.parameters[0].value, 0.5e-3, 0.05e-3);
     EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::unsupported);
     EXPECT_EQ(finding_of(result, "bristle").status == EffectStatus::found, false);

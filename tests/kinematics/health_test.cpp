@@ -35,7 +35,7 @@ truth::Rig long_rig() {
   return rig;
 }
 
-TEST(Health, SoundRecordHasNineChecksAndNoComplaint) {
+TEST(Health, SoundRecordHasTenChecksAndNoComplaint) {
   const Motion motion = compute_motion(truth::simulate(long_rig()).trace);
   std::vector<std::string> names;
   for (const HealthItem& i : motion.health) {
@@ -44,7 +44,7 @@ TEST(Health, SoundRecordHasNineChecksAndNoComplaint) {
     EXPECT_FALSE(i.message.empty());
   }
   EXPECT_THAT(names, ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay",
-                                 "revolutions", "speed-ripple", "run-up", "plateau-speed"));
+                                 "revolutions", "speed-ripple", "run-up", "plateau-speed", "resolution"));
 }
 
 TEST(Health, ClippedVelocity) {

@@ -74,6 +74,7 @@ struct RunResult {
   std::string friction_unit = "1";  ///< "N" where friction is a force
   std::size_t samples = 0;
   double duration = 0, rate = 0;  ///< [s], [Hz]
+  std::string checksum;           ///< of the values of the trace; empty where it was not read
 
   std::size_t cycles = 0;
   ResultMeasure frequency;   ///< [Hz]
@@ -152,8 +153,13 @@ class ResultReader {
 
 /// Reads all results of a campaign; `order` comes from the first further condition that is called order, run
 /// order, sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text,
-/// which puts ISO dates in order). Throws InputError where the folder holds no campaign. Cost: linear in runs.
+/// which puts ISO dates in order). Copies count once. Throws InputError where the folder holds no campaign. Cost:
+/// linear in runs.
 CampaignResults read_campaign(const std::string& folder);
+
+/// Of runs that hold the same values (a copy of a file is no repeat) the first counts: the others become failed,
+/// without fits, and their message says so.
+void count_copies_once(std::vector<RunResult>& runs);
 
 /// The runs of read_campaign().
 std::vector<RunResult> read_results(const std::string& folder);

@@ -6,7 +6,7 @@ namespace tribofit {
 
 /// One named check of the data, made before any fit.
 /// Names: clipping, drop-outs, sagging-plateau, bandwidth, channel-delay, revolutions, speed-ripple, run-up,
-/// plateau-speed.
+/// plateau-speed, resolution.
 struct HealthItem {
   enum class Status { ok, warning, problem };
   std::string check;

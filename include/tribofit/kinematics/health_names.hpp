@@ -17,11 +17,12 @@ inline constexpr const char* kRevolutions = "revolutions";
 inline constexpr const char* kSpeedRipple = "speed-ripple";
 inline constexpr const char* kRunUp = "run-up";
 inline constexpr const char* kPlateauSpeed = "plateau-speed";
+inline constexpr const char* kResolution = "resolution";
 
 /// Whether the values of a fit depend on what this check says: it bears on velocity or friction themselves.
 constexpr bool bears_on_values(std::string_view check) {
-  constexpr std::array<std::string_view, 5> kBearing = {kPlateauSpeed, kSpeedRipple, kChannelDelay, kClipping,
-                                                        kDropOuts};
+  constexpr std::array<std::string_view, 6> kBearing = {kPlateauSpeed, kSpeedRipple, kChannelDelay,
+                                                        kClipping,     kDropOuts,    kResolution};
   return std::find(kBearing.begin(), kBearing.end(), check) != kBearing.end();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -26,6 +27,11 @@ enum class PlateauCorrection {
   none,    ///< left as it is
   radius,  ///< the radius (or the speed) is another: omega r times the ratio
   gain,    ///< the vibrometer reads too much or too little: v_b over the ratio
+};
+
+/// Bits of Motion::faults. The motion is not known in a stretch: the cycles that reach into it take no part.
+struct SampleFault {
+  static constexpr std::uint8_t friction = 1, velocity = 2, stretch = 4, any = 7;
 };
 
 /// What counts as stick, where the user says it.
@@ -73,10 +79,16 @@ struct Motion {
   PlateauCorrection plateau_correction = PlateauCorrection::none;  ///< what was done about it
   double corrected_ratio = 1;                                      ///< the ratio that was corrected; 1: none
 
+  /// Of every sample, which of its channels a fault of the recording spoilt (bits of SampleFault); empty: none. Values
+  /// there are straight lines between good neighbours, so that the rest of the record is not disturbed; they take no
+  /// part in a fit.
+  std::vector<std::uint8_t> faults;
+
   std::vector<HealthItem> health;  ///< in a fixed order, one per check
   std::vector<std::string> notes;  ///< corrections made and conventions settled, for the report
 
   std::size_t size() const { return time.size(); }
+  bool has_fault(std::size_t i, std::uint8_t kinds) const { return !faults.empty() && (faults[i] & kinds) != 0; }
   double disc_velocity_at(std::size_t i) const {
     return disc_velocity.empty() ? constant_disc_velocity : disc_velocity[i];
   }

@@ -1,0 +1,83 @@
+#include "imitations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "tribofit/kinematics/health_names.hpp"
+
+namespace tribofit::diagnosis {
+namespace {
+
+/// Where the evidence of an effect is.
+enum class Evidence { within_cycle, at_break_away, in_time, elsewhere };
+
+Evidence evidence_of(SketchView view) {
+  switch (view) {
+    case SketchView::loop:
+    case SketchView::curve:
+    case SketchView::directions:
+    case SketchView::creep:
+    case SketchView::since_break_away:
+    case SketchView::acceleration:
+    case SketchView::plateau:
+      return Evidence::within_cycle;
+    case SketchView::stick_time:
+      return Evidence::at_break_away;
+    case SketchView::time:
+    case SketchView::distance:
+      return Evidence::in_time;
+    case SketchView::angle:
+    case SketchView::load:
+    case SketchView::temperature:
+    case SketchView::load_channel:
+    case SketchView::ripple:
+    case SketchView::line:
+      break;
+  }
+  return Evidence::elsewhere;
+}
+
+bool imitates(std::string_view check, Evidence evidence) {
+  using namespace health_check;
+  if (evidence == Evidence::elsewhere) return false;
+  if (check == kDropOuts) return evidence == Evidence::in_time;
+  if (check == kClipping || check == kBandwidth) return evidence != Evidence::in_time;
+  const bool distorts = check == kResolution || check == kChannelDelay || check == kPlateauSpeed;
+  return distorts && evidence == Evidence::within_cycle;
+}
+
+/// Checks that report a problem, each once.
+std::vector<std::string> problems_of(std::span<const Record> records) {
+  std::vector<std::string> checks;
+  for (const Record& record : records) {
+    for (const HealthItem& item : record.motion->health) {
+      const bool is_known = std::find(checks.begin(), checks.end(), item.check) != checks.end();
+      if (item.status == HealthItem::Status::problem && !is_known) checks.push_back(item.check);
+    }
+  }
+  return checks;
+}
+
+}  // namespace
+
+std::string imitated_by(std::span<const Record> records, SketchView view) {
+  for (const std::string& check : problems_of(records)) {
+    if (imitates(check, evidence_of(view)))
+      return fmt::format("the check {} reports a problem that looks like it", check);
+  }
+  return {};
+}
+
+void add_open_problems(std::span<const Record> records, Diagnosis& diagnosis) {
+  for (const std::string& check : problems_of(records)) {
+    const bool stands = imitates(check, Evidence::within_cycle) || imitates(check, Evidence::in_time);
+    if (!stands) continue;
+    diagnosis.messages.push_back(
+        fmt::format("the check {} reports a problem: effects that look like it are not named", check));
+  }
+}
+
+}  // namespace tribofit::diagnosis

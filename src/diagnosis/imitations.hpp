@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tribofit/diagnosis/diagnosis.hpp"
+
+namespace tribofit::diagnosis {
+
+/// Why an effect that shows over this variable cannot be named: a check of the data reports a problem that would look
+/// like it. Empty where none does.
+///
+/// What distorts a reading in the same way all the time (a limit of the range, coarse steps, a filter, a shift between
+/// the channels, a wrong level) makes structure within a cycle, and moves its break-away. What comes and goes (missing
+/// stretches) makes structure in time.
+std::string imitated_by(std::span<const Record> records, SketchView view);
+
+/// Says which checks stood against a name.
+void add_open_problems(std::span<const Record> records, Diagnosis& diagnosis);
+
+}  // namespace tribofit::diagnosis

@@ -1,0 +1,223 @@
+#include "recording_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limits.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+constexpr std::size_t kFewestSamples = 64;  // of which a distribution can be seen
+constexpr std::size_t kThinned = 16384;
+
+/// Where all but one value in a thousand lie at each end.
+Extremes usual_range(std::span<const double> x) {
+  std::vector<double> some = thinned(x, kThinned);
+  std::sort(some.begin(), some.end());
+  return {quantile_of_sorted(some, 0.001), quantile_of_sorted(some, 0.999)};
+}
+
+std::vector<SampleSpan> find_markers(std::span<const double> x) {
+  const Extremes usual = usual_range(x), all = extremes(x);
+  const double span = usual.high - usual.low;
+  const double low = usual.low - kMarkerReach * span, high = usual.high + kMarkerReach * span;
+  if (!(span > 0) || (all.low >= low && all.high <= high)) return {};
+  const auto is_beyond = [&](std::size_t i) { return x[i] < low || x[i] > high; };
+  const auto is_usual = [&](std::size_t i) {
+    return x[i] > usual.low - kMarkerShoulder * span && x[i] < usual.high + kMarkerShoulder * span;
+  };
+  std::vector<SampleSpan> markers;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!is_beyond(i)) continue;
+    const std::size_t begin = i;
+    bool repeats = true;
+    for (; i < x.size() && is_beyond(i); ++i) repeats = repeats && x[i] == x[begin];
+    const bool jumps = (begin == 0 || is_usual(begin - 1)) && (i == x.size() || is_usual(i));
+    if (jumps && (repeats || i - begin <= kWidestSpike)) markers.push_back({begin, i});
+  }
+  return markers;
+}
+
+/// What a sample is off the line between its neighbours.
+double off_line(std::span<const double> x, std::size_t i) {
+  return x[i] - 0.5 * (x[i - 1] + x[i + 1]);
+}
+
+/// Whether a channel is elsewhere after sample i than before it.
+bool moves_at(std::span<const double> x, std::size_t i, double least) {
+  if (i < 2 || i + 2 >= x.size()) return false;
+  const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[i + 1], x[i + 2]});
+  return high - low > least;
+}
+
+std::vector<SampleSpan> find_spikes(std::span<const double> x, std::span<const double> beside) {
+  const Extremes range = beside.empty() ? Extremes{} : usual_range(beside);
+  const double motion = kSlipOfSamples * (range.high - range.low);
+  const Chunks chunks = chunks_of(x);
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / 8192);
+  std::vector<double> usual;
+  for (std::size_t i = 1; i + 1 < x.size(); i += stride) usual.push_back(std::abs(off_line(x, i)));
+  const double far = std::max(kSpikeSigmas * kSigmaPerMad * median(std::move(usual)),
+                              kSpikeDepth * (chunks.whole.high - chunks.whole.low));
+  std::vector<SampleSpan> spikes;
+  for (std::size_t c = 0; c < chunks.part.size(); ++c) {
+    const std::size_t begin = std::max<std::size_t>(1, c * Chunks::length);
+    const std::size_t end = std::min(x.size() - 1, (c + 1) * Chunks::length);
+    // Within a chunk that spans less than the jump only its first or last sample can be alone.
+    const bool wide = chunks.part[c].high - chunks.part[c].low > far;
+    for (std::size_t i = begin; i < end; i += wide || i + 1 >= end ? 1 : end - 1 - i) {
+      const double left = x[i] - x[i - 1], right = x[i] - x[i + 1];
+      const bool alone = (left > far && right > far) || (left < -far && right < -far);
+      // At re-stick friction peaks for a sample too, but between neighbours on different levels.
+      if (!alone || std::abs(x[i + 1] - x[i - 1]) >= 0.25 * std::min(std::abs(left), std::abs(right))) continue;
+      if (!moves_at(beside, i, motion)) spikes.push_back({i, i + 1});
+    }
+  }
+  return spikes;
+}
+
+/// Runs of one value.
+std::vector<SampleSpan> find_runs(std::span<const double> x, std::size_t least) {
+  std::vector<SampleSpan> runs;
+  for (std::size_t i = 0; i < x.size();) {
+    const std::size_t begin = i;
+    while (i < x.size() && x[i] == x[begin]) ++i;
+    if (i - begin >= least) runs.push_back({begin, i});
+  }
+  return runs;
+}
+
+/// Whether the channel turns again and again outside of these runs, and hardly repeats a value there: it has noise and
+/// fine steps, so that a run of one value cannot be its own.
+bool is_never_still(std::span<const double> x, const std::vector<SampleSpan>& runs) {
+  std::size_t looked_at = 0, equal = 0, turns = 0, next = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    while (next < runs.size() && runs[next].end < i) ++next;
+    if (next < runs.size() && i + 1 >= runs[next].begin) {
+      i = runs[next].end;
+      continue;
+    }
+    ++looked_at;
+    equal += x[i] == x[i - 1] ? 1U : 0U;
+    turns += (x[i] - x[i - 1]) * (x[i + 1] - x[i]) < 0 ? 1U : 0U;
+  }
+  const auto n = static_cast<double>(looked_at);
+  return looked_at >= kFewestSamples &&
+         static_cast<double>(equal)<kFewRepeats * n&& static_cast<double>(turns)> kManyTurns * n;
+}
+
+std::vector<SampleSpan> find_frozen(std::span<const double> x) {
+  std::vector<SampleSpan> runs = find_runs(x, kShortestZero);
+  std::erase_if(runs, [&](const SampleSpan& run) { return run.size() < kShortestFrozen && x[run.begin] != 0; });
+  if (runs.empty() || !is_never_still(x, runs)) return {};
+  // A limit of the range is no frozen channel, however often it is reached.
+  const Extremes range = extremes(x);
+  std::erase_if(runs, [&](const SampleSpan& run) {
+    const double value = x[run.begin];
+    return value != 0 && (value == range.low || value == range.high);
+  });
+  return runs;
+}
+
+std::vector<SampleSpan> spans_at_limit(std::span<const double> x, double from, double to) {
+  std::vector<SampleSpan> spans;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] < from || x[i] > to) continue;
+    if (!spans.empty() && i < spans.back().end + kClipHole) {
+      spans.back().end = i + 1;
+    } else {
+      spans.push_back({i, i + 1});
+    }
+  }
+  // The samples beside a stretch at the limit were chosen by their noise.
+  for (SampleSpan& span : spans) {
+    if (span.size() < kClipMargin) continue;
+    span.begin -= std::min(span.begin, kClipMargin);
+    span.end = std::min(x.size(), span.end + kClipMargin);
+  }
+  return spans;
+}
+
+/// Noise of the samples that lie in [from, to] with both neighbours, over that of the channel.
+double noise_within(std::span<const double> x, double from, double to) {
+  std::vector<double> inside, outside;
+  const auto is_inside = [&](std::size_t i) { return x[i] >= from && x[i] <= to; };
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / 65536);
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const bool in = is_inside(i) && is_inside(i - 1) && is_inside(i + 1);
+    if (in ? inside.size() < 65536 : i % stride == 0) (in ? inside : outside).push_back(std::abs(off_line(x, i)));
+  }
+  if (inside.size() < 16 || outside.size() < 16) return 1;
+  return median(std::move(inside)) / median(std::move(outside));
+}
+
+/// Counts from an end of the range inwards.
+PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts, const Extremes& range, bool upper) {
+  PileUp best;
+  const double bin = (range.high - range.low) / static_cast<double>(counts.size());
+  double width = 0;
+  for (std::size_t w = 1; w <= counts.size() / kNarrowestRange; w *= 2) {
+    std::size_t within = 0, below = 0;
+    for (std::size_t k = 0; k < 4 * w; ++k) (k < w ? within : below) += counts[upper ? counts.size() - 1 - k : k];
+    if (within < std::max(kFewestClipped, x.size() / kOneClippedIn)) continue;
+    const double density = 3 * static_cast<double>(within) / std::max(1.0, static_cast<double>(below));
+    if (density <= best.density) continue;
+    best.density = density;
+    best.count = within;
+    width = static_cast<double>(w) * bin;
+  }
+  if (best.density < kCrowdedQuiet) return {};
+  const double from = upper ? range.high - width : range.low, to = upper ? range.high : range.low + width;
+  best.level = 0.5 * (from + to);
+  best.is_quiet = noise_within(x, from, to) < kQuiet;
+  best.spans = spans_at_limit(x, from, to);
+  return best;
+}
+
+}  // namespace
+
+ChannelFaults find_channel_faults(std::span<const double> channel, std::span<const double> beside) {
+  ChannelFaults faults;
+  if (channel.size() < kFewestSamples) return faults;
+  std::vector<double> cleaned;
+  const auto clean = [&](const std::vector<SampleSpan>& spans) {
+    if (spans.empty()) return;
+    if (cleaned.empty()) cleaned.assign(channel.begin(), channel.end());
+    bridge(spans, cleaned);
+    channel = cleaned;
+  };
+  clean(faults.markers = find_markers(channel));
+  clean(faults.frozen = find_frozen(channel));
+  faults.spikes = find_spikes(channel, beside);
+  return faults;
+}
+
+void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel) {
+  for (const SampleSpan& span : spans) {
+    const bool from_left = span.begin > 0, from_right = span.end < channel.size();
+    if (!from_left && !from_right) continue;
+    const double left = channel[from_left ? span.begin - 1 : span.end];
+    const double right = channel[from_right ? span.end : span.begin - 1];
+    const double steps = static_cast<double>(span.size()) + 1;
+    for (std::size_t i = span.begin; i < span.end; ++i) {
+      channel[i] = left + (right - left) * static_cast<double>(i - span.begin + 1) / steps;
+    }
+  }
+}
+
+std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {
+  if (channel.size() < kFewestSamples) return {};
+  const Extremes range = extremes(channel);
+  if (!(range.high > range.low)) return {};
+  std::vector<std::size_t> counts(kClipBins, 0);
+  const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
+  for (const double x : channel) {
+    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((x - range.low) * scale))];
+  }
+  return {pile_up(channel, counts, range, false), pile_up(channel, counts, range, true)};
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,64 @@
+#include "resolution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "limits.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/kinematics/health_names.hpp"
+
+namespace tribofit::kinematics {
+
+double find_resolution(std::span<const double> channel) {
+  std::vector<double> levels = thinned(channel, kValuesForSteps);
+  std::sort(levels.begin(), levels.end());
+  if (levels.size() < kFewestLevels) return 0;
+  // Two spellings of one level differ in the last digits.
+  const double same = 1e-9 * (levels.back() - levels.front());
+  levels.erase(std::unique(levels.begin(), levels.end(), [&](double a, double b) { return b - a <= same; }),
+               levels.end());
+  if (levels.size() < kFewestLevels || levels.size() > kMostLevels) return 0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < levels.size(); ++i) steps.push_back(levels[i] - levels[i - 1]);
+  const double step = *std::min_element(steps.begin(), steps.end());
+  const auto whole = std::count_if(steps.begin(), steps.end(),
+                                   [&](double s) { return std::abs(s / step - std::round(s / step)) < kOffWholeStep; });
+  return static_cast<double>(whole) >= kWholeSteps * static_cast<double>(steps.size()) ? step : 0;
+}
+
+double rounding_of_level(double step, double spread) {
+  if (!(step > 0)) return 0;
+  const double uniform = step / std::sqrt(12.0);
+  const double variance = std::max(0.0, spread * spread - uniform * uniform);
+  return uniform * std::exp(-2 * std::numbers::pi * std::numbers::pi * variance / (step * step));
+}
+
+HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, double noise) {
+  HealthItem item{health_check::kResolution, HealthItem::Status::ok, "the steps of both channels are finer than noise"};
+  const auto coarse = [&](const std::string& sentence) {
+    item.message = item.status == HealthItem::Status::ok ? sentence : item.message + "; " + sentence;
+    if (item.status == HealthItem::Status::ok) item.status = HealthItem::Status::warning;
+  };
+  if (steps.velocity > 2 * noise && steps.velocity > 0) {
+    coarse(
+        fmt::format("velocity is recorded in steps of {:.3g} mm/s, coarser than its noise: the rounding is carried "
+                    "as noise, and a smaller gap between plateau and omega r is not named",
+                    1e3 * steps.velocity));
+    if (steps.velocity > kTooCoarse * steps.largest_velocity) {
+      item.status = HealthItem::Status::problem;
+      item.message += "; alpha is at stake, use a smaller range of the vibrometer";
+    }
+  }
+  if (steps.friction > kCoarseStep * steps.friction_range) {
+    coarse(fmt::format("friction is recorded in steps of {:.3g}{}: the rounding is part of the noise floor",
+                       steps.friction, kind == FrictionKind::force ? " N" : ""));
+  }
+  return item;
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,122 @@
+#include "spoilt_samples.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limits.hpp"
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+std::size_t samples_of(const std::vector<SampleSpan>& spans) {
+  std::size_t samples = 0;
+  for (const SampleSpan& span : spans) samples += span.size();
+  return samples;
+}
+
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// A pause of the disc is no fault: the block is at rest, the spring still pulls, and without noise neither changes.
+SampleSpan longest_still_of(std::span<const double> friction, std::span<const double> velocity) {
+  SampleSpan longest;
+  if (friction.size() != velocity.size()) return longest;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < friction.size(); ++i) {
+    if (friction[i] != friction[i - 1] || velocity[i] != velocity[i - 1]) begin = i;
+    const bool pauses = velocity[i] == 0 && friction[i] != 0;
+    if (!pauses && i + 1 - begin > longest.size()) longest = {begin, i + 1};
+  }
+  return longest;
+}
+
+}  // namespace
+
+SpoiltSamples::SpoiltSamples(Trace& trace) : size_(trace.size()) {
+  still_ = longest_still_of(trace.friction, trace.velocity);
+  // Both as recorded: what one shows says what the other is.
+  const ChannelFaults friction = find_channel_faults(trace.friction, trace.velocity);
+  const ChannelFaults velocity = find_channel_faults(trace.velocity, trace.friction);
+  clean(trace.friction, friction, "friction", SampleFault::friction);
+  clean(trace.velocity, velocity, "velocity", SampleFault::velocity);
+  const auto clean_markers = [&](std::vector<double>& channel, const char* name) {
+    const std::vector<SampleSpan> markers = find_channel_faults(channel, {}).markers;
+    if (markers.empty()) return;
+    bridge(markers, channel);
+    mark(markers, SampleFault::friction | SampleFault::velocity);
+    sentences_.push_back(fmt::format("{} has {} (left out)", name, counted(samples_of(markers), "marker value")));
+  };
+  clean_markers(trace.load, "load");
+  clean_markers(trace.temperature, "temperature");
+  clean_markers(trace.disc_speed, "speed");
+}
+
+void SpoiltSamples::clean(std::vector<double>& channel, const ChannelFaults& faults, const std::string& name,
+                          std::uint8_t kind) {
+  if (!faults.markers.empty()) {
+    const double value = channel[faults.markers.front().begin];
+    const bool is_velocity = kind == SampleFault::velocity;
+    sentences_.push_back(fmt::format("{} has {}, the first {:.4g}{} (left out)", name,
+                                     counted(samples_of(faults.markers), "marker value"),
+                                     is_velocity ? 1e3 * value : value, is_velocity ? " mm/s" : ""));
+  }
+  if (!faults.spikes.empty()) {
+    spikes_ += faults.spikes.size();
+    sentences_.push_back(fmt::format("{} has {} far from both neighbours (left out)", name,
+                                     counted(faults.spikes.size(), "lone sample")));
+  }
+  if (!faults.frozen.empty()) {
+    const std::size_t samples = samples_of(faults.frozen);
+    frozen_ += samples;
+    sentences_.push_back(
+        fmt::format("{} repeats one value in {} ({:.2g} % of the record, left out)", name,
+                    faults.frozen.size() == 1 ? "a stretch" : fmt::format("{} stretches", faults.frozen.size()),
+                    100 * static_cast<double>(samples) / static_cast<double>(size_)));
+  }
+  for (const auto* spans : {&faults.markers, &faults.spikes, &faults.frozen}) {
+    bridge(*spans, channel);
+    mark(*spans, kind);
+    for (const SampleSpan& span : *spans) {
+      if (span.size() >= kShortestStretch) mark({span}, SampleFault::stretch);
+    }
+  }
+}
+
+void SpoiltSamples::mark(const std::vector<SampleSpan>& spans, std::uint8_t kind) {
+  if (spans.empty()) return;
+  if (faults_.empty()) faults_.assign(size_, 0);
+  for (const SampleSpan& span : spans) {
+    for (std::size_t i = span.begin; i < span.end; ++i) faults_[i] |= kind;
+  }
+}
+
+void SpoiltSamples::add_standstill(const PlateauSearch& search, double plateau, const Trace& trace) {
+  const auto& runs = search.plateaus.runs;
+  if (runs.size() < kFewestPeriods) return;
+  const double period =
+      static_cast<double>(runs.back().begin - runs.front().begin) / static_cast<double>(runs.size() - 1);
+  const std::vector<double>& v = search.blocks.mean;
+  const auto stands = [&](double mean) { return std::abs(mean) < kStandstillPart * std::abs(plateau); };
+  const auto head = static_cast<std::size_t>(std::find_if_not(v.begin(), v.end(), stands) - v.begin());
+  const auto tail = static_cast<std::size_t>(std::find_if_not(v.rbegin(), v.rend(), stands) - v.rbegin());
+  const auto leave_out = [&](SampleSpan span) {
+    for (const std::uint8_t kind : {SampleFault::friction, SampleFault::velocity, SampleFault::stretch}) {
+      mark({span}, kind);
+    }
+    sentences_.push_back(fmt::format("the machine stands still from {:.4g} s to {:.4g} s (left out)",
+                                     trace.time[span.begin], trace.time[span.end - 1]));
+  };
+  const std::size_t length = search.blocks.length;
+  if (static_cast<double>(head) > kStandstillPeriods * period) leave_out({0, head * length});
+  if (static_cast<double>(tail) > kStandstillPeriods * period) leave_out({(v.size() - tail) * length, size_});
+}
+
+double SpoiltSamples::frozen_part() const {
+  return static_cast<double>(frozen_) / static_cast<double>(size_);
+}
+
+}  // namespace tribofit::kinematics
