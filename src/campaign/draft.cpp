@@ -6,6 +6,7 @@
 
 #include "csv_table.hpp"
 #include "find_runs.hpp"
+#include "limits.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -89,8 +90,7 @@ class Draft {
         return;
       }
       const double a = (in_name.conditions.*condition).value, b = (in_header.conditions.*condition).value;
-      constexpr double kSame = 1e-6;
-      if (std::abs(a - b) > kSame * std::abs(b)) {
+      if (std::abs(a - b) > kSameStatement * std::abs(b)) {
         remarks_.push_back(fmt::format("{}: the {} of its header is {}, that of its name {}; check which is right",
                                        file, name, said, fields.*field));
       }

@@ -1,4 +1,5 @@
 #include "find_runs.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -44,8 +45,7 @@ void merge(const Condition& manifest, Condition& merged, const char* option, dou
     merged = manifest;
     return;
   }
-  constexpr double kSame = 1e-6;
-  if (std::abs(merged.value - manifest.value) <= kSame * std::abs(manifest.value)) return;
+  if (std::abs(merged.value - manifest.value) <= kSameStatement * std::abs(manifest.value)) return;
   warnings.push_back(fmt::format("{} {:.4g} {} is used, not the {:.4g} {} of {}", option, merged.value / unit,
                                  unit_name, manifest.value / unit, unit_name, place));
 }

@@ -1,4 +1,5 @@
 #include "tribofit/campaign/over_conditions.hpp"
+#include "limits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,6 @@ constexpr std::array kNumeric = {NumericCondition{&Conditions::radius, "friction
 
 /// Values of a condition that differ by more than what a reading off a plateau does.
 std::size_t count_of_values(std::span<const PooledGroup> groups, Condition Conditions::*which) {
-  constexpr double kSame = 0.02;
   std::vector<double> values;
   for (const PooledGroup& group : groups) {
     const double value = (group.conditions.*which).value;
@@ -32,7 +32,7 @@ std::size_t count_of_values(std::span<const PooledGroup> groups, Condition Condi
   std::sort(values.begin(), values.end());
   std::size_t count = values.empty() ? 0 : 1;
   for (std::size_t k = 1; k < values.size(); ++k)
-    count += static_cast<std::size_t>(values[k] > (1 + kSame) * values[k - 1]);
+    count += static_cast<std::size_t>(values[k] > (1 + kSameReading) * values[k - 1]);
   return count;
 }
 

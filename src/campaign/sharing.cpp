@@ -1,4 +1,5 @@
 #include "tribofit/campaign/sharing.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -41,14 +42,14 @@ struct Member {
 
 /// Errors that were estimated one by one need not fit together: correlations are drawn in until they do.
 MatrixXd made_positive(const MatrixXd& covariance) {
-  constexpr double kLeast = 1e-6;
   const VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const MatrixXd correlation = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
   const VectorXd eigenvalues = symmetric_eigen(correlation).values;
-  if (eigenvalues(0) > kLeast) return covariance;
+  if (eigenvalues(0) > kLeastEigenvalue) return covariance;
   const double least = std::min(0.0, eigenvalues(0));
   const MatrixXd drawn_in =
-      (correlation + (kLeast - least) * MatrixXd::Identity(scale.size(), scale.size())) / (1 + kLeast - least);
+      (correlation + (kLeastEigenvalue - least) * MatrixXd::Identity(scale.size(), scale.size())) /
+      (1 + kLeastEigenvalue - least);
   return scale.asDiagonal() * drawn_in * scale.asDiagonal();
 }
 
@@ -190,11 +191,10 @@ SharedFit::Parameter pool_levels(const Sharing::Common& common, const std::vecto
 
 /// Says where runs differ by far more than their own errors.
 void note_scatter(const SharedFit::Parameter& common, std::vector<std::string>& notes) {
-  constexpr double kMany = 5;
   for (std::size_t l = 0; l < common.values.size(); ++l) {
     const PooledValue& value = common.values[l];
     const double own = value.statistical * std::sqrt(static_cast<double>(value.runs));
-    if (!(value.between > kMany * own)) continue;
+    if (!(value.between > kManyErrors * own)) continue;
     const std::string where = common.condition.empty() ? "" : " at " + common.condition + " " + common.levels[l];
     notes.push_back(
         fmt::format("{}{} differs from run to run by {:.2g}{}, many times what the errors of the runs allow, so "

@@ -1,4 +1,5 @@
 #include "tribofit/campaign/trends.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr std::size_t kFewestValues = 3;
 
 std::size_t count_values(const std::vector<std::optional<double>>& numbers) {
   std::set<double> values;
@@ -101,7 +100,7 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
     y.push_back(p.value);
     variance.push_back(p.std_error * p.std_error);
   }
-  if (std::set<double>(x.begin(), x.end()).size() < kFewestValues || x.size() < 4) return std::nullopt;
+  if (std::set<double>(x.begin(), x.end()).size() < kFewestValuesOfTrend || x.size() < 4) return std::nullopt;
   const auto n = static_cast<Index>(x.size());
   const Eigen::Map<const VectorXd> at(x.data(), n), value(y.data(), n), errors(variance.data(), n);
   Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
@@ -154,7 +153,6 @@ std::string sentence(const Confounded& pair) {
 }  // namespace
 
 Trends find_trends(std::span<const RunResult> runs) {
-  constexpr double kTogether = 0.9;
   Trends out;
   const std::vector<ConditionColumn> columns = numbers_of(runs);
   std::vector<const ResultFit*> laws;
@@ -177,7 +175,7 @@ Trends find_trends(std::span<const RunResult> runs) {
   for (std::size_t a = 0; a < columns.size(); ++a) {
     for (std::size_t b = a + 1; b < columns.size(); ++b) {
       const double r = correlation(columns[a], columns[b]);
-      if (std::abs(r) < kTogether) continue;
+      if (std::abs(r) < kConfounded) continue;
       out.confounded.push_back({columns[a].name, columns[b].name, r});
       out.warnings.push_back(sentence(out.confounded.back()));
     }
@@ -193,11 +191,10 @@ Trends find_trends(std::span<const RunResult> runs) {
 }
 
 std::vector<Trend> significant_trends(const Trends& trends) {
-  constexpr double kSignificant = 0.05, kExactly = 0.999;
   std::vector<Trend> out;
   for (const Trend& t : trends.trends) {
     const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
-      return pair.b == t.condition && std::abs(pair.correlation) > kExactly;
+      return pair.b == t.condition && std::abs(pair.correlation) > kSameCondition;
     });
     if (t.p_corrected <= kSignificant && !said) out.push_back(t);
   }

@@ -38,7 +38,8 @@ struct SampleErrors {
   std::vector<double> squares;  ///< sum of squares of each cycle, break-away included
   std::vector<double> counts;   ///< residuals of each cycle
   double constant_rmse = 0;     ///< what a constant |friction| would leave
-  std::vector<double> levels;   ///< mean residual of each stretch of noise_stretch() samples, in order
+  std::vector<double> levels;   ///< mean residuals of successive stretches of equal length
+  std::size_t levels_per_noise_stretch = 1;
 };
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations);

@@ -90,15 +90,18 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
 }
 
-/// Standard deviation of 1/f noise in what the model leaves; 0 where that is of another kind, which may be a cause that
-/// was not recorded.
-double flicker_of(const std::vector<double>& levels) {
-  const SlowNoise slow = slow_noise(levels);
-  if (!slow.is_flicker) return 0;
+/// Standard deviation of 1/f noise over longer times than sensor noise was taken over; 0 where what the model leaves is
+/// rather of another kind, which may be a cause that was not recorded.
+double slow_noise_beyond_stretches(const SampleErrors& errors) {
+  const SlowNoise slow = slow_noise(errors.levels);
+  if (!slow.is_flicker || slow.is_rather_other) return 0;
+  const std::size_t stretch = errors.levels_per_noise_stretch;
+  const std::vector<double> mean(stretch, 1 / static_cast<double>(stretch));
+  const double within_stretch = slow.covariance[0] - slow.variance_of_sum(mean);
   // What a fit takes away at low frequencies is not left.
   double squares = 0;
-  for (const double level : levels) squares += level * level / static_cast<double>(levels.size());
-  return std::sqrt(std::min(slow.variance_within(), squares));
+  for (const double level : errors.levels) squares += level * level / static_cast<double>(errors.levels.size());
+  return std::sqrt(std::clamp(slow.variance_within() - within_stretch, 0.0, squares));
 }
 
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
@@ -113,8 +116,8 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   const bool sticks = std::any_of(context.records.begin(), context.records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;
   });
-  if (!sticks) floor.wander = flicker_of(errors.levels);
-  floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.wander, 2) + scatter);
+  if (!sticks) floor.slow_noise = slow_noise_beyond_stretches(errors);
+  floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.slow_noise, 2) + scatter);
   set_floor(floor, fit);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "errors.hpp"
+#include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -51,7 +52,6 @@ bool is_spoilt(const Motion& motion, const SampleRange& samples) {
 }
 
 constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
-constexpr std::size_t kStretch = 200;       ///< samples over which a ramp, even a creeping one, is a parabola
 constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
@@ -61,7 +61,7 @@ std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation&
     const std::size_t margin = cycle.stick.size() / 8;
     if (cycle.stick.size() < kShortestStick || !segmentation.is_selected(cycle)) continue;
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
-    const std::size_t pieces = std::max<std::size_t>(1, length / kStretch);
+    const std::size_t pieces = std::max<std::size_t>(1, length / kLongestNoiseStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
       const SampleRange piece{begin + k * length / pieces, begin + (k + 1) * length / pieces};
       if (!is_spoilt(motion, piece)) parts.push_back(about_parabola(motion.friction, piece.begin, piece.end));

@@ -2,9 +2,11 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "find_zero.hpp"
+#include "limits.hpp"
 #include "simulation.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -24,10 +26,10 @@ void Simulation::DeleteStepper::operator()(Stepper* stepper) const {
   delete stepper;
 }
 
-/// Refuses what would take for ever: normal simulations need a few thousand steps a second, the stiffest bristles 2e5.
+/// Refuses what would take for ever.
 void Simulation::count_step() {
-  constexpr double kMostSteps = 5e5, kMostStepsASecond = 3e5;
-  if (static_cast<double>(++steps_) < kMostSteps + kMostStepsASecond * (time_ + options_.settle)) return;
+  const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
+  if (static_cast<double>(++steps_) < kFirstSteps + kStepsAPeriod * periods) return;
   throw InputError("the simulation needs too many steps: after " + std::to_string(steps_) +
                        " it is at t = " + std::to_string(time_) + " s",
                    "check that load, mass, stiffness and damping fit together, and that the effects have plausible "

@@ -1,4 +1,5 @@
 #include "slip_flow.hpp"
+#include "limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,6 @@ double SlipFlow::friction(double t, const BlockState& y) const {
   double block_acceleration = 0;
   double mu = 0;
   // Where friction depends on the acceleration it makes, the two are found together, by iteration.
-  constexpr int kMostIterations = 50;
   for (int i = 0; i < kMostIterations; ++i) {
     mu = friction_at(std::abs(speed), block_acceleration, t, y, nullptr);
     if (speed < 0) mu = 2 * friction_at(0, block_acceleration, t, y, nullptr) - mu;

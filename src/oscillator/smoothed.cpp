@@ -1,4 +1,5 @@
 #include "tribofit/oscillator/smoothed.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -156,15 +157,13 @@ void SmoothedSimulation::advance(double until) {
 
 /// v_r of a stick is the small difference of two speeds; its rounding must not move the friction.
 bool SmoothedSimulation::resolves_creep() const {
-  constexpr double kMostRounding = 2e-8;  // of mu_brk; at 7e-9 periods are right to 1e-8, at 7e-8 wrong by 1e-4
   const double rounding = std::numeric_limits<double>::epsilon() * std::abs(setup_.disc_velocity(integrator_.time()));
   return 2 / std::numbers::pi * law_.sharpness * rounding <= kMostRounding;
 }
 
 std::size_t SmoothedSimulation::most_steps() const {
-  constexpr double kFirst = 1e5, kAPeriod = 2e4;  // a natural period needs some 400, ten times that at 1e-13
   const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (integrator_.time() + options_.settle);
-  return static_cast<std::size_t>(kFirst + kAPeriod * periods);
+  return static_cast<std::size_t>(kFirstStiffSteps + kStiffStepsAPeriod * periods);
 }
 
 void SmoothedSimulation::give_up(const std::string& reason) const {

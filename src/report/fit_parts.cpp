@@ -82,10 +82,11 @@ ReportTable correlation_table(const Fit& fit) {
 
 void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
-  section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}).",
+  const std::string slow = fit.floor.slow_noise > 0 ? ", slow 1/f noise " + level(fit.floor.slow_noise) : "";
+  section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}{}).",
                            level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
                            level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
-                           level(fit.floor.scatter)));
+                           level(fit.floor.scatter), slow));
   section.soft(fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
                            percent(fit.error.mean_relative), percent(fit.error.max_relative),
                            share_text(fit.explained)));

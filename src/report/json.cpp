@@ -41,7 +41,8 @@ Json fit_json(const Fit& fit, const Motion& motion) {
   };
   const Json error = object("rmse", fit.error.rmse, "mean_relative", fit.error.mean_relative, "max_relative",
                             fit.error.max_relative, "held_out_rmse", fit.error.held_out_rmse);
-  const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "source", fit.floor.source);
+  const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "slow_noise", fit.floor.slow_noise,
+                            "source", fit.floor.source);
   return object(
       "law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects", fit.model.effect_keys(),
       "effect_names", fit.model.effect_names(), "parameters", list_of(fit.parameters, parameter), "error", error,

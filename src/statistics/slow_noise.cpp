@@ -20,6 +20,10 @@ constexpr double kClearlyLikelier = 5;
 /// By how much it must exceed that of independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
 constexpr double kLikelier = 1;
 
+/// By how much another spectrum's must exceed that of 1/f noise before it is the likelier one: the best of several
+/// gains as much by chance.
+constexpr double kRatherLikelier = 1;
+
 /// Below as many periods in the record a model that was fitted has taken power away.
 constexpr double kFirstBin = 3;
 
@@ -85,6 +89,13 @@ std::vector<double> autoregression(const std::vector<double>& frequency, double 
     const double swing = std::cos(2 * std::numbers::pi * f);
     out.push_back((1 - memory * memory) / (1 - 2 * memory * swing + memory * memory));
   }
+  return out;
+}
+
+/// Spectra that rise more steeply than 1/f, as a level that jumps or drifts has: what a wrong model leaves.
+std::vector<double> steeper(const std::vector<double>& frequency, double power) {
+  std::vector<double> out;
+  for (const double f : frequency) out.push_back(std::pow(f / frequency.front(), -power) / frequency.front());
   return out;
 }
 
@@ -190,6 +201,11 @@ SlowNoise slow_noise(std::span<const double> series) {
     for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
   } else if (of_flicker.slow > 0) {
     out.is_flicker = true;
+    double likeliest_other = best.log_likelihood;
+    for (const double power : {1.5, 2.0, 3.0}) {
+      likeliest_other = std::max(likeliest_other, robust_fit(seen, steeper(seen.frequency, power)).log_likelihood);
+    }
+    out.is_rather_other = likeliest_other > of_flicker.log_likelihood + kRatherLikelier;
     out.covariance = covariance_of_flicker(n);
     for (double& c : out.covariance) c *= of_flicker.slow;
   }

@@ -1,4 +1,5 @@
 #include "tribofit/study/critical_speed.hpp"
+#include "limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +35,9 @@ double turning_of(const std::function<bool(double)>& yes, double low, double hig
 /// The highest of speeds in equal ratios at which `yes` holds, and the next above it: {0, lowest} where it does at
 /// none.
 std::pair<double, double> highest_where(const std::function<bool(double)>& yes, double low, double high) {
-  constexpr int kPoints = 60;
   double above = high;
-  for (int i = kPoints - 1; i >= 0; --i) {
-    const double now = i == 0 ? low : low * std::pow(high / low, static_cast<double>(i) / kPoints);
+  for (int i = kSpeedsOfStick - 1; i >= 0; --i) {
+    const double now = i == 0 ? low : low * std::pow(high / low, static_cast<double>(i) / kSpeedsOfStick);
     if (yes(now)) return {now, above};
     above = now;
   }
@@ -72,8 +72,7 @@ class Search {
     if (is_stable(velocity)) return false;
     const Machine machine = at(machine_, velocity);
     for (const double part : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9}) {
-      constexpr double kPeriods = 6;
-      const Swings swings = swings_from(machine, part * velocity, kPeriods);
+      const Swings swings = swings_from(machine, part * velocity, kPeriodsOfGrowth);
       if (swings.sticks) continue;
       const std::size_t n = swings.sizes.size();
       if (n < 4 || swings.sizes[n - 1] <= swings.sizes[n - 3]) return false;
@@ -86,9 +85,9 @@ class Search {
     out_.lowest = options_.lowest > 0 ? options_.lowest : 0.01 * own;
     out_.highest = options_.highest;
     if (out_.highest == 0) {
-      constexpr double kStep = 1.5, kMost = 1000;
       out_.highest = std::max(own, 2 * out_.lowest);
-      while (out_.highest < kMost * own && (!is_stable(out_.highest) || sticks(out_.highest))) out_.highest *= kStep;
+      while (out_.highest < kMostSpeed * own && (!is_stable(out_.highest) || sticks(out_.highest)))
+        out_.highest *= kSpeedStep;
     }
     if (!(out_.lowest > 0 && out_.highest > out_.lowest && std::isfinite(out_.highest))) {
       throw InputError("the speed range is empty", "give a lowest speed above zero and a highest above it");
@@ -97,11 +96,11 @@ class Search {
 
   std::vector<double> changes_of_stability() const {
     std::vector<double> changes;
-    constexpr int kPoints = 400;
     double before = out_.lowest;
     bool stable = is_stable(before);
-    for (int i = 1; i <= kPoints; ++i) {
-      const double now = out_.lowest * std::pow(out_.highest / out_.lowest, static_cast<double>(i) / kPoints);
+    for (int i = 1; i <= kSpeedsOfStability; ++i) {
+      const double now =
+          out_.lowest * std::pow(out_.highest / out_.lowest, static_cast<double>(i) / kSpeedsOfStability);
       if (is_stable(now) != stable) {
         changes.push_back(turning_of([&](double v) { return is_stable(v); }, before, now, 1e-10));
         stable = !stable;
@@ -115,8 +114,7 @@ class Search {
   double way_down() const {
     if (out_.linear.empty()) return std::numeric_limits<double>::quiet_NaN();
     const double lost = out_.linear.back();
-    constexpr double kBelow = 1e-3;  // at the change itself nothing grows nor shrinks
-    const double begin = lost * (1 - kBelow);
+    const double begin = lost * (1 - kBelowTheLoss);
     if (begin <= out_.lowest || is_stable(begin)) return std::numeric_limits<double>::quiet_NaN();
     if (returns(begin)) return lost;
     const auto returns_at = [&](double v) { return returns(v); };

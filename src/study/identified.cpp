@@ -1,4 +1,5 @@
 #include "tribofit/study/identified.hpp"
+#include "limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +14,16 @@ namespace {
 
 /// Correlation of break-away from cycle to cycle, of what is scatter in it; 0 where there are too few cycles.
 double wander_of(const Segmentation& segmentation, double scatter) {
-  constexpr double kMost = 0.9;
   std::vector<double> levels;
   for (const Cycle& cycle : segmentation.cycles) {
     if (cycle.stick.size() > 0 && std::isfinite(cycle.break_away_friction)) levels.push_back(cycle.break_away_friction);
   }
   const std::size_t n = levels.size();
-  if (n < 10 || !(scatter > 0)) return 0;
+  if (n < kFewestLevels || !(scatter > 0)) return 0;
   double mean = 0, products = 0;
   for (const double x : levels) mean += x / static_cast<double>(n);
   for (std::size_t i = 1; i < n; ++i) products += (levels[i] - mean) * (levels[i - 1] - mean);
-  return std::clamp(products / static_cast<double>(n - 1) / (scatter * scatter), 0.0, kMost);
+  return std::clamp(products / static_cast<double>(n - 1) / (scatter * scatter), 0.0, kMostScatterCorrelation);
 }
 
 /// Mean speed of the disc [rad/s], NaN where it is not known.

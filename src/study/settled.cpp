@@ -1,4 +1,5 @@
 #include "tribofit/study/settled.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -61,9 +62,6 @@ std::optional<double> open_slip(const SimulatedMotion& motion) {
   return std::isnan(begin) ? 0 : std::max(0.0, begin);
 }
 
-/// Slips that last longer end in no stick [natural periods].
-constexpr double kLongestSlip = 2.5;
-
 /// From turning point to turning point between two times [m].
 std::vector<double> swings_since(const SimulatedMotion& motion, double begin, double end = INFINITY) {
   std::vector<double> sizes;
@@ -78,7 +76,6 @@ std::vector<double> swings_since(const SimulatedMotion& motion, double begin, do
 
 /// Swings below this are rounding of the displacement [m].
 double rest_of(const Machine& machine) {
-  constexpr double kRoundings = 256;
   const double displacement = std::abs(steady_sliding(machine).displacement);
   return kRoundings * std::numeric_limits<double>::epsilon() * displacement;
 }
@@ -86,8 +83,7 @@ double rest_of(const Machine& machine) {
 /// Whether a motion that slid for `length` [s] without swinging has come to steady sliding: that is stable, and the
 /// time was several times that in which deviations from it fall by e.
 bool creeps_to_rest(const Machine& machine, double length) {
-  constexpr double kTimes = 5;
-  return length * steady_sliding(machine).growth_rate() < -kTimes;
+  return length * steady_sliding(machine).growth_rate() < -kTimesToRest;
 }
 
 bool alike(double a, double b, double tolerance) {
@@ -214,9 +210,7 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   const std::vector<TurningPoint>& turns = motion.turning_points;
   const double first = *std::max_element(swings.begin(), swings.end());
   const double last = swings.back(), change = last / swings[swings.size() - 3] - 1;
-  // What is left of a thousandth need not shrink any more: it may be rounding.
-  constexpr double kSmall = 0.05, kGone = 1e-3;
-  const bool dies_out = (change < 0 && last < kSmall * first) || last < std::max(kGone * first, still);
+  const bool dies_out = (change < 0 && last < kSmallSwing * first) || last < std::max(kGoneSwing * first, still);
   if (dies_out && steady_sliding(machine_).is_stable()) {
     out_.begin = turns.back().time;
     return slides();
@@ -227,8 +221,7 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   out_.peak_to_peak = last;
   out_.energy = 0.5 * machine_.rig.stiffness * last * last;
   out_.begin = end.is_maximum ? end.time : turns[turns.size() - 2].time;
-  constexpr double kStill = 1e-2;  // swings that grow from an unstable cycle change slowly at first
-  if (std::abs(change) < kStill * options_.tolerance) {
+  if (std::abs(change) < kSteadySwing * options_.tolerance) {
     out_.regime = Regime::vibration;
     out_.peak_speed = fastest_of_vibration(end);
     return true;
@@ -292,7 +285,6 @@ namespace {
 /// near the speed of the disc for a while.
 bool goes_on(const std::vector<SeenCycle>& cycles, bool bare) {
   if (bare) return !cycles.empty();
-  constexpr double kShrinks = 1e-4;
   const std::size_t n = cycles.size();
   if (n < 4) return false;
   for (std::size_t k = n - 3; k < n; ++k) {
@@ -306,8 +298,7 @@ bool goes_on(const std::vector<SeenCycle>& cycles, bool bare) {
 bool keeps_sticking(const Machine& machine, double sharpness) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
   const bool bare = machine.model.effects().empty();
-  constexpr double kCycles = 4, kStill = 1e-9;
-  const double most = std::max(kCycles * cycle, (bare ? 2000 : 500) * period);
+  const double most = std::max(kCyclesThatStick * cycle, (bare ? 2000 : 500) * period);
   // The first slip shows it for most machines.
   double duration = bare ? 2 * cycle : 0.5 * cycle + (kLongestSlip + 1) * period;
   while (true) {
@@ -318,14 +309,15 @@ bool keeps_sticking(const Machine& machine, double sharpness) {
       const std::size_t n = swings.size();
       // Without memory the flow is planar: swings that shrink always will, and those that grow may reach the disc yet.
       const bool dies_out =
-          n >= 4 ? swings[n - 1] < (1 + kStill) * swings[n - 3] : creeps_to_rest(machine, duration - *since);
+          n >= 4 ? swings[n - 1] < (1 + kSameSwing) * swings[n - 3] : creeps_to_rest(machine, duration - *since);
       if (dies_out) return false;
       if (bare && goes_on(cycles_of(motion), bare)) return true;
       if (duration >= most) return false;
-    } else if (goes_on(cycles_of(motion), bare) || (duration >= kCycles * cycle && (bare || duration >= most))) {
+    } else if (goes_on(cycles_of(motion), bare) ||
+               (duration >= kCyclesThatStick * cycle && (bare || duration >= most))) {
       return true;
     }
-    duration = std::max(kCycles * cycle, 4 * duration);
+    duration = std::max(kCyclesThatStick * cycle, 4 * duration);
   }
 }
 

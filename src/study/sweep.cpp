@@ -1,4 +1,5 @@
 #include "tribofit/study/sweep.hpp"
+#include "limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +66,9 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
   std::vector<CriticalSpeed> criticals(draws.size());
   std::vector<Settled> settled(draws.size());
   CriticalSpeedOptions around = search;  // other machines are not far
-  constexpr double kFar = 3;
   around.lowest =
-      std::min(out.critical.lowest, out.critical.linear.empty() ? INFINITY : out.critical.linear.front() / kFar);
-  around.highest = kFar * out.critical.highest;
+      std::min(out.critical.lowest, out.critical.linear.empty() ? INFINITY : out.critical.linear.front() / kFarMachine);
+  around.highest = kFarMachine * out.critical.highest;
   around.tolerance = 1e-4;
   run_tasks(draws.size(), options.threads, [&](std::size_t i) {
     criticals[i] = critical_speed(draws[i], around);

@@ -1,4 +1,5 @@
 #include "tribofit/study/twin.hpp"
+#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <utility>
 
 #include "motion_measures.hpp"
@@ -18,15 +20,11 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t kBreakAway = 3;  // among the measures
-constexpr double kOff = 3;             // standard errors from which a measure counts as off
-constexpr std::size_t kFewest = 8;     // simulations
-constexpr double kMostSamples = 4e7;   // over all simulations of a column
-constexpr double kGrid = 1e-3;         // on which recorded conditions are followed [s]
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// A channel as a function of time since the record's first sample: means over kGrid with straight lines between.
-std::function<double(double)> follow(const std::vector<double>& channel, double step) {
-  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kGrid / step)));
+/// A channel as a function of time since the record's first sample: means over `grid` [s] with straight lines between.
+std::function<double(double)> follow(const std::vector<double>& channel, double step, double grid) {
+  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(grid / step)));
   const auto means = std::make_shared<std::vector<double>>();
   for (std::size_t begin = 0; begin < channel.size(); begin += length) {
     const std::size_t end = std::min(begin + length, channel.size());
@@ -34,7 +32,7 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
     for (std::size_t i = begin; i < end; ++i) sum += channel[i];
     means->push_back(sum / static_cast<double>(end - begin));
   }
-  const double grid = static_cast<double>(length) * step;
+  grid = static_cast<double>(length) * step;
   return [means, grid](double t) {
     const double place = std::clamp(t / grid - 0.5, 0.0, static_cast<double>(means->size() - 1));
     const auto k = std::min(static_cast<std::size_t>(place), means->size() - 1),
@@ -43,10 +41,10 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   };
 }
 
-SpeedProfile speed_of(const Motion& motion, double radius) {
+SpeedProfile speed_of(const Motion& motion, double radius, double grid) {
   std::vector<double> times, speeds;
-  const std::function<double(double)> velocity = follow(motion.disc_velocity, motion.step);
-  for (double t = 0; t < motion.duration(); t += kGrid) {
+  const std::function<double(double)> velocity = follow(motion.disc_velocity, motion.step, grid);
+  for (double t = 0; t < motion.duration(); t += grid) {
     times.push_back(t);
     speeds.push_back(velocity(t) / radius);
   }
@@ -56,12 +54,13 @@ SpeedProfile speed_of(const Motion& motion, double radius) {
 /// The machine's drive at the record's own conditions.
 Drive drive_of(const Machine& machine, const Motion& motion) {
   Drive drive = machine.drive();
-  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, machine.radius);
+  const double grid = 2 * std::numbers::pi / machine.rig.natural_frequency() / kConditionsAPeriod;
+  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, machine.radius, grid);
   if (!motion.load.empty() && motion.friction_kind == FrictionKind::coefficient) {
-    drive.load = follow(motion.load, motion.step);
+    drive.load = follow(motion.load, motion.step, grid);
   }
   if (!motion.temperature.empty()) {
-    drive.temperature = follow(motion.temperature, motion.step);
+    drive.temperature = follow(motion.temperature, motion.step, grid);
     double sum = 0;
     for (const double x : motion.temperature) sum += x;
     drive.mean_temperature = sum / static_cast<double>(motion.temperature.size());
@@ -72,7 +71,6 @@ Drive drive_of(const Machine& machine, const Motion& motion) {
 /// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
 double noise_colour(const Motion& motion, const Segmentation& segmentation) {
   constexpr std::size_t kPiece = 400, kSticks = 50;
-  constexpr double kMost = 0.97;
   double squares = 0, products = 0;
   std::size_t used = 0;
   for (const Cycle& cycle : segmentation.cycles) {
@@ -92,7 +90,7 @@ double noise_colour(const Motion& motion, const Segmentation& segmentation) {
       before = r;
     }
   }
-  return squares > 0 ? std::clamp(products / squares, 0.0, kMost) : 0;
+  return squares > 0 ? std::clamp(products / squares, 0.0, kMostNoiseCorrelation) : 0;
 }
 
 /// N/k of a machine: what the spring gives for a unit of friction [m].
@@ -274,8 +272,8 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
         {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }
   twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
-  const auto affordable = static_cast<std::size_t>(kMostSamples / static_cast<double>(motion.size()));
-  twin.simulations = std::max(kFewest, std::min(options.simulations, affordable));
+  const auto affordable = static_cast<std::size_t>(kMostSimulatedSamples / static_cast<double>(motion.size()));
+  twin.simulations = std::max(kFewestSimulations, std::min(options.simulations, affordable));
   Sensors sensors;
   sensors.friction_noise = fits.empty() ? 0 : fits[0].floor.noise;
   sensors.velocity_noise = motion.velocity_noise;

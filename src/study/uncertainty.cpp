@@ -1,4 +1,5 @@
 #include "tribofit/study/uncertainty.hpp"
+#include "limits.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -48,7 +49,6 @@ std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& c
     return Eigen::VectorXd(root * z);
   };
   std::vector<Machine> out;
-  constexpr std::size_t kMostTries = 100;  // for each
   for (std::size_t tries = 0; out.size() < count && tries < kMostTries * count; ++tries) {
     Machine drawn = machine;
     const Eigen::VectorXd change = draw(friction), of_rig = draw(rig);
@@ -70,7 +70,6 @@ std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& c
 Range range_of(std::vector<double> values) {
   const std::size_t all = values.size();
   std::erase_if(values, [](double x) { return std::isnan(x); });
-  constexpr double kMostMissing = 0.1;
   const double missing = static_cast<double>(all - values.size());
   if (values.empty() || missing > kMostMissing * static_cast<double>(all)) {
     const double nan = std::numeric_limits<double>::quiet_NaN();

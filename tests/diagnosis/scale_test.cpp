@@ -113,6 +113,28 @@ TraceInput speed_steps(const std::function<double(double)>& mu, std::uint64_t se
   return {trace->path, {}, trace};
 }
 
+Floor floor_of(const Law& law, const std::function<double(double)>& mu, std::uint64_t seed) {
+  IdentifyOptions options;
+  options.laws = {law};
+  Identification trace = prepare_trace(speed_steps(mu, seed), options);
+  fit_trace(options, trace);
+  return trace.fits.at(0).floor;
+}
+
+/// What a wrong law leaves at the steps of speed is no 1/f noise, and no part of the noise floor. This friction is
+/// another at each of the speeds, by no law.
+TEST(SlowNoise, AWrongLawDoesNotRaiseTheNoiseFloor) {
+  const auto mu = [](double v) { return 0.3 + 0.02 * std::sin(1e4 * v); };
+  int raised = 0;
+  constexpr int kRecords = 20;
+  for (int seed = 1; seed <= kRecords; ++seed) {
+    const Floor floor = floor_of(CoulombLaw{}, mu, static_cast<std::uint64_t>(seed));
+    EXPECT_NEAR(floor.noise, 0.003, 0.0005) << seed;
+    raised += floor.rmse > 1.1 * 0.003 ? 1 : 0;
+  }
+  EXPECT_LE(raised, 2);
+}
+
 /// Another law of the list says with fewer parameters what one of the first laws says with an effect.
 TEST(BaseLaw, TheLawsOfTheListCompete) {
   const std::vector<std::pair<std::string, std::function<double(double)>>> truths = {

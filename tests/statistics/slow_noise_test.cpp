@@ -117,5 +117,25 @@ TEST(SlowNoise, FewOrEqualValuesHaveNone) {
   EXPECT_EQ(slow_noise({}).variance_within(), 0);
 }
 
+/// Levels that jump, as a wrong law leaves at steps of speed, are not 1/f noise; with so many values that shows.
+TEST(SlowNoise, JumpsAreRatherNoFlicker) {
+  std::mt19937_64 engine(5);
+  constexpr std::size_t kValues = 600, kStep = 50;
+  constexpr int kSeries = 100;
+  int other_of_flicker = 0, other_of_jumps = 0;
+  for (int k = 0; k < kSeries; ++k) {
+    std::vector<double> noise = flicker(engine, kValues), jumps(kValues);
+    const std::vector<double> fast = white(engine, kValues), levels = white(engine, kValues / kStep);
+    for (std::size_t i = 0; i < kValues; ++i) {
+      noise[i] += fast[i];
+      jumps[i] = levels[i / kStep] + fast[i];
+    }
+    other_of_flicker += slow_noise(noise).is_rather_other ? 1 : 0;
+    other_of_jumps += slow_noise(jumps).is_rather_other ? 1 : 0;
+  }
+  EXPECT_LT(other_of_flicker, 0.35 * kSeries);
+  EXPECT_GT(other_of_jumps, 0.65 * kSeries);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+
+// The thresholds by which studies decide, with their reasons and what moves when they change.
+
+namespace tribofit {
+
+// ---- what a motion settles to
+
+/// A slip that lasts longer ends in no stick [natural periods]: a bare law's ends within one and a half, effects with
+/// memory prolong it. Shorter: machines near their critical speed count as not sticking.
+inline constexpr double kLongestSlip = 2.5;
+
+/// Swings below so many roundings of the displacement are rounding.
+inline constexpr double kRoundings = 256;
+
+/// Sliding has become steady after so many times in which deviations fall by e.
+inline constexpr double kTimesToRest = 5;
+
+/// Swings die out where they shrink below the first of these parts of the largest; below the second they need not
+/// shrink any more, as that may be rounding.
+inline constexpr double kSmallSwing = 0.05, kGoneSwing = 1e-3;
+
+/// Swings are those of a steady vibration where they change by less than this part of the tolerance: those that grow
+/// from an unstable cycle change slowly at first.
+inline constexpr double kSteadySwing = 1e-2;
+
+/// Cycles that shrink by more than this each are dying.
+inline constexpr double kShrinks = 1e-4;
+
+/// Longest cycles after which a motion that still sticks keeps sticking, and the change of a swing that is rounding.
+inline constexpr double kCyclesThatStick = 4, kSameSwing = 1e-9;
+
+// ---- the critical speed
+
+/// Speeds in equal ratios among which stick and stability are looked for. Fewer: a second change between two of them is
+/// missed.
+inline constexpr int kSpeedsOfStick = 60, kSpeedsOfStability = 400;
+
+/// The highest speed is raised in these steps, to this multiple of the machine's own, until sliding is stable.
+inline constexpr double kSpeedStep = 1.5, kMostSpeed = 1000;
+
+/// Where stability is lost nothing grows nor shrinks: motions begin this part below.
+inline constexpr double kBelowTheLoss = 1e-3;
+
+/// Periods that show whether a swing grows.
+inline constexpr double kPeriodsOfGrowth = 6;
+
+/// Machines drawn within the uncertainty have critical speeds within this factor.
+inline constexpr double kFarMachine = 3;
+
+// ---- uncertainty
+
+/// Draws for each machine until one can be.
+inline constexpr std::size_t kMostTries = 100;
+
+/// Draws without an answer beyond this part leave no interval: 2.5 % at either end could be among them.
+inline constexpr double kMostMissing = 0.1;
+
+// ---- the twin
+
+/// Standard errors from which a measure counts as off.
+inline constexpr double kOff = 3;
+
+/// Fewest simulations that show a spread, and the samples over all of them: a minute of work.
+inline constexpr std::size_t kFewestSimulations = 8;
+inline constexpr double kMostSimulatedSamples = 4e7;
+
+/// Greatest correlation taken for that of break-away from cycle to cycle, and of noise from sample to sample: closer to
+/// one a simulation would have to be far longer than the record to show its spread.
+inline constexpr double kMostScatterCorrelation = 0.9, kMostNoiseCorrelation = 0.97;
+
+/// Points a natural period on which recorded load, temperature and disc speed are followed: what is faster is noise.
+inline constexpr double kConditionsAPeriod = 50;
+
+/// Cycles that show a correlation of break-away.
+inline constexpr std::size_t kFewestLevels = 10;
+
+}  // namespace tribofit
