@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 
 #include "console.hpp"
@@ -12,6 +12,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/ingest/units.hpp"
 
 using namespace tribofit;
@@ -98,8 +99,8 @@ Loss loss_from(const std::string& name) {
 
 /// Adds the formulas of a file: one a line, # begins a comment line.
 void add_formulas_of(const std::string& path, std::vector<Effect>& effects) {
-  std::ifstream in(path);
-  if (!in) throw InputError("--formula: the file cannot be read", "write it as --formula @FILE", {path, 0, ""});
+  constexpr std::uint64_t kMost = 1 << 20;
+  std::istringstream in(text_of_file(path, kMost, "write it as --formula @FILE, a text with one formula a line"));
   std::size_t number = 0, found = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;

@@ -11,8 +11,6 @@
 #include <charconv>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -26,6 +24,7 @@
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/report/campaign.hpp"
 
 using namespace tribofit;
@@ -158,8 +157,9 @@ void claim_results(const Campaign& campaign, const BatchOptions& batch) {
 void write_campaign(const Campaign& campaign, const BatchOptions& batch) {
   const std::string path = (fs::path(batch.results) / campaign_name).string();
   const std::string text = campaign_json(campaign, batch);
-  std::ifstream in(path, std::ios::binary);
-  if (in && std::string(std::istreambuf_iterator<char>(in), {}) == text) return;
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && text_of_file(path, std::uint64_t{1} << 30, "name another folder with --out") == text)
+    return;
   write_whole(path, text);
 }
 

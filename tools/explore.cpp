@@ -5,8 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -20,6 +18,7 @@
 #include "inputs.hpp"
 #include "options.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/workbench/server.hpp"
 #include "verbs.hpp"
 
@@ -57,10 +56,9 @@ void add_options(const Command& app, ExploreSettings& s) {
       .group("Server");
 }
 
-std::string text_of_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError("the session cannot be read", "give a file that the page saved", {path, 0, ""});
-  return {std::istreambuf_iterator<char>(in), {}};
+std::string text_of_session(const std::string& path) {
+  constexpr std::uint64_t kMost = 64 << 20;
+  return tribofit::text_of_file(path, kMost, "give --session a file that the page saved");
 }
 
 /// What the command line says of the fit without the choice, which the page changes.
@@ -187,7 +185,7 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   std::vector<std::string> arguments = given;
   std::string saved;
   if (!s.session.empty()) {
-    saved = text_of_file(s.session);
+    saved = text_of_session(s.session);
     take_over(saved, s);
     arguments = saved_workbench(saved, s.session).arguments;
   }

@@ -6,10 +6,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/report/study.hpp"
 #include "tribofit/version.hpp"
 
@@ -33,10 +33,9 @@ std::string head_of(const MapRequest& request) {
 }
 
 std::string read_all(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  if (!std::filesystem::exists(path)) return {};
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  return text_of_file(path, kMost, "name another folder");
 }
 
 }  // namespace

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "figures_json.hpp"
@@ -16,6 +14,7 @@
 #include "order.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -146,10 +145,12 @@ RunResult result_of(const Json& json) {
 
 /// The bytes of a file, empty where it cannot be read.
 std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << in.rdbuf();  // a folder reads as nothing
-  return std::move(bytes).str();
+  constexpr std::uint64_t most = std::uint64_t{1} << 30;
+  try {
+    return text_of_file(path, most, "name a result of a batch");
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 /// The line with the figures in the text of a result, with the line break before it; empty where it has none.

@@ -8,33 +8,67 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 
 namespace tribofit {
 
-InputFile::InputFile(const std::string& path, char ends_lines) : path_(path), ends_lines_(ends_lines) {
+namespace {
+
+/// A regular file, opened for reading; a pipe without a writer is not waited for.
+class Descriptor {
+ public:
+  explicit Descriptor(const std::string& path) : number_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+InputFile::InputFile(const std::string& path, char ends_lines, const std::string& advice)
+    : path_(path), ends_lines_(ends_lines) {
+  Descriptor file(path);
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
+  if (file.number() < 0 || ::fstat(file.number(), &status) != 0) {
     throw InputError(std::string("cannot be opened: ") + std::strerror(errno),
                      "check the path and the permission to read", {path, 0, ""});
   }
   if (S_ISDIR(status.st_mode)) {
-    throw InputError("is a folder, not a trace", "name one CSV file of it", {path, 0, ""});
+    throw InputError("is a folder" + std::string(advice.empty() ? ", not a trace" : ""),
+                     advice.empty() ? "name one CSV file of it" : advice, {path, 0, ""});
   }
   if (!S_ISREG(status.st_mode)) {
-    throw InputError("is not a regular file", "write the trace to a file first", {path, 0, ""});
-  }
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) {
-    throw InputError(std::string("cannot be opened: ") + std::strerror(errno), "check the permission to read",
+    throw InputError("is not a regular file", advice.empty() ? "write the trace to a file first" : advice,
                      {path, 0, ""});
   }
+  descriptor_ = file.release();
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
 
 InputFile::~InputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::string text_of_file(const std::string& path, std::uint64_t most, const std::string& advice) {
+  const InputFile file(path, '\n', advice);
+  if (file.size() > most) {
+    throw InputError("has " + std::to_string(file.size()) + " bytes, where up to " + std::to_string(most) + " are read",
+                     advice, {path, 0, ""});
+  }
+  std::string text(static_cast<std::size_t>(file.size()), '\0');
+  text.resize(file.read(0, text));
+  return text;
 }
 
 std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const {

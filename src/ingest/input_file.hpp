@@ -10,9 +10,10 @@ namespace tribofit {
 /// A file opened for reading at any offset, by any number of threads.
 class InputFile {
  public:
-  /// Throws InputError for a missing or unreadable file and for a directory. `ends_lines`: a byte that is read as a
-  /// line feed (a CR, in files of lines that end in CR alone).
-  explicit InputFile(const std::string& path, char ends_lines = '\n');
+  /// Throws InputError for a missing or unreadable file and for anything but a regular one (a folder, a pipe).
+  /// `ends_lines`: a byte that is read as a line feed (a CR, in files of lines that end in CR alone). `advice`: what to
+  /// name instead, where the file is no trace.
+  explicit InputFile(const std::string& path, char ends_lines = '\n', const std::string& advice = "");
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include "column_names.hpp"
 #include "columns.hpp"
@@ -19,14 +19,17 @@ std::string unit_of(const RawColumn& column, const ColumnName& name) {
   return name.unit && !name.unit->empty() ? *name.unit : column.unit;
 }
 
-/// The name that --columns finds this column by: itself, or its number where another has the same or it cannot be
+/// The name that --columns finds each column by: itself, or its number where another has the same or it cannot be
 /// typed.
-std::string request_for(const RawTable& table, std::size_t index) {
-  const std::string& name = table.columns[index].name;
-  const auto same = std::count_if(table.columns.begin(), table.columns.end(),
-                                  [&](const RawColumn& column) { return column.name == name; });
-  const bool plain = name.find('=') == std::string::npos;
-  return same == 1 && plain && table.columns[index].named ? name : fmt::format("#{}", index + 1);
+std::vector<std::string> requests_for(const RawTable& table) {
+  std::map<std::string_view, std::size_t> count;
+  for (const RawColumn& column : table.columns) ++count[column.name];
+  std::vector<std::string> requests;
+  for (const RawColumn& column : table.columns) {
+    const bool plain = column.named && count[column.name] == 1 && column.name.find('=') == std::string::npos;
+    requests.push_back(plain ? column.name : fmt::format("#{}", requests.size() + 1));
+  }
+  return requests;
 }
 
 /// The channel that a name alone stands for.
@@ -59,21 +62,15 @@ void load_what_can_be(RawTable& table, ColumnListing& listing, int threads) {
     if (!table.columns[i].is_text) wanted.push_back(i);
   }
   if (!table.load || wanted.empty()) return;
-  try {
-    table.load(table, wanted, threads);
-  } catch (const InputError& first) {
-    bool any = false;
-    for (const std::size_t i : wanted) {
-      try {
-        const std::size_t one[] = {i};
-        table.load(table, one, threads);
-        any = true;
-      } catch (const InputError& error) {
-        listing.notes.push_back("column " + table.columns[i].shown_name() + ": " + error.problem());
-      }
-    }
-    if (!any) throw first;
+  table.load(table, wanted, threads);
+  std::size_t refused = 0;
+  for (const std::size_t i : wanted) {
+    const RawColumn& column = table.columns[i];
+    if (!column.refusal) continue;
+    ++refused;
+    listing.notes.push_back("column " + column.shown_name() + ": " + column.refusal->problem());
   }
+  if (refused == wanted.size()) throw InputError(*table.columns[wanted.front()].refusal);
 }
 
 void take_numbers(const RawColumn& column, ListedColumn& listed) {
@@ -122,6 +119,7 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
   RawTable table = read_table(path);
   ColumnListing listing;
   listing.format = table.format;
+  const std::vector<std::string> requests = requests_for(table);
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const RawColumn& column = table.columns[i];
     ListedColumn listed;
@@ -129,7 +127,7 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
     listed.place = column.place;
     listed.unit = unit_of(column, parse_column_name(column.name));
     listed.is_text = column.is_text;
-    listed.request = request_for(table, i);
+    listed.request = requests[i];
     listing.columns.push_back(std::move(listed));
   }
   for (const RawFact& fact : table.facts) listing.facts.emplace_back(fact.name, fact.value);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+
+#include "input_file.hpp"
+#include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 
@@ -11,10 +13,13 @@ bool is_output_table(const std::string& path) {
   const auto known = std::find_if(output_tables.begin(), output_tables.end(),
                                   [&](const OutputTable& file) { return file.name == name; });
   if (known == output_tables.end()) return false;
-  std::ifstream in(path, std::ios::binary);
   std::string header(known->header.size(), '\0');
-  in.read(header.data(), static_cast<std::streamsize>(header.size()));
-  return in && header == known->header;
+  try {
+    header.resize(InputFile(path).read(0, header));
+  } catch (const InputError&) {
+    return false;
+  }
+  return header == known->header;
 }
 
 }  // namespace tribofit

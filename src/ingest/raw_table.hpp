@@ -67,6 +67,7 @@ struct RawColumn {
   bool is_text = false;         ///< holds text, as far as is known before its values are loaded
   std::vector<double> numbers;  ///< as written, not yet in SI
   std::vector<std::string> texts;
+  std::optional<InputError> refusal;  ///< why its values cannot be read, where `load` could not
 
   std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
 };
@@ -84,14 +85,16 @@ struct RawDefect {
 /// RawRows, whose clocks agree. Values may be loaded later: `load` fills the columns it is asked for, by index.
 struct RawTable {
   std::string path;
-  std::string format;               ///< of the reader that made it
+  std::string format;              ///< of the reader that made it
   std::vector<RawColumn> columns;  ///< in the order of the file
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;
-  bool is_finite = false;      ///< the reader knows that there is no other than finite numbers below largest_value
+  bool is_finite = false;  ///< the reader knows that there is no other than finite numbers below largest_value
   std::optional<RawDefect> first_gap;  ///< the first cell without a number, where the reader can say what it holds
   std::vector<std::string> notes, warnings;
 
+  /// Reads the values of these columns, each once; a column that cannot be read gets its `refusal`, and the others
+  /// their values. Throws InputError where no column can.
   using Load = std::function<void(RawTable& table, std::span<const std::size_t> columns, int threads)>;
   Load load;  ///< empty: the values are there
 
@@ -100,6 +103,9 @@ struct RawTable {
   /// Where a column is named, for messages.
   InputLocation heading(std::size_t column) const;
 };
+
+/// Columns of a file; more are no channels of a trace.
+inline constexpr std::size_t most_columns = 4096;
 
 /// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
 inline constexpr double largest_value = 1e100;

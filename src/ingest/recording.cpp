@@ -83,6 +83,9 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
   std::vector<std::size_t> wanted;
   for (const Column& column : used) wanted.push_back(column.index);
   if (table.load) table.load(table, wanted, threads);
+  for (const std::size_t index : wanted) {
+    if (table.columns[index].refusal) throw *table.columns[index].refusal;
+  }
 }
 
 /// Of the values of each channel in SI: a record is the same in whatever format it was written.

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "byte_cursor.hpp"
 #include "reader.hpp"
 
 namespace tribofit {
@@ -67,9 +68,8 @@ inline std::string bytes_of(const RawTable& table) {
 
 class Parser {
  public:
-  explicit Parser(const InputFile& file) : path_(file.path()), bytes_(static_cast<std::size_t>(file.size()), '\0') {
-    bytes_.resize(file.read(0, bytes_));
-    at_ = signature.size();
+  explicit Parser(const InputFile& file) : path_(file.path()), bytes_(bytes_of(file), cut_off(file)) {
+    bytes_.skip(signature.size());
   }
 
   RawTable parse() {
@@ -86,24 +86,22 @@ class Parser {
   }
 
  private:
-  void need(std::uint64_t count, std::uint64_t size) const {
-    if (count <= (bytes_.size() - at_) / size) return;
-    throw InputError("is cut off at byte " + std::to_string(bytes_.size()), "copy the file again", {path_, 0, ""});
+  static std::string bytes_of(const InputFile& file) {
+    std::string bytes(static_cast<std::size_t>(file.size()), '\0');
+    bytes.resize(file.read(0, bytes));
+    return bytes;
   }
+  static ByteCursor::CutOff cut_off(const InputFile& file) {
+    return [path = file.path(), size = file.size()](std::uint64_t, std::uint64_t) {
+      throw InputError("is cut off at byte " + std::to_string(size), "copy the file again", {path, 0, ""});
+    };
+  }
+  static constexpr bool big_endian = std::endian::native == std::endian::big;
   template <class Number>
   Number number() {
-    need(1, sizeof(Number));
-    Number value;
-    std::memcpy(&value, bytes_.data() + at_, sizeof value);
-    at_ += sizeof value;
-    return value;
+    return bytes_.number<Number>(big_endian);
   }
-  std::string text() {
-    const auto length = number<std::uint32_t>();
-    need(length, 1);
-    at_ += length;
-    return bytes_.substr(at_ - length, length);
-  }
+  std::string text() { return bytes_.text(big_endian); }
   RawRows rows() {
     RawRows result;
     const auto interval = number<double>();
@@ -126,15 +124,15 @@ class Parser {
     result.rows = number<std::uint32_t>();
     result.is_text = number<std::uint8_t>() != 0;
     const auto count = number<std::uint64_t>();
-    need(count, result.is_text ? 4 : 8);
+    bytes_.need(count, result.is_text ? 4 : 8);
     for (std::uint64_t i = 0; i < count; ++i) {
       result.is_text ? result.texts.push_back(text()) : result.numbers.push_back(number<double>());
     }
     return result;
   }
 
-  std::string path_, bytes_;
-  std::size_t at_ = 0;
+  std::string path_;
+  ByteCursor bytes_;
 };
 
 inline const Reader reader = {"LABREC", [](std::string_view head) { return head.starts_with(signature); },

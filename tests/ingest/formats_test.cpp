@@ -113,9 +113,13 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Format{"Mat5", [](const auto& path, const auto& columns) { put(path, files::mat5_of(columns)); }},
         Format{"Mat5Packed", [](const auto& path, const auto& c) { put(path, files::mat5_of(c, false, true)); }},
+        Format{"Mat73", files::write_mat73},
         Format{"Uff", [](const auto& path, const auto& columns) { put(path, files::uff_of(columns)); }},
+        Format{"UffEven", [](const auto& path, const auto& columns) { put(path, files::uff_of(columns, 5e-5)); }},
         Format{"UffBinary", [](const auto& path, const auto& columns) { put(path, files::uff_binary_of(columns)); }},
+        Format{"UffBigEndian", [](const auto& path, const auto& c) { put(path, files::uff_binary_of(c, 0, true)); }},
         Format{"Tdms", [](const auto& path, const auto& columns) { put(path, files::tdms_of(columns)); }},
+        Format{"TdmsBigEndian", [](const auto& path, const auto& c) { put(path, files::tdms_of(c, true)); }},
         Format{"TdmsInterleaved", [](const auto& path, const auto& c) { put(path, files::tdms_of(c, false, true)); }}),
     [](const auto& param) { return std::string(param.param.name); });
 
@@ -125,10 +129,10 @@ namespace mat5 = files::mat5;
 TEST_F(MatlabFiles, StructuresMatricesScalarsAndText) {
   const auto columns = record();
   const std::string names = std::string("v_b\0\0\0\0\0fs\0\0\0\0\0\0", 16);
-  const std::string laser =
-      mat5::array("laser", 2, 1, 1,
-                  files::bytes_of(std::uint32_t{(4U << 16) | 5U}) + files::bytes_of(std::int32_t{8}) + mat5::element(1, names) +
-                      mat5::vector("", columns[2].values, false, true) + mat5::vector("", {20000}));
+  const std::string laser = mat5::array(
+      "laser", 2, 1, 1,
+      files::bytes_of(std::uint32_t{(4U << 16) | 5U}) + files::bytes_of(std::int32_t{8}) + mat5::element(1, names) +
+          mat5::vector("", columns[2].values, false, true) + mat5::vector("", {20000}));
   std::vector<double> both = columns[1].values;
   both.insert(both.end(), columns[3].values.begin(), columns[3].values.end());
   const std::string matrix = mat5::array("daq", 6, 200, 2, mat5::numbers(both));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -28,7 +29,7 @@ std::vector<std::string> split(std::string_view text, char separator);
 
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names);
 
-/// "a, b, c".
-std::string listed(const std::vector<std::string>& names);
+/// "a, b, c"; of more than `most` the first ones, "and 12 more".
+std::string listed(const std::vector<std::string>& names, std::size_t most = static_cast<std::size_t>(-1));
 
 }  // namespace tribofit

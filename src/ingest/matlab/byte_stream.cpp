@@ -9,8 +9,8 @@
 
 namespace tribofit {
 
-ByteStream::ByteStream(const InputFile& file, std::uint64_t begin, std::uint64_t end, bool inflate)
-    : file_(file), begin_(begin), at_(begin), end_(end), inflates_(inflate) {
+ByteStream::ByteStream(const InputFile& file, std::uint64_t begin, std::uint64_t end, bool inflate, std::uint64_t most)
+    : file_(file), begin_(begin), at_(begin), end_(end), most_(most), inflates_(inflate) {
   if (inflates_ && inflateInit(&z_) != Z_OK) refuse("cannot be inflated");
 }
 
@@ -29,6 +29,7 @@ void ByteStream::read(std::span<char> buffer) {
 }
 
 void ByteStream::read_inflated(std::span<char> buffer) {
+  if (buffer.size() > most_left()) refuse_bomb();
   constexpr std::size_t most = 1 << 30;  // zlib counts in 32 bits
   while (!buffer.empty()) {
     const std::size_t wanted = std::min(buffer.size(), most);
@@ -70,8 +71,19 @@ void ByteStream::skip(std::uint64_t count) {
 
 std::uint64_t ByteStream::most_left() const {
   if (!inflates_) return end_ - at_;
-  const std::uint64_t most = (end_ - begin_) * most_inflated;
-  return most - std::min(most, position_);
+  return most_ - std::min(most_, position_);
+}
+
+void ByteStream::refuse_bomb() const {
+  throw InputError(fmt::format("byte {}: the variables inflate to more than the {} bytes that a file of {} may hold",
+                               begin_, most_mat_bytes(file_.size()), file_.size()),
+                   "save the variables that are needed, with save(..., '-v6')", {file_.path(), 0, ""});
+}
+
+void ByteStream::expect(std::uint64_t size, const std::string& what) const {
+  if (size <= most_left()) return;
+  if (inflates_) refuse_bomb();
+  refuse(fmt::format("{} of {} bytes, of which {} can follow", what, size, most_left()));
 }
 
 void ByteStream::refuse(const std::string& problem) const {

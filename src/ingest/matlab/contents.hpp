@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ingest/input_file.hpp"
+#include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 
@@ -25,17 +27,24 @@ struct MatArray {
   std::uint64_t elements() const;
 };
 
+/// All elements of an array, column after column; or why they cannot be read.
+struct MatValues {
+  std::vector<double> numbers;
+  std::optional<InputError> refusal;
+};
+
 /// What a MATLAB file holds. Its arrays are described in order; values are read by name.
 class MatContents {
  public:
   virtual ~MatContents() = default;
   virtual void describe(const std::function<void(MatArray&&)>& see) = 0;
-  /// All elements of each array, column after column. Throws InputError where they cannot be read.
-  virtual std::vector<std::vector<double>> load(std::span<const std::string> names, int threads) = 0;
+  /// The elements of each array.
+  virtual std::vector<MatValues> load(std::span<const std::string> names, int threads) = 0;
 };
 
 /// Of version 5 to 7. Own code: every count is checked against the file before memory is asked for, and a damaged file
-/// is refused with the offset at which it is. Variables are inflated on several threads.
+/// is refused with the offset at which it is; so is one of more arrays, or more values when inflated, than a file of
+/// its size has. Variables are inflated on several threads.
 std::unique_ptr<MatContents> contents_of_version_5(std::shared_ptr<const InputFile> file);
 
 /// Of version 7.3, by libmatio and HDF5, which have one state for the whole program: one file is read at a time.
@@ -48,6 +57,12 @@ bool is_mat_big_endian(std::string_view header);
 
 inline constexpr std::size_t longest_mat_text = 1000;  ///< characters that are kept as a fact
 inline constexpr int deepest_mat_structure = 16;       ///< structures in one another
-inline constexpr std::uint64_t most_inflated = 1100;   ///< times its size: beyond what deflate can reach
+inline constexpr std::size_t most_mat_arrays = 65536;  ///< of a file, with the fields of structures
+
+/// Bytes that the values of a file of `size` bytes may take, inflated and as doubles: 128 MB, or 128 times its size. A
+/// recorded signal deflates to a tenth, a constant one to a thousandth of its size; more is made to exhaust memory.
+constexpr std::uint64_t most_mat_bytes(std::uint64_t size) {
+  return (size + (std::uint64_t{1} << 20)) * 128;
+}
 
 }  // namespace tribofit

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "contents.hpp"
@@ -15,7 +16,7 @@
 namespace tribofit {
 namespace {
 
-constexpr std::size_t most_columns = 4096;  // of the file; more are no channels
+constexpr std::size_t most_named = 20;  // of the variables that are not read
 constexpr std::size_t version_at = 124, order_at = 126;
 constexpr unsigned version_5 = 0x0100, version_73 = 0x0200;
 
@@ -43,7 +44,9 @@ class Listing {
   explicit Listing(RawTable& table) : table_(table) {}
 
   void add(MatArray&& array) {
-    if (array.is_text) {
+    if (!names_.insert(array.name).second) {
+      skipped_.push_back(array.name + " (another array has its name)");
+    } else if (array.is_text) {
       if (!array.text.empty()) table_.facts.push_back({array.name, array.text});
     } else if (!array.scalar.empty()) {
       table_.facts.push_back({array.name, fmt::format("{}", array.scalar.front())});
@@ -56,9 +59,9 @@ class Listing {
 
   std::vector<Source> finish() {
     settle_rows();
-    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_));
+    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, most_named));
     if (!table_.columns.empty()) return std::move(sources_);
-    throw InputError("holds no vector of numbers" + (skipped_.empty() ? "" : ": " + listed(skipped_)),
+    throw InputError("holds no vector of numbers" + (skipped_.empty() ? "" : ": " + listed(skipped_, most_named)),
                      "save each channel as a vector of its own, with save(..., '-v7')", {table_.path, 0, ""});
   }
 
@@ -98,6 +101,7 @@ class Listing {
 
   RawTable& table_;
   std::vector<Source> sources_;
+  std::set<std::string> names_;
   std::vector<std::string> skipped_;
 };
 
@@ -108,23 +112,29 @@ void load_vectors(MatContents& contents, const std::vector<Source>& sources, Raw
     const bool known = std::find(names.begin(), names.end(), sources[index].array) != names.end();
     if (!known && table.columns[index].count > 0) names.push_back(sources[index].array);
   }
-  std::vector<std::vector<double>> arrays = contents.load(names, threads);
+  std::vector<MatValues> arrays = contents.load(names, threads);
   for (const std::size_t index : columns) {
     RawColumn& column = table.columns[index];
     const Source& source = sources[index];
     if (column.count == 0) {
-      throw InputError("the vector is empty", "name another one with --columns", table.heading(index));
+      column.refusal.emplace("the vector is empty", "name another one with --columns", table.heading(index));
+      continue;
     }
-    auto& values =
+    auto& [values, refusal] =
         arrays[static_cast<std::size_t>(std::find(names.begin(), names.end(), source.array) - names.begin())];
+    if (refusal) {
+      column.refusal = refusal;
+      continue;
+    }
     if (values.size() == column.count) {
       column.numbers = std::move(values);
       continue;
     }
     if (values.size() <= source.first + (column.count - 1) * source.stride) {
       if (!column.numbers.empty()) continue;  // of two channels
-      throw InputError(fmt::format("the {} values of the vector are not all in the file", column.count),
-                       "the file is damaged; save it again", table.heading(index));
+      column.refusal.emplace(fmt::format("the {} values of the vector are not all in the file", column.count),
+                             "the file is damaged; save it again", table.heading(index));
+      continue;
     }
     column.numbers.resize(column.count);
     for (std::size_t i = 0; i < column.count; ++i) column.numbers[i] = values[source.first + i * source.stride];

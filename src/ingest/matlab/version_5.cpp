@@ -78,16 +78,17 @@ void convert(std::uint32_t type, std::string_view bytes, bool big_endian, double
 class Walk {
  public:
   using Wants = std::function<std::vector<double>*(const MatArray&)>;
-  Walk(ByteStream& stream, bool big_endian, std::function<void(MatArray&&)> see, Wants wants)
-      : stream_(stream), big_endian_(big_endian), see_(std::move(see)), wants_(std::move(wants)) {}
+  /// `arrays`: how many more there may be.
+  Walk(ByteStream& stream, bool big_endian, std::size_t& arrays, std::function<void(MatArray&&)> see, Wants wants)
+      : stream_(stream), big_endian_(big_endian), arrays_(arrays), see_(std::move(see)), wants_(std::move(wants)) {}
 
   /// The variable's element; `name` is that of a field, whose own is empty.
   void matrix(const std::string& name, int depth) {
     const Tag tag = next_tag();
     if (tag.type != element::matrix || tag.is_small)
       stream_.refuse(fmt::format("an element of type {} where an array begins", tag.type));
-    if (tag.size > stream_.most_left())
-      stream_.refuse(fmt::format("an array of {} bytes, of which {} can follow", tag.size, stream_.most_left()));
+    if (arrays_-- == 0) stream_.refuse(fmt::format("more than {} arrays", most_mat_arrays));
+    stream_.expect(tag.size, "an array");
     const std::uint64_t end = stream_.position() + tag.size;
     if (tag.size > 0) {
       inside(name, depth);
@@ -179,10 +180,7 @@ class Walk {
     if (count == 0) return see_(std::move(array));
     const Tag tag = next_tag();
     const std::size_t size = bytes_of(tag.type);
-    if (!tag.is_small && tag.size > stream_.most_left()) {
-      stream_.refuse(
-          fmt::format("{} holds {} bytes, of which {} can follow", array.name, tag.size, stream_.most_left()));
-    }
+    if (!tag.is_small) stream_.expect(tag.size, "values of " + array.name);
     if (is_text) {
       if (tag.size <= longest_mat_text) array.text = text_of(bytes_of_element(tag, longest_mat_text), size);
       return see_(std::move(array));
@@ -232,6 +230,7 @@ class Walk {
 
   ByteStream& stream_;
   bool big_endian_;
+  std::size_t& arrays_;
   std::function<void(MatArray&&)> see_;
   Wants wants_;
 };
@@ -246,17 +245,27 @@ class Version5 : public MatContents {
   }
 
   void describe(const std::function<void(MatArray&&)>& see) override {
+    std::size_t arrays = most_mat_arrays;
+    std::uint64_t values = 0, inflated = 0;  // bytes of all variables
+    const std::uint64_t most = most_mat_bytes(file_->size());
     for (std::size_t k = 0; k < variables_.size(); ++k) {
+      const Variable& variable = variables_[k];
+      ByteStream stream(*file_, variable.begin, variable.end, variable.compressed, most - inflated);
       const auto noting = [&](MatArray&& array) {
+        if (array.kind.empty() && !array.is_text) {
+          if (array.elements() > (most - values) / sizeof(double)) stream.refuse_bomb();
+          values += array.elements() * sizeof(double);
+        }
         variable_of_.emplace(array.name, k);
         see(std::move(array));
       };
-      walk(variables_[k], noting, [](const MatArray&) { return nullptr; });
+      Walk(stream, big_endian_, arrays, noting, [](const MatArray&) { return nullptr; }).matrix("", 0);
+      if (variable.compressed) inflated += stream.position();
     }
   }
 
-  std::vector<std::vector<double>> load(std::span<const std::string> names, int threads) override {
-    std::vector<std::vector<double>> values(names.size());
+  std::vector<MatValues> load(std::span<const std::string> names, int threads) override {
+    std::vector<MatValues> values(names.size());
     std::map<std::size_t, std::vector<std::size_t>> wanted;  // by variable
     for (std::size_t i = 0; i < names.size(); ++i) wanted[variable_of_.at(names[i])].push_back(i);
     const std::vector<std::pair<std::size_t, std::vector<std::size_t>>> jobs(wanted.begin(), wanted.end());
@@ -266,6 +275,8 @@ class Version5 : public MatContents {
       for (std::size_t j = next++; j < jobs.size(); j = next++) {
         try {
           load(jobs[j].first, jobs[j].second, names, values);
+        } catch (const InputError& error) {
+          for (const std::size_t i : jobs[j].second) values[i].refusal = error;
         } catch (...) {
           failures[j] = std::current_exception();
         }
@@ -291,20 +302,19 @@ class Version5 : public MatContents {
   };
 
   void load(std::size_t variable, const std::vector<std::size_t>& which, std::span<const std::string> names,
-            std::vector<std::vector<double>>& values) const {
-    walk(
-        variables_[variable], [](MatArray&&) {},
-        [&](const MatArray& array) -> std::vector<double>* {
-          for (const std::size_t i : which) {
-            if (names[i] == array.name) return &values[i];
-          }
-          return nullptr;
-        });
-  }
-
-  void walk(const Variable& variable, std::function<void(MatArray&&)> see, Walk::Wants wants) const {
-    ByteStream stream(*file_, variable.begin, variable.end, variable.compressed);
-    Walk(stream, big_endian_, std::move(see), std::move(wants)).matrix("", 0);
+            std::vector<MatValues>& values) const {
+    const Variable& place = variables_[variable];
+    ByteStream stream(*file_, place.begin, place.end, place.compressed, most_mat_bytes(file_->size()));
+    std::size_t arrays = most_mat_arrays;
+    const auto wants = [&](const MatArray& array) -> std::vector<double>* {
+      for (const std::size_t i : which) {
+        if (names[i] == array.name && values[i].numbers.empty()) return &values[i].numbers;
+      }
+      return nullptr;
+    };
+    Walk(
+        stream, big_endian_, arrays, [](MatArray&&) {}, wants)
+        .matrix("", 0);
   }
 
   void find_variables() {
@@ -320,6 +330,7 @@ class Version5 : public MatContents {
         place.refuse(fmt::format("an element of type {} where a variable begins", type));
       const std::uint64_t left = file_->size() - at - tag.size();
       if (size > left) place.refuse(fmt::format("a variable of {} bytes, of which {} are there", size, left));
+      if (variables_.size() == most_mat_arrays) place.refuse(fmt::format("more than {} variables", most_mat_arrays));
       const std::uint64_t end = at + tag.size() + size;
       variables_.push_back({compressed ? at + tag.size() : at, end, compressed});
       at = end;

@@ -79,22 +79,31 @@ class Version73 : public MatContents {
 
   void describe(const std::function<void(MatArray&&)>& see) override {
     const Opened mat(*file_);
-    while (true) {
+    bytes_ = 0;
+    for (std::size_t count = 0; count < most_mat_arrays; ++count) {
       const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
       if (!variable) return;
       if (variable->name != nullptr) describe(mat, *variable, variable->name, 0, see);
     }
+    throw InputError(fmt::format("holds more than {} variables", most_mat_arrays), "save those that are needed",
+                     {file_->path(), 0, ""});
   }
 
-  std::vector<std::vector<double>> load(std::span<const std::string> names, int) override {
+  std::vector<MatValues> load(std::span<const std::string> names, int) override {
     const Opened mat(*file_);
-    std::vector<std::vector<double>> values;
-    for (const std::string& name : names) values.push_back(read(mat, name));
+    std::vector<MatValues> values(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      try {
+        values[i].numbers = read(mat, names[i]);
+      } catch (const InputError& error) {
+        values[i].refusal = error;
+      }
+    }
     return values;
   }
 
  private:
-  /// The superblock of HDF5 (versions 0 and 1), behind MATLAB's own head, states where the file ends.
+  /// The superblock of HDF5 (versions 0 to 3), behind MATLAB's own head, states where the file ends.
   void refuse_cut_off() const {
     constexpr std::uint64_t superblock = 512;
     std::string bytes(64, '\0');
@@ -104,10 +113,17 @@ class Version73 : public MatContents {
                        "the file is cut off or damaged; copy or save it again", {file_->path(), 0, ""});
     }
     const int version = bytes[8];
-    if (version > 1 || bytes[13] != 8) return;
-    const auto end = number_at<std::uint64_t>(bytes, version == 0 ? 40 : 44, false);
-    const auto base = number_at<std::uint64_t>(bytes, version == 0 ? 24 : 28, false);
-    if (end <= file_->size() || end + base <= file_->size()) return;
+    const int bytes_of_offsets = bytes[version < 2 ? 13 : 9];
+    if (version < 0 || version > 3 || bytes_of_offsets != 8) {
+      throw InputError(
+          fmt::format("byte {}: HDF5 of version {} with offsets of {} bytes", superblock, version, bytes_of_offsets),
+          "the file is damaged; copy or save it again", {file_->path(), 0, ""});
+    }
+    const std::size_t base_at = version == 0 ? 24 : version == 1 ? 28 : 12;
+    const auto end = number_at<std::uint64_t>(bytes, base_at + 16, false);
+    const auto base = number_at<std::uint64_t>(bytes, base_at, false);
+    const std::uint64_t size = file_->size();
+    if (base <= size && end <= size) return;
     throw InputError(fmt::format("is cut off at byte {}: it states {} bytes", file_->size(), end),
                      "copy or save the file again", {file_->path(), 0, ""});
   }
@@ -145,7 +161,7 @@ class Version73 : public MatContents {
     }
     array.is_text = v.class_type == MAT_C_CHAR;
     if (is_numeric(v)) {
-      refuse_beyond_file(array, v);
+      refuse_beyond_file(array);
     } else if (v.class_type == MAT_C_EMPTY) {
       array.sizes = {0, 0};
     } else if (!array.is_text) {
@@ -173,9 +189,12 @@ class Version73 : public MatContents {
   }
 
   /// Zeros that were never written, and those deflated, take no room: but not for ever.
-  void refuse_beyond_file(const MatArray& array, const matvar_t& v) const {
-    const std::uint64_t most = file_->size() * most_inflated;
-    if (array.elements() <= most / Mat_SizeOfClass(v.class_type)) return;
+  void refuse_beyond_file(const MatArray& array) {
+    const std::uint64_t left = most_mat_bytes(file_->size()) - bytes_;
+    if (array.elements() <= left / sizeof(double)) {
+      bytes_ += array.elements() * sizeof(double);
+      return;
+    }
     throw InputError(
         fmt::format("holds {} values, more than the file of {} bytes can", array.elements(), file_->size()),
         "the file is damaged; save it again", {file_->path(), 0, array.name});
@@ -198,6 +217,7 @@ class Version73 : public MatContents {
   }
 
   std::shared_ptr<const InputFile> file_;
+  std::uint64_t bytes_ = 0;  // of the values described so far, as doubles
 };
 
 }  // namespace

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
+#include <utility>
 
-#include "ingest/numbers.hpp"
+#include "active_objects.hpp"
+#include "ingest/byte_cursor.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -83,14 +85,10 @@ constexpr std::uint32_t metadata = 2, new_list = 4, raw_data = 8, interleaved = 
 }
 constexpr std::size_t lead_bytes = 28;
 constexpr std::size_t most_properties = 4096;  // of an object
+constexpr std::size_t most_objects = 65536;    // of the file: groups and channels
+constexpr std::size_t most_pieces = 4 << 20;   // of all channels, which then take 200 MB
 constexpr std::uint32_t no_values = 0xFFFFFFFF, as_before = 0;
 constexpr std::array<std::uint32_t, 2> daqmx_index = {0x1269, 0x126A};
-
-/// Values of an object in each chunk of a segment.
-struct Index {
-  std::uint32_t type = 0;
-  std::uint64_t count = 0, bytes = 0;
-};
 
 class Parser {
  public:
@@ -122,76 +120,61 @@ class Parser {
     const auto length = number_at<std::uint64_t>(view, 12, big_endian_),
                raw = number_at<std::uint64_t>(view, 20, big_endian_);
     const std::uint64_t left = file_.size() - begin - lead_bytes;
-    const bool unfinished = length == std::numeric_limits<std::uint64_t>::max();
-    if (unfinished)
+    unfinished_ = length == std::numeric_limits<std::uint64_t>::max();
+    if (unfinished_)
       notes_.push_back(fmt::format("the segment at byte {} was not finished and is read as far as it goes", begin));
-    if (!unfinished && length > left)
+    if (!unfinished_ && length > left)
       refuse(begin, fmt::format("a segment of {} bytes, of which {} are there", length, left));
-    const std::uint64_t size = unfinished ? left : length;
-    if (raw > size) refuse(begin + 20, fmt::format("values from byte {} of a segment of {} bytes", raw, size));
+    const std::uint64_t size = unfinished_ ? left : length;
+    if (raw > size) {
+      if (unfinished_) return file_.size();  // what describes its objects was not written to its end
+      refuse(begin + 20, fmt::format("values from byte {} of a segment of {} bytes", raw, size));
+    }
     if ((mask_ & contents::metadata) != 0) metadata(begin + lead_bytes, raw);
     if ((mask_ & contents::raw_data) != 0) values(begin + lead_bytes + raw, size - raw);
     return begin + lead_bytes + size;
   }
 
-  // What describes the objects is read from a copy of these bytes of the file.
-  std::string bytes_;
-  std::uint64_t bytes_begin_ = 0;
-  std::size_t at_ = 0;
-
-  void need(std::uint64_t count, std::uint64_t size) const {
-    if (size != 0 && count > (bytes_.size() - at_) / size) {
-      refuse(bytes_begin_ + at_,
-             fmt::format("{} bytes are wanted where {} are left", count * size, bytes_.size() - at_));
-    }
-  }
-  template <class Number>
-  Number number() {
-    need(1, sizeof(Number));
-    const auto value = number_at<Number>(bytes_, at_, big_endian_);
-    at_ += sizeof(Number);
-    return value;
-  }
-  std::string text() {
-    const auto length = number<std::uint32_t>();
-    need(length, 1);
-    at_ += length;
-    return bytes_.substr(at_ - length, length);
-  }
-
   void metadata(std::uint64_t begin, std::uint64_t size) {
-    bytes_.assign(static_cast<std::size_t>(size), '\0');
-    bytes_.resize(file_.read(begin, bytes_));
-    bytes_begin_ = begin;
-    at_ = 0;
-    if ((mask_ & contents::new_list) != 0) {
-      active_.clear();
-      is_active_.assign(objects_.size(), false);
-    }
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    bytes.resize(file_.read(begin, bytes));
+    begin_ = begin;
+    described_.emplace(std::move(bytes), [this](std::uint64_t wanted, std::uint64_t there) {
+      refuse(at(), fmt::format("{} bytes are wanted where {} are left", wanted, there));
+    });
+    if ((mask_ & contents::new_list) != 0) active_.clear();
     for (auto count = number<std::uint32_t>(); count > 0; --count) object();
   }
+
+  /// Where the description is being read, in the file.
+  std::uint64_t at() const { return begin_ + described_->position(); }
+  template <class Number>
+  Number number() {
+    return described_->number<Number>(big_endian_);
+  }
+  std::string text() { return described_->text(big_endian_); }
 
   void object() {
     const std::string path = text();
     const auto [known, is_new] = object_of_.emplace(path, objects_.size());
     const std::size_t k = known->second;
     if (is_new) {
+      if (objects_.size() == most_objects)
+        refuse(at(), fmt::format("more than {} groups and channels", most_objects), "export fewer channels");
       objects_.push_back({path, names_of(path), 0, 0, {}, {}});
       indices_.emplace_back();
-      is_active_.push_back(false);
     }
-    const std::uint64_t index_at = bytes_begin_ + at_;
+    const std::uint64_t index_at = at();
     const auto index = number<std::uint32_t>();
     if (std::find(daqmx_index.begin(), daqmx_index.end(), index) != daqmx_index.end())
       refuse_daqmx(index_at, objects_[k]);
-    if (index == no_values) {
-      if (is_active_[k]) std::erase(active_, k);
-    } else if (!is_active_[k]) {
-      active_.push_back(k);
-    }
-    is_active_[k] = index != no_values;
     if (index != no_values && index != as_before) read_index(index_at, k);
-    for (auto count = number<std::uint32_t>(); count > 0; --count) property(objects_[k]);
+    if (index == no_values) {
+      active_.remove(k);
+    } else {
+      active_.put(k, indices_[k]);
+    }
+    for (auto count = number<std::uint32_t>(); count > 0; --count) property(k);
   }
 
   [[noreturn]] void refuse_daqmx(std::uint64_t at, const TdmsObject& object) const {
@@ -200,7 +183,7 @@ class Parser {
   }
 
   void read_index(std::uint64_t index_at, std::size_t k) {
-    Index& index = indices_[k];
+    TdmsIndex& index = indices_[k];
     index.type = number<std::uint32_t>();
     const auto dimensions = number<std::uint32_t>();
     index.count = number<std::uint64_t>();
@@ -211,23 +194,25 @@ class Parser {
       index.bytes = number<std::uint64_t>();
     } else if (size == 0) {
       refuse(index_at, fmt::format("{} is of the type {:#x}, which is not read", objects_[k].path, index.type));
-    } else if (index.count > file_.size()) {
+    } else if (index.count > file_.size() && !unfinished_) {
       refuse(index_at,
              fmt::format("{} values of {} in a file of {} bytes", index.count, objects_[k].path, file_.size()));
     } else {
-      index.bytes = index.count * size;
+      index.bytes = std::min(index.count, file_.size() + 1) * size;
     }
-    if (index.bytes > file_.size())
+    if (index.bytes > file_.size() && !unfinished_)
       refuse(index_at, fmt::format("{} holds {} bytes, more than the file", objects_[k].path, index.bytes));
+    index.bytes = std::min(index.bytes, file_.size() + 1);  // of which no whole chunk can be there
     const bool changes = objects_[k].count > 0 && objects_[k].type != index.type;
     if (changes) refuse(index_at, fmt::format("the type of {} changes", objects_[k].path));
     objects_[k].type = index.type;
   }
 
-  void property(TdmsObject& object) {
+  void property(std::size_t k) {
+    TdmsObject& object = objects_[k];
     TdmsProperty property;
     property.name = text();
-    const std::uint64_t type_at = bytes_begin_ + at_;
+    const std::uint64_t type_at = at();
     const auto type = number<std::uint32_t>();
     property.is_text = type == tdms::text;
     if (property.is_text) {
@@ -236,20 +221,19 @@ class Parser {
       const std::size_t size = tdms::bytes_of(type);
       if (size == 0)
         refuse(type_at, fmt::format("the property {} is of the type {:#x}, which is not known", property.name, type));
-      need(1, size);
-      property.number = tdms::value_at(bytes_, at_, type, big_endian_, 0);
-      at_ += size;
+      described_->need(1, size);
+      property.number = tdms::value_at(described_->bytes(), described_->position(), type, big_endian_, 0);
+      described_->skip(size);
     }
-    const auto known = std::find_if(object.properties.begin(), object.properties.end(),
-                                    [&](const TdmsProperty& p) { return p.name == property.name; });
+    const auto [known, is_new] = property_of_.emplace(std::pair(k, property.name), object.properties.size());
+    if (!is_new) {
+      object.properties[known->second] = std::move(property);
+      return;
+    }
     if (object.properties.size() >= most_properties) {
       refuse(type_at, fmt::format("more than {} properties of {}", most_properties, object.path));
     }
-    if (known == object.properties.end()) {
-      object.properties.push_back(std::move(property));
-    } else {
-      *known = std::move(property);
-    }
+    object.properties.push_back(std::move(property));
   }
 
   /// "/'Measured Data'/'Sweep'": names are quoted, and a quote in them is doubled.
@@ -273,64 +257,79 @@ class Parser {
     if ((mask_ & contents::daqmx) != 0)
       refuse(begin, "raw values of DAQmx, which need its scaling",
              "export the channels scaled, as a TDMS file of doubles or as CSV");
-    std::uint64_t chunk = 0, sample = 0;
-    for (const std::size_t k : active_) {
-      chunk += indices_[k].bytes;
-      sample += tdms::bytes_of(indices_[k].type);
-    }
+    const std::uint64_t chunk = active_.chunk_bytes();
     if (chunk == 0 || size == 0) return;
-    if ((mask_ & contents::interleaved) != 0) return interleaved(begin, size, sample);
+    if ((mask_ & contents::interleaved) != 0) return interleaved(begin, size);
+    if (unfinished_) size -= size % chunk;
     if (size % chunk != 0) refuse(begin, fmt::format("{} bytes of values in chunks of {}", size, chunk));
-    std::vector<std::size_t> filled;
-    std::copy_if(active_.begin(), active_.end(), std::back_inserter(filled),
-                 [&](std::size_t k) { return indices_[k].bytes > 0; });
-    for (std::uint64_t done = 0; done < size; done += chunk) {
-      std::uint64_t at = begin + done;
-      for (const std::size_t k : filled) {
-        const std::size_t bytes = tdms::bytes_of(indices_[k].type);
-        if (bytes > 0) add({at, indices_[k].count, bytes, big_endian_}, objects_[k]);
-        at += indices_[k].bytes;
-      }
+    if (size == 0) return;
+    std::uint64_t at = begin;
+    for (const auto& [place, k] : active_.with_values()) {
+      const std::size_t bytes = tdms::bytes_of(indices_[k].type);
+      if (bytes > 0) add({at, indices_[k].count, bytes, size / chunk, chunk, big_endian_}, objects_[k]);
+      at += indices_[k].bytes;
     }
   }
 
-  void interleaved(std::uint64_t begin, std::uint64_t size, std::uint64_t sample) {
-    for (const std::size_t k : active_) {
-      if (indices_[k].type == tdms::text || indices_[k].count != indices_[active_.front()].count) {
+  void interleaved(std::uint64_t begin, std::uint64_t size) {
+    const auto& channels = active_.with_values();
+    for (const auto& [place, k] : channels) {
+      if (indices_[k].type == tdms::text || indices_[k].count != indices_[channels.begin()->second].count) {
         refuse(begin, fmt::format("{} cannot be interleaved with the other channels", objects_[k].path));
       }
     }
+    const std::uint64_t sample = active_.sample_bytes();
+    if (unfinished_) size -= size % sample;
     if (size % sample != 0) refuse(begin, fmt::format("{} bytes of values in samples of {}", size, sample));
     std::uint64_t at = begin;
-    for (const std::size_t k : active_) {
-      add({at, size / sample, sample, big_endian_}, objects_[k]);
+    for (const auto& [place, k] : channels) {
+      if (size > 0) add({at, size / sample, sample, 1, 0, big_endian_}, objects_[k]);
       at += tdms::bytes_of(indices_[k].type);
     }
   }
 
-  static void add(const TdmsPiece& piece, TdmsObject& object) {
-    object.count += piece.count;
-    if (!object.pieces.empty()) {
-      TdmsPiece& last = object.pieces.back();
-      const bool goes_on = last.begin + last.count * last.stride == piece.begin && last.stride == piece.stride &&
-                           last.big_endian == piece.big_endian;
-      if (goes_on) {
-        last.count += piece.count;
-        return;
-      }
+  void add(TdmsPiece piece, TdmsObject& object) {
+    object.count += piece.count * piece.chunks;
+    if (piece.chunk_stride == piece.count * piece.stride) {  // one chunk goes on in the next
+      piece.count *= piece.chunks;
+      piece.chunks = 1;
     }
-    if (piece.count > 0) object.pieces.push_back(piece);
+    if (!object.pieces.empty() && goes_on(object.pieces.back(), piece)) return;
+    if (++pieces_ > most_pieces) {
+      refuse(piece.begin, fmt::format("the values are in more than {} pieces", most_pieces),
+             "defragment the file in LabVIEW, or export it as CSV");
+    }
+    object.pieces.push_back(piece);
+  }
+
+  /// Lengthens the last piece by the next one, where it is of the same build.
+  static bool goes_on(TdmsPiece& last, const TdmsPiece& next) {
+    if (last.stride != next.stride || last.big_endian != next.big_endian || next.begin < last.begin) return false;
+    if (last.chunks == 1 && next.chunks == 1 && last.begin + last.count * last.stride == next.begin) {
+      last.count += next.count;
+      return true;
+    }
+    const std::uint64_t stride = last.chunks > 1 ? last.chunk_stride : next.begin - last.begin;
+    const bool same = last.count == next.count && last.begin + last.chunks * stride == next.begin &&
+                      (next.chunks == 1 || next.chunk_stride == stride);
+    if (!same) return false;
+    last.chunk_stride = stride;
+    last.chunks += next.chunks;
+    return true;
   }
 
   const InputFile& file_;
   std::vector<std::string>& notes_;
   std::uint32_t mask_ = 0;
-  bool big_endian_ = false;
+  bool big_endian_ = false, unfinished_ = false;  // the segment
+  std::optional<ByteCursor> described_;           // a copy of what describes the objects of a segment
+  std::uint64_t begin_ = 0;                       // of it, in the file
   std::vector<TdmsObject> objects_;
-  std::vector<Index> indices_;                    // of each object, the last one stated
-  std::map<std::string, std::size_t> object_of_;  // path
-  std::vector<std::size_t> active_;               // objects with values in the segment, in their order
-  std::vector<bool> is_active_;                   // of each object
+  std::vector<TdmsIndex> indices_;                                          // of each object, the last one stated
+  std::map<std::string, std::size_t> object_of_;                            // path
+  std::map<std::pair<std::size_t, std::string>, std::size_t> property_of_;  // object and name
+  ActiveTdmsObjects active_;
+  std::size_t pieces_ = 0;  // of all objects
 };
 
 }  // namespace

@@ -28,9 +28,11 @@ struct TdmsProperty {
   bool is_text = false;
 };
 
-/// Values of a channel that stand in the file at even distances.
+/// Values of a channel that stand in the file at even distances, in chunks that do so too.
 struct TdmsPiece {
-  std::uint64_t begin = 0, count = 0, stride = 0;  ///< bytes, values, bytes
+  std::uint64_t begin = 0;                     ///< byte of the first value
+  std::uint64_t count = 0, stride = 0;         ///< values of a chunk, and bytes from one to the next
+  std::uint64_t chunks = 1, chunk_stride = 0;  ///< bytes from a chunk to the next
   bool big_endian = false;
 };
 
@@ -47,7 +49,9 @@ struct TdmsObject {
 };
 
 /// The objects of a file, in their order, without the values. Throws InputError with the offset for a file that is
-/// damaged, or holds raw values of DAQmx. A last segment that was not finished is read as far as it goes (note).
+/// damaged, holds raw values of DAQmx, or has more objects or pieces than can be kept. A last segment that was not
+/// finished, as after a crash of the program that wrote it, is read as far as its chunks are whole (note).
+/// Cost: linear in the file's bytes.
 std::vector<TdmsObject> read_tdms_objects(const InputFile& file, std::vector<std::string>& notes);
 
 }  // namespace tribofit

@@ -44,7 +44,7 @@ RawColumn column_of(const TdmsObject& object, std::size_t rows) {
   return column;
 }
 
-/// The second in which the first of the times begins: times are told from there, or they would lose digits.
+/// The second in which the first of the times begins: times are measured from there, or they would lose digits.
 double epoch_of(const InputFile& file, const TdmsObject& object) {
   if (object.type != tdms::timestamp || object.pieces.empty()) return 0;
   std::string bytes(16, '\0');
@@ -52,15 +52,16 @@ double epoch_of(const InputFile& file, const TdmsObject& object) {
   return std::floor(tdms::value_at(bytes, 0, tdms::timestamp, object.pieces.front().big_endian, 0));
 }
 
-void read_piece(const InputFile& file, const TdmsObject& object, const TdmsPiece& piece, double epoch,
-                std::vector<double>& out) {
+/// Values at even distances, from a byte on.
+void read_values(const InputFile& file, const TdmsObject& object, const TdmsPiece& piece, std::uint64_t begin,
+                 double epoch, std::vector<double>& out) {
   const std::uint64_t size = tdms::bytes_of(object.type);
   const std::uint64_t most = std::max<std::uint64_t>(1, (1 << 20) / piece.stride);
   std::string bytes;
   for (std::uint64_t done = 0; done < piece.count;) {
     const std::uint64_t now = std::min(most, piece.count - done);
     bytes.resize(static_cast<std::size_t>((now - 1) * piece.stride + size));
-    if (file.read(piece.begin + done * piece.stride, bytes) < bytes.size()) {
+    if (file.read(begin + done * piece.stride, bytes) < bytes.size()) {
       throw InputError(fmt::format("byte {}: the values are cut off", file.size()), "copy the file again",
                        {file.path(), 0, object.path});
     }
@@ -72,17 +73,31 @@ void read_piece(const InputFile& file, const TdmsObject& object, const TdmsPiece
   }
 }
 
+void read_piece(const InputFile& file, const TdmsObject& object, const TdmsPiece& piece, double epoch,
+                std::vector<double>& out) {
+  if (piece.count == 1 && piece.chunks > 1 && piece.chunk_stride <= 4096) {  // read what is between them, too
+    const TdmsPiece values = {piece.begin, piece.chunks, piece.chunk_stride, 1, 0, piece.big_endian};
+    return read_values(file, object, values, piece.begin, epoch, out);
+  }
+  for (std::uint64_t k = 0; k < piece.chunks; ++k) {
+    read_values(file, object, piece, piece.begin + k * piece.chunk_stride, epoch, out);
+  }
+}
+
 void load_channels(const InputFile& file, const Objects& channels, RawTable& table,
                    std::span<const std::size_t> columns) {
   for (const std::size_t index : columns) {
     const TdmsObject& object = channels[index];
     RawColumn& column = table.columns[index];
     if (!column.numbers.empty()) continue;
-    if (column.is_text)
-      throw InputError("holds text, not numbers", "name another column with --columns", table.heading(index));
+    if (column.is_text) {
+      column.refusal.emplace("holds text, not numbers", "name another column with --columns", table.heading(index));
+      continue;
+    }
     if (is_unscaled(object)) {
-      throw InputError("the values are raw ones of DAQmx, which need its scaling",
-                       "export the channel scaled, as a TDMS file of doubles or as CSV", table.heading(index));
+      column.refusal.emplace("the values are raw ones of DAQmx, which need its scaling",
+                             "export the channel scaled, as a TDMS file of doubles or as CSV", table.heading(index));
+      continue;
     }
     const double epoch = epoch_of(file, object);
     column.numbers.reserve(column.count);
@@ -101,10 +116,15 @@ RawTable read_tdms(std::shared_ptr<const InputFile> file) {
   RawTable table;
   table.path = file->path();
   auto channels = std::make_shared<Objects>();
+  std::size_t more = 0;
   std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_of;  // count, interval, start
   for (TdmsObject& object : read_tdms_objects(*file, table.notes)) {
     if (object.names.size() < 2) add_facts(object, table);
     if (object.names.size() < 2 || object.type == 0) continue;
+    if (channels->size() == most_columns) {
+      ++more;
+      continue;
+    }
     const double interval = number_of(object.find("wf_increment")), start = number_of(object.find("wf_start_offset"));
     const bool sampled = interval > 0 && std::isfinite(interval) && std::isfinite(start);
     const auto same = std::tuple(object.count, sampled ? interval : 0, sampled ? start : 0);
@@ -117,6 +137,7 @@ RawTable read_tdms(std::shared_ptr<const InputFile> file) {
     table.columns.push_back(column_of(object, at->second));
     channels->push_back(std::move(object));
   }
+  if (more > 0) table.notes.push_back(fmt::format("not read: {} channels beyond the first {}", more, most_columns));
   if (channels->empty()) {
     throw InputError("holds no channel with values", "check that the export was complete", {table.path, 0, ""});
   }

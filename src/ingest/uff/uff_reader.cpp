@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "ingest/column_names.hpp"
+#include "ingest/content_hash.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -18,7 +20,31 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t header_lines = 11;
-constexpr int frequency_abscissa = 18;
+constexpr std::size_t most_named = 20;  // of the functions that are not read
+
+/// What the abscissa is, by its number in the eighth line; 0 and 1 leave it open.
+namespace abscissa_type {
+constexpr int unknown = 0, general = 1, time = 17, frequency = 18;
+}
+
+/// What a function depends on where that is not the time; empty where it is, or where it may be.
+std::string other_abscissa(int type, const std::string& unit) {
+  static const std::map<int, const char*> names = {
+      {2, "stress"},         {3, "strain"},    {5, "temperature"},   {6, "heat flux"},         {8, "displacement"},
+      {9, "reaction force"}, {11, "velocity"}, {12, "acceleration"}, {13, "excitation force"}, {15, "pressure"},
+      {16, "mass"},          {19, "rpm"},      {20, "order"},        {21, "sound pressure"},   {22, "sound intensity"},
+      {23, "sound power"}};
+  if (type == abscissa_type::frequency) return "frequency";
+  const bool is_open = type == abscissa_type::unknown || type == abscissa_type::general;
+  if (!is_open && type != abscissa_type::time) {
+    const auto name = names.find(type);
+    return name != names.end() ? name->second : fmt::format("an abscissa of type {}", type);
+  }
+  const auto known = find_unit(unit);
+  if (unit.empty() || !known || find_unit(unit, Quantity::time)) return "";
+  if (known->quantity == Quantity::frequency) return "frequency";
+  return is_open ? std::string(to_string(known->quantity)) : "";
+}
 
 bool is_mark(std::string_view line) {
   return trimmed(line) == "-1";
@@ -79,9 +105,9 @@ class File {
     }
     if (others_ > 0)
       skipped_.push_back(fmt::format("{} dataset{} of another number", others_, others_ == 1 ? "" : "s"));
-    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_));
+    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, most_named));
     if (!table_.columns.empty()) return;
-    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_)),
+    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_, most_named)),
                      "export the time histories as dataset 58", {path_, 0, ""});
   }
 
@@ -164,12 +190,17 @@ class File {
   void read_function(const DatasetHead& kind) {
     const Function f = header();
     if (kind.lines != header_lines) refuse(fmt::format("{} lines above the values, not {}", kind.lines, header_lines));
-    const bool is_time = f.abscissa != frequency_abscissa && lower_case(f.abscissa_unit) != "hz";
+    const std::string depends_on = other_abscissa(f.abscissa, f.abscissa_unit);
     if (kind.binary && kind.bytes > bytes_.size() - at_) {
       refuse(fmt::format("{} bytes of values, of which {} are there", kind.bytes, bytes_.size() - at_));
     }
-    if (f.is_complex() || !is_time) {
-      skipped_.push_back(fmt::format("'{}' ({})", f.title, f.is_complex() ? "complex" : "a spectrum"));
+    const std::string why = f.is_complex()              ? "complex"
+                            : depends_on == "frequency" ? "a spectrum"
+                            : !depends_on.empty()       ? "a function of " + depends_on + ", not of time"
+                            : columns_ == most_columns  ? "more columns than can be channels"
+                                                        : "";
+    if (!why.empty()) {
+      skipped_.push_back(fmt::format("'{}' ({})", f.title, why));
       at_ += kind.binary ? static_cast<std::size_t>(kind.bytes) : 0;
       return;
     }
@@ -246,44 +277,66 @@ class File {
     column.rows = rows_of(f, abscissa);
     column.numbers = std::move(ordinate);
     table_.columns.push_back(std::move(column));
+    ++columns_;
   }
 
   /// Functions of one spacing share rows; those of uneven spacing have the abscissa as a column of their own.
   std::size_t rows_of(const Function& f, std::vector<double>& abscissa) {
-    for (const std::size_t time : times_) {
-      if (!f.even && table_.columns[time].numbers == abscissa) return table_.columns[time].rows;
-    }
-    const auto uneven = -1.0 - static_cast<double>(times_.size());
-    const auto same = std::tuple(f.count, f.even ? f.start : uneven, f.even ? f.interval : 0.0);
-    const auto [at, is_new] = rows_.emplace(same, rows_.size());
+    return f.even ? even_rows(f) : uneven_rows(f, abscissa);
+  }
+
+  std::size_t even_rows(const Function& f) {
+    const bool stated = !f.abscissa_unit.empty();
+    const std::optional<Unit> seconds = Unit{Quantity::time, 1, 0};
+    const auto unit = stated                              ? find_unit(f.abscissa_unit, Quantity::time)
+                      : f.abscissa == abscissa_type::time ? seconds
+                                                          : std::nullopt;
+    const double factor = unit ? unit->factor : -1;  // those of an unknown unit share rows of their own
+    const auto [at, is_new] = rows_.emplace(std::tuple(f.count, f.start * factor, f.interval * factor), 0);
     if (!is_new) return at->second;
-    if (table_.rows.size() <= at->second) table_.rows.emplace_back();
-    RawRows& rows = table_.rows[at->second];
-    if (f.even) {
-      const auto unit = f.abscissa_unit.empty() ? std::nullopt : find_unit(f.abscissa_unit, Quantity::time);
-      const double factor = unit ? unit->factor : 1;
-      rows.interval = f.interval * factor;
-      rows.start = f.start * factor;
-      return at->second;
+    at->second = add_rows();
+    if (unit) {
+      table_.rows[at->second].interval = f.interval * factor;
+      table_.rows[at->second].start = f.start * factor;
+    } else {
+      table_.notes.push_back(
+          fmt::format("'{}' states an increment of {:g} {}: state the sampling rate with --rate", f.title, f.interval,
+                      stated ? fmt::format("in '{}', which is no known unit of time", f.abscissa_unit)
+                             : "of an unknown abscissa without a unit"));
     }
+    return at->second;
+  }
+
+  std::size_t uneven_rows(const Function& f, std::vector<double>& abscissa) {
+    const std::string unit = f.abscissa_unit.empty() && f.abscissa == abscissa_type::time ? "s" : f.abscissa_unit;
+    const std::string_view bytes(reinterpret_cast<const char*>(abscissa.data()), abscissa.size() * sizeof(double));
+    const auto [known, is_new] = times_.emplace(xxh64(unit, xxh64(bytes)), table_.columns.size());
+    if (!is_new && table_.columns[known->second].numbers == abscissa) return table_.columns[known->second].rows;
     RawColumn time;
     time.name = "time";
-    time.unit = f.abscissa_unit.empty() ? "s" : f.abscissa_unit;
+    time.unit = unit;
     time.place = f.title;
-    time.rows = at->second;
+    time.rows = add_rows();
     time.count = abscissa.size();
     time.numbers = std::move(abscissa);
-    times_.push_back(table_.columns.size());
     table_.columns.push_back(std::move(time));
-    return at->second;
+    return table_.columns.back().rows;
+  }
+
+  /// The first rows of a table are there from the beginning.
+  std::size_t add_rows() {
+    if (rows_made_ == table_.rows.size()) table_.rows.emplace_back();
+    return rows_made_++;
   }
 
   std::string path_, bytes_;
   RawTable& table_;
   std::size_t at_ = 0, dataset_at_ = 0, datasets_ = 0, others_ = 0;
-  std::vector<std::size_t> times_;  // columns of abscissas
+  std::size_t columns_ = 0;                     // of functions
+  std::map<std::uint64_t, std::size_t> times_;  // columns of abscissas, by their content
   std::vector<std::string> skipped_;
-  std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_;
+  std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_;  // of even spacing: count, start, interval
+  std::size_t rows_made_ = 0;
 };
 
 /// A mark alone in the first line that says something, then the number of a dataset.
