@@ -7,7 +7,9 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "machine_options.hpp"
 #include "parameter_options.hpp"
+#include "stated_value.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -23,7 +25,7 @@ const std::vector<std::string> kChannels(kChannelNames.begin(), kChannelNames.en
 
 double positive(const std::string& text, Quantity quantity, const std::string& option,
                 const std::string& bare_unit = "") {
-  const double value = parse_quantity(text, quantity, option, bare_unit);
+  const double value = stated_value(text, quantity, option, bare_unit);
   if (!(value > 0)) {
     throw InputError(option + ": '" + text + "' is not greater than zero",
                      "give a " + std::string(to_string(quantity)) + " such as " + std::string(example_of(quantity)));
@@ -63,19 +65,30 @@ void add_pairs(const std::string& text, const std::string& option, std::map<std:
     const std::string channel = item.substr(0, equals);
     if (equals == std::string::npos || equals + 1 == item.size()) {
       throw InputError(
-          option + ": '" + item + "' is not CHANNEL=" + (option.ends_with("units") ? "UNIT" : "COLUMN"),
-          option.ends_with("units") ? "write it as v_b=mm/s" : "write it as v_b=Velocity or v_b=Velocity:mm/s");
+          option + ": '" + item + "' is not " + (option.ends_with("units") ? "NAME=UNIT" : "CHANNEL=COLUMN"),
+          option.ends_with("units") ? "write it as v_b=mm/s, or by the column's name as Velocity=mm/s"
+                                    : "write it as v_b=Velocity or v_b=Velocity:mm/s");
     }
-    if (std::find(kChannels.begin(), kChannels.end(), channel) == kChannels.end()) {
+    const bool of_column = option.ends_with("units");  // by its name in the file, where it is no channel
+    if (!of_column && std::find(kChannels.begin(), kChannels.end(), channel) == kChannels.end()) {
       std::string known;
       for (const std::string& name : kChannels) known += (known.empty() ? "" : ", ") + name;
       throw InputError(option + ": there is no channel '" + channel + "'",
                        "did you mean '" + nearest_name(channel, kChannels) + "'? The channels are " + known);
     }
     if (!pairs.emplace(channel, item.substr(equals + 1)).second) {
-      throw InputError(option + ": the channel '" + channel + "' is given twice", "give it once");
+      throw InputError(option + ": '" + channel + "' is given twice", "give it once");
     }
   }
+}
+
+/// "4rpm", or the linear speed under the block at the one friction radius that is stated ("1.1mm/s"): omega = v/r.
+double speed_from(const std::string& text, const Condition& radius) {
+  if (!is_linear_speed(text)) return positive(text, Quantity::angular_velocity, "--speed");
+  const double velocity = positive(text, Quantity::velocity, "--speed");
+  if (radius.known()) return velocity / radius.value;
+  throw InputError("--speed: '" + text + "' is a linear speed, which is that of the disc at one radius only",
+                   "give --radius as well, as one value, or a rotational speed as in 4rpm");
 }
 
 void read_conditions(const Settings& s, Conditions& conditions, std::vector<double>& step_radii) {
@@ -88,7 +101,7 @@ void read_conditions(const Settings& s, Conditions& conditions, std::vector<doub
       step_radii = radii;
     }
   }
-  if (!s.speed.empty()) conditions.speed = {positive(s.speed, Quantity::angular_velocity, "--speed"), source};
+  if (!s.speed.empty()) conditions.speed = {speed_from(s.speed, conditions.radius), source};
   if (!s.load.empty()) conditions.load = {positive(s.load, Quantity::force, "--load"), source};
 }
 

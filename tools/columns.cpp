@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "console.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/list_columns.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
@@ -32,7 +35,7 @@ Row row_of(const ListedColumn& column) {
           column.is_text && column.count == 0 ? "text" : fmt::format("{}", column.count),
           has_numbers ? fmt::format("{:.6g}", column.lowest) : "",
           has_numbers ? fmt::format("{:.6g}", column.highest) : "",
-          column.channel};
+          column.channel + (column.is_likely ? "?" : "")};
 }
 
 /// Letters, not bytes.
@@ -58,23 +61,82 @@ std::string table_of(const std::vector<Row>& rows) {
   return text;
 }
 
-std::string render(const ColumnListing& listing, const std::string& path) {
-  std::string text = fmt::format("{}: {}, {} column{}\n", path, listing.format, listing.columns.size(),
+std::string table_and_facts(const ColumnListing& listing, const std::string& path) {
+  std::string text = fmt::format("{}: {}, {} column{}\n", printable(path), listing.format, listing.columns.size(),
                                  listing.columns.size() == 1 ? "" : "s");
   std::vector<Row> rows = {{"name", "unit", "values", "lowest", "highest", "taken for"}};
   for (const ListedColumn& column : listing.columns) rows.push_back(row_of(column));
+  for (Row& row : rows) {
+    for (std::string& cell : row) cell = printable(cell);
+  }
   text += table_of(rows);
+  const bool likely = std::any_of(listing.columns.begin(), listing.columns.end(),
+                                  [](const ListedColumn& column) { return column.is_likely; });
+  if (likely) text += "  ?: what the name or the unit suggests; it is taken where --columns names it\n";
   std::vector<double> intervals = listing.intervals;
   intervals.erase(std::unique(intervals.begin(), intervals.end()), intervals.end());
   for (const double interval : intervals) text += fmt::format("  time: every {:g} s, as the file states\n", interval);
   constexpr std::size_t kMostFacts = 20;
   for (std::size_t i = 0; i < listing.facts.size() && i < kMostFacts; ++i) {
-    text += fmt::format("  {}: {}\n", listing.facts[i].first, listing.facts[i].second.substr(0, 60));
+    text += printable(fmt::format("  {}: {}", listing.facts[i].first, listing.facts[i].second.substr(0, 60))) + "\n";
   }
   if (listing.facts.size() > kMostFacts) text += fmt::format("  and {} more\n", listing.facts.size() - kMostFacts);
-  for (const std::string& note : listing.notes) text += "  " + note + "\n";
-  return text + fmt::format("\nNext, with names in the place of NAME:\n  identify --columns {} {}\n",
-                            shell_quoted(listing.selection), shell_quoted(path));
+  for (const std::string& note : listing.notes) text += printable("  " + note) + "\n";
+  return text;
+}
+
+/// What keeps the columns from making a trace at this radius [m] (0: not stated); empty where nothing does.
+std::string obstacle_to(const ColumnListing& listing, const std::string& path, double radius) {
+  ReadOptions options;
+  options.columns = listing.selected;
+  if (radius > 0) options.conditions.radius = {radius, "command line"};
+  try {
+    const Trace trace = read_trace(path, options);
+    if (trace.velocity_kind == VelocityKind::relative) return "";
+    const bool has_radius = std::any_of(trace.steps.begin(), trace.steps.end(),
+                                        [](const Step& step) { return step.conditions.radius.known(); });
+    return trace.conditions.radius.known() || has_radius ? "" : "the friction radius is not stated";
+  } catch (const InputError& error) {
+    return error.problem() + "; " + error.advice();
+  }
+}
+
+std::string missing_columns(const ColumnListing& listing) {
+  const std::map<std::string, std::string> needs = {{"time", "time (or the rate of sampling: --rate 20kHz)"},
+                                                    {"friction", "friction (mu, force or torque)"},
+                                                    {"velocity", "velocity (v_b, v_r or speed)"}};
+  std::vector<std::string> missing;
+  for (const std::string& what : listing.missing) missing.push_back(needs.at(what));
+  std::string text = "\nA law needs time, friction and velocity. Not recognised here: " + listed(missing) + "\n";
+  const auto unknown = std::find_if(listing.columns.begin(), listing.columns.end(), [](const ListedColumn& column) {
+    return column.channel.empty() && column.unit.empty() && !column.is_text && column.count > 0;
+  });
+  if (unknown == listing.columns.end()) return text;
+  const auto is_missing = [&](const char* what) {
+    return std::find(listing.missing.begin(), listing.missing.end(), what) != listing.missing.end();
+  };
+  const std::string& name = unknown->request;
+  const std::string choice = is_missing("friction")   ? "mu=" + name
+                             : is_missing("velocity") ? "v_b=" + name + ":mm/s"
+                                                      : "time=" + name + ":s";
+  return text + fmt::format("If '{}' is that, say so: --columns {}\n", printable(unknown->name), shell_quoted(choice));
+}
+
+/// The command that fits the trace, or what keeps it from being one.
+std::string next_step(const ColumnListing& listing, const std::string& path) {
+  if (!listing.missing.empty()) return missing_columns(listing);
+  constexpr double kExample = 0.015;
+  const bool without_radius = obstacle_to(listing, path, 0).empty();
+  if (!without_radius) {
+    const std::string obstacle = obstacle_to(listing, path, kExample);
+    if (!obstacle.empty()) return "\nThese columns make no trace yet: " + printable(obstacle) + "\n";
+  }
+  std::vector<std::string> examples;
+  if (!without_radius) examples.emplace_back("15mm for the friction radius of your machine");
+  for (const std::string& unit : listing.assumed) examples.push_back(unit + ", whose unit the file does not state");
+  return fmt::format("\nNext{}:\n  identify{} --columns {} {}\n",
+                     examples.empty() ? "" : ", where you must check " + listed(examples),
+                     without_radius ? "" : " --radius 15mm", shell_quoted(listing.selection), shell_quoted(path));
 }
 
 }  // namespace
@@ -86,7 +148,8 @@ void add_columns(const Command& app) {
   verb.add_option("FILE", *file, "File of a trace").required();
   verb.on_run([file, verb] {
     verb.refuse_empty_values();
-    print(render(list_columns(*file), *file));
+    const ColumnListing listing = list_columns(*file);
+    print(table_and_facts(listing, *file) + next_step(listing, *file));
     return ExitStatus::done;
   });
 }

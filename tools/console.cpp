@@ -14,10 +14,37 @@
 #include <system_error>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
-void print(const std::string& text) {
+namespace {
+
+/// The length of "ESC [ ... m" at the beginning of `text`: a colour, which the report sets; 0 for anything else.
+std::size_t length_of_colour(std::string_view text) {
+  if (!text.starts_with("\033[")) return 0;
+  const std::size_t end = text.find_first_not_of("0123456789;", 2);
+  return end != std::string_view::npos && text[end] == 'm' ? end + 1 : 0;
+}
+
+/// What a terminal may be sent: control characters in the names of files and columns are spelt out.
+std::string for_terminal(std::string_view text, bool with_colour) {
+  std::string shown;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t colour = with_colour ? length_of_colour(text.substr(at)) : 0;
+    const std::size_t length = std::max<std::size_t>(colour, 1);
+    const std::string_view part = text.substr(at, length);
+    const bool as_it_is = colour > 0 || part == "\n" || part == "\t";
+    shown += as_it_is ? std::string(part) : tribofit::printable(part);
+    at += length;
+  }
+  return shown;
+}
+
+}  // namespace
+
+void print(const std::string& raw) {
   static bool nobody_reads = false;
   if (nobody_reads) return;
+  const std::string text = for_terminal(raw, wants_colour());
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (written) return;
@@ -62,7 +89,7 @@ std::size_t terminal_width() {
 }
 
 void progress(const std::string& text) {
-  if (::isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", text.c_str());
+  if (::isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", for_terminal(text, false).c_str());
 }
 
 ProgressLine::ProgressLine() : watched_(::isatty(STDERR_FILENO) == 1) {}
@@ -71,11 +98,12 @@ ProgressLine::~ProgressLine() {
   if (watched_ && next_ != std::chrono::steady_clock::time_point{}) std::fputs("\r\033[K", stderr);
 }
 
-void ProgressLine::show(std::string_view what, double part) {
+void ProgressLine::show(std::string_view words, double part) {
   if (!watched_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(100);
+  const std::string what = tribofit::printable(words);
   const std::size_t room = std::max<std::size_t>(terminal_width(), 20) - 8;  // a line that wraps cannot be rewritten
   const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
   std::fprintf(stderr, "\r\033[K%3d %%  %.*s", percent, static_cast<int>(std::min(what.size(), room)), what.data());
@@ -83,5 +111,5 @@ void ProgressLine::show(std::string_view what, double part) {
 }
 
 void print_error(const std::string& text) {
-  std::fprintf(stderr, "identify: error: %s\n", text.c_str());
+  std::fprintf(stderr, "identify: error: %s\n", for_terminal(text, false).c_str());
 }

@@ -11,6 +11,7 @@
 #include "options.hpp"
 #include "results.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
@@ -84,10 +85,60 @@ std::string reason_of(const DiagnosedTraces& result) {
   return "there are too few cycles to hold any out";
 }
 
+/// Records that take no part, and why.
+struct LeftOut {
+  std::vector<std::string> reasons;
+  bool any_read = false;  ///< one could be read, but not analysed
+};
+
+/// Whether a record can be diagnosed; adds to `left_out` where it cannot.
+bool is_usable(const Input& input, const IdentifyOptions& options, LeftOut& left_out) {
+  std::string reason = input.problem;
+  try {
+    if (reason.empty()) {
+      const Identification trace = prepare_trace(input.trace, options);
+      if (trace.analysed) return true;
+      left_out.any_read = true;
+      reason = input.trace.path + ": " + (trace.warnings.empty() ? "it cannot be analysed" : trace.warnings.back());
+    }
+  } catch (const InputError& error) {
+    reason = error.what();
+  }
+  std::vector<std::string>& reasons = left_out.reasons;  // a run of --confirm may be among the traces, too
+  if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(std::move(reason));
+  return false;
+}
+
+/// The runs that can be used. A single one is taken as it is: the diagnosis itself says what stops it.
+Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& left_out) {
+  FindOptions find;
+  find.errors = ManifestErrors::collect;
+  Campaign campaign = find_runs(s.traces, options.read, find);
+  left_out.reasons = std::move(campaign.problems);
+  std::vector<Input>& runs = campaign.runs;
+  if (runs.size() == 1 && !runs.front().problem.empty()) {
+    find_runs(s.traces, options.read);  // refuses it with its place
+    throw InputError(runs.front().problem, "");
+  }
+  check_usage(s, keep_for_confirmation(runs, s.confirm, options.read));
+  const auto unusable = [&](const Input& input) { return !is_usable(input, options, left_out); };
+  if (runs.size() > 1) std::erase_if(runs, unusable);
+  if (runs.empty()) return {};
+  Split split = keep_for_confirmation(std::move(runs), s.confirm, options.read);
+  if (!s.confirm.empty()) std::erase_if(split.kept, unusable);
+  return split;
+}
+
 ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
-  const Split split = keep_for_confirmation(find_runs(s.traces, options.read).runs, s.confirm, options.read);
-  check_usage(s, split);
+  if (s.traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
+  LeftOut left_out;
+  const Split split = usable_runs(s, options, left_out);
+  for (const std::string& reason : left_out.reasons) print_error("left out: " + reason);
+  if (split.diagnosed.empty()) {
+    print_error("no record is left to diagnose");
+    return left_out.any_read ? ExitStatus::failed : ExitStatus::bad_input;
+  }
   DiagnoseOptions more;
   more.diagnosis.threads = s.threads;
   more.confirm = traces_of(split.kept);
@@ -108,7 +159,8 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
                 return report_of(result, {own, inputs, !s.instruments.empty()});
               },
               [&](const std::string& folder) { write_csv_folder(folder, result); }});
-  if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data) return ExitStatus::done;
+  if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data)
+    return left_out.reasons.empty() ? ExitStatus::done : ExitStatus::failed;
   print_error("the diagnosis could not be done: " + reason_of(result));
   return ExitStatus::failed;
 }
@@ -125,13 +177,13 @@ void add_diagnose(const Command& app) {
       .one_value_each()
       .group("Reading");
   add_model_options(verb, *settings);
+  add_parameter_options(verb, *settings);
   add_selection_options(verb, *settings);
   add_output_options(verb, *settings);
   add_report_option(verb, *settings);
   verb.on_run([settings, verb] {
     verb.refuse_empty_values();
     check_seed(*settings);
-    if (settings->traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
     return run_diagnose(*settings, verb.own_options());
   });
 }

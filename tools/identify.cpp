@@ -112,8 +112,8 @@ NamePattern pattern_from(const std::string& text) {
 }
 
 ExitStatus run_identify(const Settings& s, const std::vector<std::string>& arguments) {
+  const IdentifyOptions options = options_from(s);  // says first where an option has taken the trace for its value
   if (s.traces.empty()) throw UsageError("no trace given; try `identify --radius 15mm trace.csv`");
-  const IdentifyOptions options = options_from(s);
   FindOptions find;
   find.errors = ManifestErrors::collect;
   if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);

@@ -6,6 +6,7 @@
 
 #include "exit_status.hpp"
 #include "parameter_options.hpp"
+#include "stated_value.hpp"
 #include "tribofit/friction/formula.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
                 double otherwise) {
-  return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
+  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
 }
 
 /// An effect and its parameters in SI, in the order of its info().
@@ -60,8 +61,8 @@ ChosenEffect read_effect(const std::string& text) {
     const auto k = static_cast<std::size_t>(found - names.begin());
     const Parameter& parameter = info.parameters[k];
     const std::optional<Unit> unit = find_unit(parameter.unit);
-    chosen.values[k] = parse_quantity(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
-                                      info.key + ":" + parameter.name, parameter.unit);
+    chosen.values[k] = stated_value(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
+                                    info.key + ":" + parameter.name, parameter.unit);
   }
   return chosen;
 }
@@ -91,6 +92,7 @@ ChosenEffects chosen_effects(const MachineRequest& request, const Law& law) {
     const Formula formula(text);
     const EffectInfo info = formula.info();
     out.effects.emplace_back(formula);
+    out.values[info.key] = {};  // it may have no parameters
     for (const Parameter& parameter : info.parameters) out.values[info.key].push_back(parameter.start * parameter.si);
   }
   refuse_clashes(out.effects, {law});
@@ -119,7 +121,7 @@ void set_law_parameters(const MachineRequest& request, const Law& law, std::vect
     }
     const Unit unit = find_unit(found->unit).value_or(Unit{Quantity::dimensionless, 1, 0});
     p[static_cast<std::size_t>(found - parameters.begin())] =
-        parse_quantity(text, unit.quantity, flag_of(name), found->unit == "1" ? "" : found->unit);
+        stated_value(text, unit.quantity, flag_of(name), found->unit == "1" ? "" : found->unit);
   }
 }
 
@@ -132,7 +134,7 @@ void set_rig(const MachineRequest& request, Rig& rig) {
   rig.mass = given_or(request.mass, Quantity::mass, "--mass", "kg", rig.mass);
   rig.stiffness = given_or(request.stiffness, Quantity::stiffness, "--stiffness", "N/mm", rig.stiffness);
   if (!request.damping.empty()) {
-    rig.damping = parse_quantity(request.damping, Quantity::damping, "--damping", "N s/mm");
+    rig.damping = stated_value(request.damping, Quantity::damping, "--damping", "N s/mm");
   } else if (other_block || !request.damping_ratio.empty()) {
     rig =
         rig_with_damping_ratio(rig.mass, rig.stiffness,
@@ -145,26 +147,32 @@ void set_rig(const MachineRequest& request, Rig& rig) {
 
 using namespace tribofit;
 
-double disc_speed_from(const std::string& text, double radius, const std::string& option) {
+bool is_linear_speed(const std::string& text) {
   const std::size_t end = text.find_last_of("0123456789.");
   const std::string unit = end == std::string::npos ? "" : text.substr(end + 1);
   const std::optional<Unit> known = find_unit(unit);
-  if (!unit.empty() && known && known->quantity == Quantity::velocity) {
-    return parse_quantity(text, Quantity::velocity, option) / radius;
-  }
-  return parse_quantity(text, Quantity::angular_velocity, option, "rpm");
+  return !unit.empty() && known && known->quantity == Quantity::velocity;
+}
+
+double disc_speed_from(const std::string& text, double radius, const std::string& option) {
+  if (is_linear_speed(text)) return stated_value(text, Quantity::velocity, option) / radius;
+  return stated_value(text, Quantity::angular_velocity, option, "rpm");
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
   const Law law = request.law.empty() ? law_catalogue().front() : read_law(request.law);
-  const double radius = parse_quantity(request.radius, Quantity::length, "--radius", "mm");
+  const double radius = stated_value(request.radius, Quantity::length, "--radius", "mm");
   const PublishedTest test = published_test(radius, law);
   RequestedMachine out;
   out.preset_radius = test.radius;
   Machine& machine = out.machine;
   machine.radius = radius;
   machine.load = given_or(request.load, Quantity::force, "--load", "N", test.load);
+  if (!(radius > 0)) throw InputError("--radius: '" + request.radius + "' is not greater than zero", "give it as 15mm");
   machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, radius, "--speed");
+  if (machine.speed == 0) {
+    throw InputError("--speed: '" + request.speed + "' is zero: the disc stands still", "give it as e.g. 4rpm");
+  }
   machine.rig = test.rig;
   set_rig(request, machine.rig);
   const ChosenEffects chosen = chosen_effects(request, law);

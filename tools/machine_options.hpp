@@ -31,6 +31,9 @@ RequestedMachine machine_from(const MachineRequest& request);
 /// An identified machine with the parameters of its law and the rig that were typed in place of its own.
 tribofit::Machine with_typed(tribofit::Machine machine, const MachineRequest& request);
 
+/// Whether a speed is typed with a unit of linear speed ("0.5mm/s").
+bool is_linear_speed(const std::string& text);
+
 /// A speed of the disc [rad/s] from a rotational speed or, at the friction radius [m], from omega r ("4rpm",
 /// "0.5mm/s").
 double disc_speed_from(const std::string& text, double radius, const std::string& option);

@@ -1,14 +1,14 @@
 #include "options.hpp"
 
-#include <charconv>
-#include <system_error>
-
 #include "parameter_options.hpp"
+#include "stated_value.hpp"
 
 void add_input_options(const Command& app, Settings& s) {
   app.add_option("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
   app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm").group("Conditions");
-  app.add_option("--speed", s.speed, "Disc speed, 4rpm (else from the file or the stick plateau)").group("Conditions");
+  app.add_option("--speed", s.speed,
+                 "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau)")
+      .group("Conditions");
   app.add_option("--load", s.load, "Normal force, 50N").group("Conditions");
   app.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties")
       .group("Conditions");
@@ -17,7 +17,7 @@ void add_input_options(const Command& app, Settings& s) {
   };
   input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)")
       .one_value_each();
-  input("--units", s.units, "Units or sensitivities: v_b=mm/s").one_value_each();
+  input("--units", s.units, "Units or sensitivities, of a channel or a column by its name: v_b=mm/s").one_value_each();
   input("--rate", s.rate, "Samples per second where there is no time column, 20kHz");
   input("--with", s.second_file, "Second file of the same run, from the other instrument");
   input("--with-columns", s.second_columns, "--columns of the second file: v_b=Velocity:mm/s").one_value_each();
@@ -111,8 +111,5 @@ std::vector<std::string> pooling_arguments(const Settings& s) {
 
 void check_seed(Settings& s) {
   if (s.seed_text.empty()) return;
-  const char* end = s.seed_text.data() + s.seed_text.size();
-  const auto [last, error] = std::from_chars(s.seed_text.data(), end, s.seed);
-  if (error == std::errc{} && last == end) return;
-  throw UsageError("--seed: '" + s.seed_text + "' is not a whole number from 0 to 18446744073709551615");
+  s.seed = stated_seed(s.seed_text);
 }

@@ -17,6 +17,7 @@
 #include "console.hpp"
 #include "machine_options.hpp"
 #include "simulated_drive.hpp"
+#include "stated_value.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -42,6 +43,7 @@ struct SimulateRequest {
   std::string velocity_gain = "1";
   std::string duration = "20s", rate = "20kHz", run_up, reversing, speed_steps, load_swing, temperature, out;
   std::vector<std::string> pauses;
+  std::string seed_text = "1";
   std::uint64_t seed = 1;
   bool quiet = false;
 };
@@ -60,12 +62,12 @@ struct Plan {
 };
 
 double number(const std::string& text, const char* option) {
-  return parse_quantity(text, Quantity::dimensionless, option);
+  return stated_value(text, Quantity::dimensionless, option);
 }
 
 double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
                 double otherwise) {
-  return text.empty() ? otherwise : parse_quantity(text, quantity, option, bare_unit);
+  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
 }
 
 void plan_drive(const SimulateRequest& request, Plan& plan) {
@@ -88,23 +90,34 @@ void plan_drive(const SimulateRequest& request, Plan& plan) {
     plan.speed = drive.speed.speed(0);
   }
   plan.writes_speed = stepped || !request.reversing.empty();
-  const double duration = parse_quantity(request.duration, Quantity::time, "--duration", "s");
+  const double duration = stated_value(request.duration, Quantity::time, "--duration", "s");
   if (!(duration > 0)) throw InputError("--duration is not positive", "give it as e.g. 20s");
   swing_load(request.load_swing, duration, drive);
   vary_temperature(request.temperature, duration, drive);
 }
 
 Sensors plan_sensors(const SimulateRequest& request) {
-  return {.mass_below = parse_quantity(request.mass_below, Quantity::mass, "--mass-below", "kg"),
-          .force_bandwidth = parse_quantity(request.force_bandwidth, Quantity::frequency, "--force-bandwidth", "Hz"),
+  return {.mass_below = stated_value(request.mass_below, Quantity::mass, "--mass-below", "kg"),
+          .force_bandwidth = stated_value(request.force_bandwidth, Quantity::frequency, "--force-bandwidth", "Hz"),
           .force_damping = number(request.force_damping, "--force-damping"),
-          .friction_delay = parse_quantity(request.delay, Quantity::time, "--delay", "s"),
+          .friction_delay = stated_value(request.delay, Quantity::time, "--delay", "s"),
           .velocity_gain = number(request.velocity_gain, "--velocity-gain"),
-          .velocity_high_pass = parse_quantity(request.high_pass, Quantity::frequency, "--high-pass", "Hz"),
+          .velocity_high_pass = stated_value(request.high_pass, Quantity::frequency, "--high-pass", "Hz"),
           .friction_noise = number(request.noise_mu, "--noise-mu"),
-          .velocity_noise = parse_quantity(request.noise_v, Quantity::velocity, "--noise-v", "mm/s"),
+          .velocity_noise = stated_value(request.noise_v, Quantity::velocity, "--noise-v", "mm/s"),
           .noise_colour = number(request.noise_colour, "--noise-colour"),
           .seed = request.seed};
+}
+
+void refuse_sample_count(const SimulateRequest& request, double samples) {
+  constexpr double kMost = 1e8;  // 10 GB of memory, and a file of 3 GB
+  if (samples >= 2 && samples <= kMost) return;
+  const std::string what = fmt::format("--duration {} at --rate {}", request.duration, request.rate);
+  if (samples < 2) {
+    throw InputError(what + " is less than two samples", "give a longer duration or a higher rate");
+  }
+  throw InputError(fmt::format("{} is {:.3g} samples, more than the {:g} that are simulated", what, samples, kMost),
+                   "give a shorter duration or a lower rate");
 }
 
 Plan make_plan(const SimulateRequest& request) {
@@ -114,11 +127,12 @@ Plan make_plan(const SimulateRequest& request) {
   plan.preset_radius = requested.preset_radius;
   plan_drive(request, plan);
   plan.sensors = plan_sensors(request);
-  plan.options = {.duration = parse_quantity(request.duration, Quantity::time, "--duration", "s"),
-                  .rate = parse_quantity(request.rate, Quantity::frequency, "--rate", "Hz"),
+  plan.options = {.duration = stated_value(request.duration, Quantity::time, "--duration", "s"),
+                  .rate = stated_value(request.rate, Quantity::frequency, "--rate", "Hz"),
                   .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
                   .seed = request.seed};
   if (!(plan.options.rate > 0)) throw InputError("--rate is not positive", "give it as e.g. 20kHz");
+  refuse_sample_count(request, plan.options.duration * plan.options.rate);
   const bool starts_at_speed = plan.run_up == 0 && plan.reversing == 0 && plan.drive.speed.speed(0) != 0;
   if (starts_at_speed && plan.machine.rig.mass > 0 && plan.machine.rig.stiffness > 0 &&
       plan.machine.parameters[0] > 0) {
@@ -135,8 +149,18 @@ struct Column {
   int decimals;
 };
 
-/// Appends value with a fixed number of decimals; the integer route is several times faster than printing a double.
+/// Appends value with a fixed number of decimals; the integer route is several times faster than printing a double, and
+/// open to those whose digits fit into an integer.
 void append_fixed(std::string& text, double value, int decimals) {
+  constexpr double kLargest = 1e9;
+  if (!(std::abs(value) < kLargest)) {
+    if (!std::isfinite(value)) {
+      throw InputError("the simulated record holds a value that is no finite number",
+                       "give friction, rig and sensors smaller values");
+    }
+    text += fmt::format("{:.{}f}", value, decimals);
+    return;
+  }
   constexpr std::array<double, 10> kPower = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
   const auto scaled = std::llround(value * kPower[static_cast<std::size_t>(decimals)]);
   const auto unit = static_cast<long long>(kPower[static_cast<std::size_t>(decimals)]);
@@ -312,7 +336,7 @@ void add_options(const Command& verb, SimulateRequest& r) {
   verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
   verb.add_option("--duration", r.duration, "of the record").show_default();
   verb.add_option("--rate", r.rate, "samples per second").show_default();
-  verb.add_option("--seed", r.seed, "of noise and scatter").show_default();
+  verb.add_option("--seed", r.seed_text, "of noise and scatter").show_default();
   verb.add_flag("--quiet", r.quiet, "print nothing");
   add_machine_options(verb, r.machine);
   const char* rig = "Motion of the disc, load and temperature";
@@ -351,7 +375,9 @@ void add_simulate(const Command& app) {
       "trace.csv");
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
-  verb.on_run([request] {
+  verb.on_run([request, verb] {
+    verb.refuse_empty_values();
+    request->seed = stated_seed(request->seed_text);
     run_simulate(*request);
     return ExitStatus::done;
   });

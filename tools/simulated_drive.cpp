@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "stated_value.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -39,8 +40,8 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
   for (std::size_t begin = 0; begin < steps.size();) {
     const std::size_t end = std::min(steps.find(',', begin), steps.size());
     const auto [time, value] = two_parts(steps.substr(begin, end - begin), ":", "--speed-steps", "0s:2rpm,10s:4rpm");
-    times.push_back(parse_quantity(time, Quantity::time, "--speed-steps", "s"));
-    speeds.push_back(parse_quantity(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
+    times.push_back(stated_value(time, Quantity::time, "--speed-steps", "s"));
+    speeds.push_back(stated_value(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
     begin = end + 1;
   }
   if (times.empty()) {
@@ -50,8 +51,8 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
   std::vector<Pause> pauses;
   for (const std::string& text : pause_texts) {
     const auto [begin, duration] = two_parts(text, ",", "--pause", "10s,5s");
-    pauses.push_back({parse_quantity(begin, Quantity::time, "--pause", "s"),
-                      parse_quantity(duration, Quantity::time, "--pause", "s")});
+    pauses.push_back(
+        {stated_value(begin, Quantity::time, "--pause", "s"), stated_value(duration, Quantity::time, "--pause", "s")});
   }
   return stepped_speed(std::move(times), std::move(speeds), pauses);
 }
@@ -59,8 +60,8 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
 void swing_load(const std::string& text, double duration, Drive& drive) {
   if (text.empty()) return;
   const auto [size, time] = two_parts(text, ",", "--load-swing", "10N,7s");
-  const double amplitude = parse_quantity(size, Quantity::force, "--load-swing", "N");
-  const double period = parse_quantity(time, Quantity::time, "--load-swing", "s");
+  const double amplitude = stated_value(size, Quantity::force, "--load-swing", "N");
+  const double period = stated_value(time, Quantity::time, "--load-swing", "s");
   if (!(std::abs(amplitude) < drive.mean_load) || !(period > 0)) {
     throw InputError("--load-swing is not smaller than the load, or has no period", "write it as e.g. 10N,7s");
   }
@@ -75,12 +76,12 @@ void vary_temperature(const std::string& text, double duration, Drive& drive) {
   const auto comma = text.find(',');
   const char* example = "20degC..60degC or 20degC..60degC,15s";
   const auto [from, to] = two_parts(text.substr(0, comma), "..", "--temperature", example);
-  const double first = parse_quantity(from, Quantity::temperature, "--temperature", "degC");
-  const double last = parse_quantity(to, Quantity::temperature, "--temperature", "degC");
+  const double first = stated_value(from, Quantity::temperature, "--temperature", "degC");
+  const double last = stated_value(to, Quantity::temperature, "--temperature", "degC");
   if (comma == std::string::npos) {
     drive.temperature = [=](double t) { return first + (last - first) * std::clamp(t / duration, 0.0, 1.0); };
   } else {
-    const double period = parse_quantity(text.substr(comma + 1), Quantity::time, "--temperature", "s");
+    const double period = stated_value(text.substr(comma + 1), Quantity::time, "--temperature", "s");
     if (!(period > 0))
       throw InputError("the period of --temperature is not positive", "write it as " + std::string(example));
     drive.temperature = [=](double t) {

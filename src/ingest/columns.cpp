@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <map>
 #include <set>
 
 #include "column_names.hpp"
@@ -42,6 +43,7 @@ class Finder {
         if (!two_files_) throw;
       }
     }
+    refuse_two_roles();
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
     choose_one({Channel::mu, Channel::force, Channel::torque});
     choose_one({Channel::v_b, Channel::v_r});
@@ -83,7 +85,20 @@ class Finder {
         request.unit = std::string(trimmed(std::string_view(text).substr(colon + 1)));
       }
     }
-    for (const auto& [name, text] : options.units) slot(name, "--units").unit = std::string(trimmed(text));
+    for (const auto& [name, text] : options.units) {
+      const bool is_channel = std::find(known.begin(), known.end(), name) != known.end();
+      (is_channel ? slot(name, "--units").unit : unit_of_column(name, known)) = std::string(trimmed(text));
+    }
+  }
+
+  /// Where --units keeps the unit of a column of that name; of the other file, if it is in neither.
+  std::string& unit_of_column(const std::string& name, std::vector<std::string> known) {
+    const std::vector<std::string> names = table_.names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end() || two_files_) return units_of_columns_[static_cast<std::size_t>(found - names.begin())];
+    known.insert(known.end(), names.begin(), names.end());
+    throw InputError(fmt::format("--units: there is no channel or column '{}'{}", name, did_you_mean(name, known)),
+                     "give the unit of a channel (v_b=mm/s) or of a column; " + lists_columns(table_.path), heading());
   }
 
   bool exists(const std::string& name) const {
@@ -116,6 +131,16 @@ class Finder {
     throw InputError(
         fmt::format("there is no column '{}' for {}{}", wanted, to_string(channel), did_you_mean(wanted, names)),
         "the columns are: " + listed(names) + "; " + lists_columns(table_.path), heading());
+  }
+
+  void refuse_two_roles() const {
+    for (std::size_t i = 0; i < channel_count; ++i) {
+      for (std::size_t k = i + 1; k < channel_count; ++k) {
+        if (!taken_[i] || taken_[i] != taken_[k]) continue;
+        throw InputError(fmt::format("is named for {} and for {}", kChannelNames[i], kChannelNames[k]),
+                         "a column holds one channel: name another with --columns", table_.heading(*taken_[i]));
+      }
+    }
   }
 
   bool is_taken(std::size_t column) const {
@@ -215,8 +240,12 @@ class Finder {
   void convert(Channel channel, std::size_t index) {
     Column used{channel, index, column(index).shown_name()};
     const auto& request = requests_[index_of(channel)];
-    const bool by_user = request && !request->unit.empty();
-    const std::string unit = by_user ? request->unit : unit_in_file(index).value_or("");
+    const auto of_column = units_of_columns_.find(index);
+    const bool of_channel = request && !request->unit.empty();
+    const bool by_user = of_channel || of_column != units_of_columns_.end();
+    const std::string unit = of_channel ? request->unit
+                             : by_user  ? of_column->second
+                                        : unit_in_file(index).value_or("");
     if (!find_conversion(used, unit, by_user)) return;
     result_.used.push_back(std::move(used));
   }
@@ -338,6 +367,7 @@ class Finder {
   const bool two_files_;  // a column may be in the other one
   const bool has_rate_;
   Requests requests_;
+  std::map<std::size_t, std::string> units_of_columns_;  // that the user states by the name of the column
   std::array<std::optional<std::size_t>, channel_count> taken_;
   std::vector<std::size_t> other_times_;
   Columns result_;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "tribofit/ingest/spelling.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -14,7 +16,7 @@ std::string sentence(const std::string& problem, const std::string& advice, cons
   if (!where.column.empty() || where.value > 0) text += ": ";
   text += problem;
   if (!advice.empty()) text += "; " + advice;
-  return text;
+  return printable(text);
 }
 
 }  // namespace

@@ -56,6 +56,50 @@ void recognise(const RawTable& table, const ReadOptions& options, ColumnListing&
   }
 }
 
+bool contains_any(std::string_view text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return text.find(word) != std::string_view::npos; });
+}
+
+/// What the name or the unit of a column suggests that it holds; empty where they suggest nothing.
+std::string likely_channel(const RawColumn& column) {
+  const ColumnName name = parse_column_name(column.name);
+  const std::string text = unit_of(column, name);
+  const auto unit = find_unit(text);
+  const bool has_unit = unit && !text.empty();
+  const bool load = contains_any(name.base, {"load", "normal", "weight", "fz", "fn"});
+  if (has_unit && find_unit(text, Quantity::angular_velocity)) return "speed";
+  if (has_unit && unit->quantity == Quantity::torque) return "torque";
+  if (has_unit && unit->quantity == Quantity::temperature) return "temperature";
+  if (has_unit && unit->quantity == Quantity::velocity)
+    return contains_any(name.base, {"block", "vib", "laser"}) ? "v_b" : "v_r";
+  if (has_unit && unit->quantity == Quantity::force) {
+    if (load) return "load";
+    if (contains_any(name.base, {"force", "fric", "trac", "tang", "lateral", "fx", "ft"})) return "force";
+  }
+  const std::size_t end = name.base.find_last_not_of("0123456789");  // "Force1_N"
+  RawColumn without_number = column;
+  without_number.name = end == std::string::npos ? "" : name.base.substr(0, end + 1);
+  without_number.unit = text;
+  return end == std::string::npos ? "" : channel_named(without_number);
+}
+
+/// Where a channel has no column, those that are likely to be it.
+void suggest(const RawTable& table, ColumnListing& listing) {
+  const auto is_taken = [&](const std::string& channel) {
+    return std::any_of(listing.columns.begin(), listing.columns.end(),
+                       [&](const ListedColumn& c) { return c.channel == channel && !c.is_likely; });
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    ListedColumn& listed = listing.columns[i];
+    if (!listed.channel.empty() || listed.is_text) continue;
+    const std::string channel = likely_channel(table.columns[i]);
+    if (channel.empty() || is_taken(channel)) continue;
+    listed.channel = channel;
+    listed.is_likely = true;
+  }
+}
+
 void load_what_can_be(RawTable& table, ColumnListing& listing, int threads) {
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -83,34 +127,33 @@ void take_numbers(const RawColumn& column, ListedColumn& listed) {
   }
 }
 
-std::string selection_for(const ColumnListing& listing) {
-  const auto item = [&](const std::string& channel) -> std::string {
-    for (const ListedColumn& column : listing.columns) {
-      if (column.channel != channel) continue;
-      const auto parsed = parse_column_name(column.name);
-      const bool bare = column.unit.empty() && (channel == "v_b" || channel == "v_r" || channel == "speed");
-      const std::string unit = bare && !names_rpm(parsed.base) ? (channel == "speed" ? ":rpm" : ":mm/s") : "";
-      return channel + "=" + column.request + unit;
+/// Adds the first column of these channels, those that are certain before those that are likely. False where there is
+/// none.
+bool select(std::initializer_list<const char*> channels, ColumnListing& listing) {
+  for (const bool likely : {false, true}) {
+    for (const std::string channel : channels) {
+      const auto column = std::find_if(listing.columns.begin(), listing.columns.end(), [&](const ListedColumn& c) {
+        return c.channel == channel && c.is_likely == likely;
+      });
+      if (column == listing.columns.end()) continue;
+      const bool needs_unit = channel == "v_b" || channel == "v_r" || channel == "speed";
+      const bool bare = needs_unit && column->unit.empty() && !names_rpm(parse_column_name(column->name).base);
+      const std::string unit = !bare ? "" : channel == "speed" ? "rpm" : "mm/s";
+      const std::string request = column->request + (bare ? ":" + unit : "");
+      if (bare) listing.assumed.push_back(unit + " of " + channel);
+      listing.selected.emplace(channel, request);
+      listing.selection += (listing.selection.empty() ? "" : ",") + channel + "=" + request;
+      return true;
     }
-    return {};
-  };
-  std::vector<std::string> items;
-  const auto first_of = [&](std::initializer_list<const char*> channels, const char* missing) {
-    for (const char* channel : channels) {
-      const std::string found = item(channel);
-      if (found.empty()) continue;
-      items.push_back(found);
-      return;
-    }
-    if (*missing != '\0') items.emplace_back(missing);
-  };
-  first_of({"time"}, listing.intervals.empty() ? "time=NAME" : "");
-  first_of({"mu", "force", "torque"}, "mu=NAME");
-  first_of({"v_b", "v_r", "speed"}, "v_b=NAME:mm/s");
-  first_of({"load"}, "");
-  std::string text;
-  for (const std::string& part : items) text += (text.empty() ? "" : ",") + part;
-  return text;
+  }
+  return false;
+}
+
+void select_trace(ColumnListing& listing) {
+  if (!select({"time"}, listing) && listing.intervals.empty()) listing.missing.emplace_back("time");
+  if (!select({"mu", "force", "torque"}, listing)) listing.missing.emplace_back("friction");
+  if (!select({"v_b", "v_r", "speed"}, listing)) listing.missing.emplace_back("velocity");
+  select({"load"}, listing);
 }
 
 }  // namespace
@@ -132,6 +175,7 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
   }
   for (const RawFact& fact : table.facts) listing.facts.emplace_back(fact.name, fact.value);
   recognise(table, options, listing);
+  suggest(table, listing);
   load_what_can_be(table, listing, options.threads);
   for (std::size_t i = 0; i < table.columns.size(); ++i) take_numbers(table.columns[i], listing.columns[i]);
   for (const RawRows& rows : table.rows) {
@@ -139,7 +183,7 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
   }
   listing.notes.insert(listing.notes.end(), table.notes.begin(), table.notes.end());
   listing.notes.insert(listing.notes.end(), table.warnings.begin(), table.warnings.end());
-  listing.selection = selection_for(listing);
+  select_trace(listing);
   return listing;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "terminal_text.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -33,6 +34,11 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
 std::string shell_quoted(const std::string& argument) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::any_of(argument.begin(), argument.end(), is_control)) {  // bash, zsh and ksh read these
+    const std::string escaped = replaced(replaced(argument, "\\", "\\\\"), "'", "\\'");
+    return "$'" + printable(escaped) + "'";
+  }
   std::string text = "'";
   for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";

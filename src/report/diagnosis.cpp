@@ -9,6 +9,7 @@
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "terminal_text.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
@@ -66,7 +67,8 @@ void add_remarks(const DiagnosedTraces& result, TerminalText& text) {
 
 void add_header(const DiagnosedTraces& result, TerminalText& text) {
   const bool one = result.traces.size() == 1;
-  const std::string title = one ? result.traces.front().path : fmt::format("{} traces", result.traces.size());
+  const std::string title =
+      one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size());
   std::vector<std::string> known = {condition(result, &Conditions::radius, kMillimetre, "mm"),
                                     condition(result, &Conditions::speed, kRpm, "rpm"),
                                     condition(result, &Conditions::load, 1, "N"), amount_of_data(result)};

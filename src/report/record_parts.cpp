@@ -8,6 +8,7 @@
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/fit/identification.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -144,7 +145,7 @@ ReportTable health_table(std::span<const Identification> traces) {
 
 void add_record(const Identification& r, TerminalText& text) {
   const Motion& m = r.motion;
-  text.raw(fmt::format("{}  {}\n", text.bold(fmt::format("tribofit {}", version)), r.path));
+  text.raw(fmt::format("{}  {}\n", text.bold(fmt::format("tribofit {}", version)), printable(r.path)));
   std::string line = record_sentence(r);
   if (m.trimmed > 0) {
     line += fmt::format("; the first {} s (run-up) left out", significant(static_cast<double>(m.trimmed) * m.step, 3));

@@ -295,7 +295,8 @@ void add_notes(Segmentation& result) {
   }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
-  if (complete < 3) result.notes.push_back(fmt::format("only {} complete cycles", complete));
+  if (complete < 3)
+    result.notes.push_back(fmt::format("only {} complete cycle{}", complete, complete == 1 ? "" : "s"));
 }
 
 }  // namespace

@@ -266,4 +266,41 @@ TEST(Diagnose, NothingIsLeftBehindByAnInterruption) {
   EXPECT_THAT(shop.names(), IsEmpty());
 }
 
+TEST(Diagnose, BoundsHoldAParameter) {
+  const Workshop shop;
+  shop.write("trace.csv", empty_trace());
+  const json j =
+      result_of(shop, "--radius 15mm --speed 4rpm --law exponential --bounds alpha=0.06..0.07s/mm trace.csv");
+  for (const json& fit : j["fits"]) {
+    for (const json& p : fit["parameters"]) {
+      if (p["name"] != "alpha") continue;
+      EXPECT_GE(p["value"].get<double>(), 0.06);
+      EXPECT_LE(p["value"].get<double>(), 0.07);
+    }
+  }
+  EXPECT_EQ(shop.identify("diagnose --radius 15mm --bounds aplha=1..2 trace.csv").status, 2);
+}
+
+/// One record that cannot be used is named and left out; the others are diagnosed as they are without it.
+TEST(Diagnose, OneUnusableRecordDoesNotStopTheOthers) {
+  const Workshop shop;
+  std::filesystem::create_directory(shop / "runs");
+  shop.write("runs/a.csv", viscous_trace());
+  shop.write("runs/b.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015", 5));
+  const json alone = result_of(shop, "--radius 15mm --speed 4rpm runs");
+  shop.write("runs/broken.csv", "time_s,mu,v_b_mm_s\n0,abc,1\n");
+  std::string still = "time_s,mu,v_b_mm_s\n";
+  for (int i = 0; i < 2000; ++i) still += std::to_string(i * 2e-4) + ",0.4,3.0\n";
+  shop.write("runs/still.csv", still);
+  const Outcome outcome = shop.identify("diagnose --quiet --json d.json --radius 15mm --speed 4rpm runs");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("left out: runs/broken.csv"), HasSubstr("left out: runs/still.csv")));
+  const json j = json::parse(contents(shop / "d.json"));
+  EXPECT_EQ(j["traces"].size(), 2u);
+  EXPECT_EQ(j["diagnosis"], alone["diagnosis"]);
+  std::filesystem::remove(shop / "runs/a.csv");
+  std::filesystem::remove(shop / "runs/b.csv");
+  EXPECT_NE(shop.identify("diagnose --radius 15mm --speed 4rpm runs").status, 0);
+}
+
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "byte_cursor.hpp"
+#include "byte_writer.hpp"
 #include "reader.hpp"
 
 namespace tribofit {
@@ -23,29 +24,9 @@ namespace binary_format {
 
 inline constexpr std::string_view signature = "\x01LABREC";
 
-class Writer {
- public:
-  template <class Number>
-  Writer& number(Number value) {
-    const auto at = bytes_.size();
-    bytes_.resize(at + sizeof value);
-    std::memcpy(bytes_.data() + at, &value, sizeof value);
-    return *this;
-  }
-  Writer& text(std::string_view value) {
-    number(static_cast<std::uint32_t>(value.size()));
-    bytes_ += value;
-    return *this;
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_{signature};
-};
-
 /// The bytes of a file with these columns, facts and rows.
 inline std::string bytes_of(const RawTable& table) {
-  Writer out;
+  ByteWriter out(signature);
   out.number(static_cast<std::uint32_t>(table.facts.size()));
   for (const RawFact& fact : table.facts) out.text(fact.name).text(fact.value);
   out.number(static_cast<std::uint32_t>(table.rows.size()));
@@ -96,12 +77,11 @@ class Parser {
       throw InputError("is cut off at byte " + std::to_string(size), "copy the file again", {path, 0, ""});
     };
   }
-  static constexpr bool big_endian = std::endian::native == std::endian::big;
   template <class Number>
   Number number() {
-    return bytes_.number<Number>(big_endian);
+    return bytes_.number<Number>(native_big_endian);
   }
-  std::string text() { return bytes_.text(big_endian); }
+  std::string text() { return bytes_.text(native_big_endian); }
   RawRows rows() {
     RawRows result;
     const auto interval = number<double>();

@@ -237,14 +237,11 @@ TEST_F(Columns_, ColumnsBeyondTheHeaderAreNamedByNumber) {
   expect_error(file, options, "no column #4 for v_b", "#1 to #3", 1);
 }
 
-TEST_F(Columns_, AColumnMayHoldTwoChannels) {
+TEST_F(Columns_, AColumnHoldsOneChannel) {
   ReadOptions options;
-  options.columns = {{"force", "F_N"}, {"load", "F_N"}, {"v_r", "v_r [m/s]"}, {"temperature", "v_r [m/s]:degC"}};
-  const Trace trace = read("time_s,F_N,v_r [m/s]", options);
-  EXPECT_DOUBLE_EQ(trace.friction[1], 1);
-  EXPECT_DOUBLE_EQ(trace.load[1], 2.1);
-  EXPECT_DOUBLE_EQ(trace.velocity[1], 3.1);
-  EXPECT_DOUBLE_EQ(trace.temperature[1], 3.1);
+  options.columns = {{"force", "F_N"}, {"load", "F_N"}, {"v_r", "v_r [m/s]"}};
+  const std::string file = write("time_s,F_N,v_r [m/s]\n0,1,2\n1,1,2\n2,1,2\n");
+  expect_error(file, options, "is named for force and for load", "a column holds one channel", 1, "F_N");
 }
 
 TEST_F(Columns_, ACoefficientAboveFiveIsDoubted) {

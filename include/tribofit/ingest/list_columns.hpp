@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@ struct ListedColumn {
   std::size_t count = 0;           ///< of its numbers
   double lowest = 0, highest = 0;  ///< of them, as written
   std::string channel;             ///< that it is taken for; empty: none
+  bool is_likely = false;          ///< `channel` is only what its name or unit suggests: it must be named
   std::string request;             ///< what names it in --columns, "Velocity" or "#3"
 };
 
@@ -28,7 +30,11 @@ struct ColumnListing {
   std::vector<ListedColumn> columns;
   std::vector<std::pair<std::string, std::string>> facts;  ///< names and values stated beside the columns
   std::vector<double> intervals;                           ///< [s] that the file states between values
-  std::string selection;  ///< "time=t,mu=COF,v_b=NAME:mm/s": of what was recognised, and what is missing in capitals
+  /// The columns that make a trace, by channel, as ReadOptions::columns takes them.
+  std::map<std::string, std::string> selected;
+  std::string selection;             ///< the same as --columns takes them: "time=t,mu=COF,v_b=Velocity:mm/s"
+  std::vector<std::string> assumed;  ///< units in it which the file does not state: "mm/s of v_b"
+  std::vector<std::string> missing;  ///< what a trace needs and no column was found for: "friction", "velocity"
   std::vector<std::string> notes;
 };
 

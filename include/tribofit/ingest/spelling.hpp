@@ -23,6 +23,9 @@ std::string lower_case(std::string_view text);
 /// `text` with every `from` replaced.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
 
+/// `text` with control characters spelt out ("\\n", "\\x1b"), so that a terminal shows and does not obey them.
+std::string printable(std::string_view text);
+
 /// The parts of `text` between separators; as many as there are separators, and one more.
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 std::vector<std::string> split(std::string_view text, char separator);

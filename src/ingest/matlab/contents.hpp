@@ -47,7 +47,8 @@ class MatContents {
 /// its size has. Variables are inflated on several threads.
 std::unique_ptr<MatContents> contents_of_version_5(std::shared_ptr<const InputFile> file);
 
-/// Of version 7.3, by libmatio and HDF5, which have one state for the whole program: one file is read at a time.
+/// Of version 7.3, by libmatio and HDF5, which a damaged file can crash: they run in a process of their own, for one
+/// file at a time.
 std::unique_ptr<MatContents> contents_of_version_73(std::shared_ptr<const InputFile> file);
 
 inline constexpr std::size_t mat_header_bytes = 128;

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 #include <matio.h>
 
+#include <bit>
+#include <cstring>
 #include <mutex>
 #include <utility>
 
+#include "apart.hpp"
 #include "contents.hpp"
-#include "ingest/numbers.hpp"
+#include "ingest/byte_cursor.hpp"
+#include "ingest/byte_writer.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -14,6 +18,7 @@ namespace {
 
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 
+/// One child at a time, so that none inherits the pipe of another.
 std::mutex& matio_mutex() {
   static std::mutex mutex;
   return mutex;
@@ -73,11 +78,100 @@ void convert(const matvar_t& v, std::vector<double>& out) {
   }
 }
 
+/// The file in the hands of libmatio.
+class Opened {
+ public:
+  explicit Opened(const InputFile& file) : mat_(nullptr, &Mat_Close) {
+    Mat_LogInitFunc("", ignore_message);
+    mat_.reset(Mat_Open(file.path().c_str(), MAT_ACC_RDONLY));
+    if (mat_) return;
+    throw InputError("is a MATLAB file of version 7.3 that cannot be opened: it is cut off or damaged",
+                     "copy it again, or save it again with save(..., '-v7')", {file.path(), 0, ""});
+  }
+  mat_t* get() const { return mat_.get(); }
+
+ private:
+  std::unique_ptr<mat_t, decltype(&Mat_Close)> mat_;
+};
+
+void put(const MatArray& array, ByteWriter& out) {
+  out.text(array.name).number(static_cast<std::uint32_t>(array.sizes.size()));
+  for (const std::uint64_t size : array.sizes) out.number(size);
+  out.text(array.kind).number(array.is_text).number(static_cast<std::uint32_t>(array.scalar.size()));
+  for (const double value : array.scalar) out.number(value);
+  out.text(array.text);
+}
+
+MatArray take_array(ByteCursor& in) {
+  MatArray array;
+  array.name = in.text(native_big_endian);
+  for (auto n = in.number<std::uint32_t>(native_big_endian); n > 0; --n)
+    array.sizes.push_back(in.number<std::uint64_t>(native_big_endian));
+  array.kind = in.text(native_big_endian);
+  array.is_text = in.number<std::uint8_t>(native_big_endian) != 0;
+  for (auto n = in.number<std::uint32_t>(native_big_endian); n > 0; --n)
+    array.scalar.push_back(in.number<double>(native_big_endian));
+  array.text = in.text(native_big_endian);
+  return array;
+}
+
+void put(const MatValues& values, ByteWriter& out) {
+  out.number(values.refusal.has_value());
+  if (values.refusal) {
+    out.text(values.refusal->problem()).text(values.refusal->advice());
+    out.text(values.refusal->where().file).text(values.refusal->where().column);
+    return;
+  }
+  out.number(static_cast<std::uint64_t>(values.numbers.size()));
+  out.raw({reinterpret_cast<const char*>(values.numbers.data()), values.numbers.size() * sizeof(double)});
+}
+
+MatValues take_values(ByteCursor& in) {
+  MatValues values;
+  if (in.number<std::uint8_t>(native_big_endian) != 0) {
+    std::string problem = in.text(native_big_endian), advice = in.text(native_big_endian),
+                file = in.text(native_big_endian), column = in.text(native_big_endian);
+    values.refusal.emplace(std::move(problem), std::move(advice), InputLocation{std::move(file), 0, std::move(column)});
+    return values;
+  }
+  const auto count = in.number<std::uint64_t>(native_big_endian);
+  in.need(count, sizeof(double));
+  values.numbers.resize(static_cast<std::size_t>(count));
+  std::memcpy(values.numbers.data(), in.bytes().data() + in.position(), values.numbers.size() * sizeof(double));
+  in.skip(count * sizeof(double));
+  return values;
+}
+
 class Version73 : public MatContents {
  public:
   explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) { refuse_cut_off(); }
 
   void describe(const std::function<void(MatArray&&)>& see) override {
+    const std::lock_guard lock(matio_mutex());
+    ByteCursor arrays = taken_apart([this] {
+      ByteWriter out;
+      describe_here([&](MatArray&& array) { put(array, out); });
+      return out.take();
+    });
+    while (arrays.position() < arrays.bytes().size()) see(take_array(arrays));
+  }
+
+  std::vector<MatValues> load(std::span<const std::string> names, int) override {
+    const std::lock_guard lock(matio_mutex());
+    std::vector<MatValues> values(names.size());
+    ByteCursor taken = taken_apart([&] {
+      ByteWriter out;
+      const Opened mat(*file_);
+      for (const std::string& name : names) put(read_or_refuse(mat, name), out);
+      return out.take();
+    });
+    for (MatValues& one : values) one = take_values(taken);
+    return values;
+  }
+
+ private:
+  /// What follows runs in a process of its own: see run_apart.
+  void describe_here(const std::function<void(MatArray&&)>& see) {
     const Opened mat(*file_);
     bytes_ = 0;
     for (std::size_t count = 0; count < most_mat_arrays; ++count) {
@@ -89,20 +183,23 @@ class Version73 : public MatContents {
                      {file_->path(), 0, ""});
   }
 
-  std::vector<MatValues> load(std::span<const std::string> names, int) override {
-    const Opened mat(*file_);
-    std::vector<MatValues> values(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      try {
-        values[i].numbers = read(mat, names[i]);
-      } catch (const InputError& error) {
-        values[i].refusal = error;
-      }
+  MatValues read_or_refuse(const Opened& mat, const std::string& name) const {
+    MatValues values;
+    try {
+      values.numbers = read(mat, name);
+    } catch (const InputError& error) {
+      values.refusal = error;
     }
     return values;
   }
 
- private:
+  ByteCursor taken_apart(const std::function<std::string()>& work) const {
+    const std::string path = file_->path();
+    return ByteCursor(run_apart(path, work), [path](std::uint64_t, std::uint64_t) {
+      throw InputError("the reading of the file broke off", "the file is damaged; save it again", {path, 0, ""});
+    });
+  }
+
   /// The superblock of HDF5 (versions 0 to 3), behind MATLAB's own head, states where the file ends.
   void refuse_cut_off() const {
     constexpr std::uint64_t superblock = 512;
@@ -127,23 +224,6 @@ class Version73 : public MatContents {
     throw InputError(fmt::format("is cut off at byte {}: it states {} bytes", file_->size(), end),
                      "copy or save the file again", {file_->path(), 0, ""});
   }
-
-  /// The file in the hands of libmatio, and of nobody else meanwhile.
-  class Opened {
-   public:
-    explicit Opened(const InputFile& file) : lock_(matio_mutex()), mat_(nullptr, &Mat_Close) {
-      Mat_LogInitFunc("", ignore_message);
-      mat_.reset(Mat_Open(file.path().c_str(), MAT_ACC_RDONLY));
-      if (mat_) return;
-      throw InputError("is a MATLAB file of version 7.3 that cannot be opened: it is cut off or damaged",
-                       "copy it again, or save it again with save(..., '-v7')", {file.path(), 0, ""});
-    }
-    mat_t* get() const { return mat_.get(); }
-
-   private:
-    std::unique_lock<std::mutex> lock_;
-    std::unique_ptr<mat_t, decltype(&Mat_Close)> mat_;
-  };
 
   void describe(const Opened& mat, matvar_t& v, const std::string& name, int depth,
                 const std::function<void(MatArray&&)>& see) {

@@ -1,0 +1,107 @@
+// What is typed or named to make the command hang, crash or obey.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "command.hpp"
+
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// `identify` that is ended after ten seconds, with status 124.
+std::string within_ten_seconds(const std::string& arguments) {
+  return "timeout 10 '" TRIBOFIT_IDENTIFY "' " + arguments;
+}
+
+TEST(HostileInput, PipesAndDevicesAreRefusedAndNotWaitedFor) {
+  const Workshop shop;
+  shop.write("trace.csv", good_trace());
+  shop.shell("mkfifo pipe; mkdir results runs; mkfifo results/campaign.json runs/samples.csv");
+  for (const char* arguments :
+       {"--formula @pipe --radius 15mm trace.csv", "explore --session pipe", "explore --session /dev/zero",
+        "--formula @/dev/zero --radius 15mm trace.csv", "merge results", "merge pipe", "columns pipe",
+        "--instruments pipe --radius 15mm trace.csv", "--with pipe --radius 15mm trace.csv", "--radius 15mm runs"}) {
+    const Outcome outcome = shop.shell(within_ten_seconds(arguments));
+    EXPECT_TRUE(outcome.status == 2 || outcome.status == 3) << arguments << ": " << outcome.status << outcome.err;
+    EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
+  }
+}
+
+TEST(HostileInput, ASessionIsNoGigabyte) {
+  const Workshop shop;
+  shop.shell("truncate -s 1G big.json");
+  for (const char* arguments : {"explore --session big.json", "--formula @big.json trace.csv"}) {
+    const Outcome outcome = shop.shell(within_ten_seconds(arguments));
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("has 1073741824 bytes, where up to"));
+  }
+}
+
+TEST(HostileInput, NamesAreShownAndNotObeyed) {
+  const Workshop shop;
+  const std::string name = "a\x1b[31m\nb.csv";
+  shop.write(name, good_trace());
+  Outcome outcome = shop.shell("identify --radius 15mm \"$(printf 'a\\033[31m\\nb.csv')\"");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(Not(HasSubstr("\x1b")), HasSubstr("a\\x1b[31m\\nb.csv"), HasSubstr("$'a\\x1b[31m\\nb.csv'")));
+  outcome = shop.shell("identify --radius 15mm \"$(printf 'missing\\033[31m\\nb.csv')\"");
+  EXPECT_THAT(outcome.err, AllOf(Not(HasSubstr("\x1b")), HasSubstr("missing\\x1b[31m\\nb.csv: cannot be opened")));
+  shop.write("c.csv", "time_s,mu,v\x1b[2J_mm_s" + good_trace().substr(good_trace().find('\n')));
+  outcome = shop.identify("columns c.csv");
+  EXPECT_THAT(outcome.out, Not(HasSubstr("\x1b")));
+}
+
+struct Absurd {
+  std::string name, arguments;
+  std::vector<std::string> says;
+};
+
+class AbsurdMachine : public ::testing::TestWithParam<Absurd> {};
+
+TEST_P(AbsurdMachine, IsRefusedAtTheDoor) {
+  const Workshop shop;
+  const Outcome outcome = shop.shell(within_ten_seconds("simulate --out t.csv --quiet " + GetParam().arguments));
+  EXPECT_TRUE(outcome.status == 2 || outcome.status == 3) << outcome.status << outcome.err;
+  for (const std::string& part : GetParam().says) EXPECT_THAT(outcome.err, HasSubstr(part));
+  EXPECT_THAT(shop.names(), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, AbsurdMachine,
+    ::testing::Values(Absurd{"NoiseOnMu", "--noise-mu 1e15", {"--noise-mu", "'1e15'", "more than any machine has"}},
+                      Absurd{"NoiseOnVelocity", "--noise-v 1e300mm/s", {"--noise-v", "'1e300mm/s'"}},
+                      Absurd{"Gain", "--velocity-gain 1e20", {"--velocity-gain", "'1e20'"}},
+                      Absurd{"Duration", "--duration 1e300s", {"--duration", "'1e300s'"}},
+                      Absurd{"TooManySamples", "--duration 1e8s", {"--duration 1e8s at --rate 20kHz", "2e+12 samples"}},
+                      Absurd{"BelowASample", "--duration 1us", {"--duration 1us at --rate 20kHz", "less than two"}},
+                      Absurd{"Amplitude", "--effect runout:A=1e300,phase=1", {"runout:A", "'1e300'"}},
+                      Absurd{"Temperature", "--temperature 20degC..1e300degC", {"--temperature", "1e300degC"}},
+                      Absurd{"Standstill", "--speed 0rpm", {"--speed", "'0rpm' is zero"}},
+                      Absurd{"NegativeSeed", "--seed -1", {"--seed", "'-1'"}},
+                      Absurd{"SeedTooLarge", "--seed 99999999999999999999", {"--seed", "99999999999999999999"}},
+                      Absurd{"EmptySpeed", "--speed ''", {"--speed is given an empty value"}},
+                      Absurd{"EmptyDuration", "--duration ''", {"--duration is given an empty value"}},
+                      Absurd{"DividesByZero", "--duration 1s --formula 'x = v/0'", {"finite"}}),
+    [](const auto& param_info) { return param_info.param.name; });
+
+TEST(AbsurdMachine, LargeValuesAreWrittenAsTheyAre) {
+  const Workshop shop;
+  const Outcome outcome = shop.identify(
+      "simulate --duration 1s --rate 1kHz --velocity-gain 1e6 --noise-mu 1e6 --noise-v 1e4mm/s --out t.csv --quiet");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  double largest = 0;
+  for (const std::string& line : lines_of(contents(shop / "t.csv"))) {
+    const std::size_t comma = line.find(',');
+    if (line[0] == '0') largest = std::max(largest, std::abs(std::stod(line.substr(comma + 1))));
+  }
+  EXPECT_GT(largest, 2e6);
+  EXPECT_LT(largest, 6e6) << "a thousand normal numbers of 1e6";
+}
+
+}  // namespace

@@ -1,0 +1,57 @@
+#include "stated_value.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include "exit_status.hpp"
+#include "tribofit/ingest/input_error.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+/// The largest value in SI. Each is far beyond what is built or measured: they hold for any rig.
+double largest(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::time:
+      return 1e9;  // thirty years
+    case Quantity::length:
+      return 1e4;
+    case Quantity::velocity:
+      return 1e5;  // beyond what leaves the solar system
+    case Quantity::angular_velocity:
+      return 1e7;
+    case Quantity::frequency:
+    case Quantity::inverse_time:
+      return 1e10;
+    case Quantity::temperature:
+      return 1e5;
+    case Quantity::dimensionless:
+      return 1e6;
+    case Quantity::angle:
+      return 1e9;
+    default:
+      return 1e15;
+  }
+}
+
+}  // namespace
+
+double stated_value(std::string_view text, Quantity quantity, const std::string& option, std::string_view bare_unit) {
+  const double value = parse_quantity(text, quantity, option, bare_unit);
+  if (std::abs(value) <= largest(quantity)) return value;
+  throw InputError(fmt::format("{}: '{}' is more than any machine has", option, text),
+                   "check the number and its unit; give a " + std::string(to_string(quantity)) + " such as " +
+                       std::string(example_of(quantity)));
+}
+
+std::uint64_t stated_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, seed);
+  if (error == std::errc{} && last == end) return seed;
+  throw UsageError("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
+}
