@@ -6,7 +6,8 @@
 #include <exception>
 #include <mutex>
 #include <thread>
-#include <vector>
+
+#include "tribofit/ingest/helper_threads.hpp"
 
 namespace tribofit {
 
@@ -34,10 +35,10 @@ void run_tasks(std::size_t count, int threads, Task&& task) {
       }
     }
   };
-  std::vector<std::thread> others;
-  for (std::size_t k = 1; k < std::min(available, count); ++k) others.emplace_back(work);
-  work();
-  for (std::thread& thread : others) thread.join();
+  {
+    const HelperThreads others(std::max<std::size_t>(1, std::min(available, count)) - 1, work);
+    work();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -16,6 +16,7 @@
 
 #include "ingest/huge_pages.hpp"
 #include "row_parser.hpp"
+#include "tribofit/ingest/helper_threads.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -97,8 +98,7 @@ class RowReader {
         threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
     const std::size_t helpers = std::min(available, chunks_) - (chunks_ > 0 ? 1 : 0);
     {
-      std::vector<std::jthread> workers;
-      for (std::size_t i = 0; i < helpers; ++i) workers.emplace_back([this] { work(); });
+      const HelperThreads others(helpers, [this] { work(); });
       work();
     }
     if (failure_) std::rethrow_exception(failure_);

@@ -13,6 +13,7 @@
 #include "contents.hpp"
 #include "ingest/huge_pages.hpp"
 #include "ingest/numbers.hpp"
+#include "tribofit/ingest/helper_threads.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 // After "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements. An element is a tag of type
@@ -285,8 +286,7 @@ class Version5 : public MatContents {
     const std::size_t most =
         threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
     {
-      std::vector<std::jthread> workers;
-      for (std::size_t i = 1; i < std::min(most, jobs.size()); ++i) workers.emplace_back(work);
+      const HelperThreads others(std::max<std::size_t>(1, std::min(most, jobs.size())) - 1, work);
       work();
     }
     for (const std::exception_ptr& failure : failures) {
