@@ -211,6 +211,18 @@ void print_problems(const Campaign& campaign, const BatchOutcome& outcome) {
   if (outcome.stopped) print_error("results can no longer be written: the other runs remain to be done");
 }
 
+/// Says where results that were written are no longer there as they were.
+ExitStatus refuse_replaced(std::size_t missing, const BatchOutcome& outcome, const std::string& results) {
+  const auto unwritten = std::count_if(outcome.ends.begin(), outcome.ends.end(),
+                                       [](const RunEnd& end) { return !end.begun || !end.kept; });
+  if (missing <= static_cast<std::size_t>(unwritten)) return ExitStatus::done;
+  print_error(
+      fmt::format("{}: {} of the results were replaced meanwhile, by another batch with other options; give each "
+                  "batch a folder of its own with --out",
+                  results, missing - static_cast<std::size_t>(unwritten)));
+  return ExitStatus::failed;
+}
+
 ExitStatus status_of(const Campaign& campaign, const BatchOutcome& outcome) {
   const bool none_read = !outcome.ends.empty() && std::all_of(outcome.ends.begin(), outcome.ends.end(), [](auto& end) {
     return end.kept && end.status == RunStatus::unreadable;
@@ -255,6 +267,7 @@ ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const Ident
       const Summarised all = summarise(s, ResultReader(batch.results), shown_as(s, campaign, arguments));
       if (!s.quiet) print(all.summary.table);
       refused = print_refusals(all);
+      refused = worse(refused, refuse_replaced(all.summary.missing, outcome, batch.results));
     }
   } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
     print_error(error.what());

@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -21,32 +23,69 @@ namespace {
 
 constexpr std::size_t kBufferSize = 1 << 18;
 
-/// Temporary names in use, for the handler of a signal: no lock and no memory may be taken there. More files at a time
-/// than there are places are written all the same, only not removed by an interruption.
-std::array<std::atomic<const char*>, 256> unfinished_files{};
-static_assert(std::atomic<const char*>::is_always_lock_free);
+/// A temporary name in use, for the handler of a signal, which touches nothing but this memory: no lock and no memory
+/// may be taken there, and that of a string may just be given back by another thread.
+struct UnfinishedFile {
+  enum State : int { free, changing, taken };
+  std::atomic<int> state{free};
+  std::array<char, 1024> name;
+};
+static_assert(std::atomic<int>::is_always_lock_free);
 
-void enlist(const char* name) {
-  for (auto& place : unfinished_files) {
-    const char* free = nullptr;
-    if (place.compare_exchange_strong(free, name)) return;
+/// More files at a time than there are places, or with longer names, are written all the same, only not removed by an
+/// interruption.
+std::array<UnfinishedFile, 256> unfinished_files;
+
+void enlist(const std::string& name) {
+  if (name.size() >= unfinished_files.front().name.size()) return;
+  for (UnfinishedFile& place : unfinished_files) {
+    int expected = UnfinishedFile::free;
+    if (!place.state.compare_exchange_strong(expected, UnfinishedFile::changing)) continue;
+    std::memcpy(place.name.data(), name.c_str(), name.size() + 1);
+    place.state.store(UnfinishedFile::taken);
+    return;
   }
 }
 
-void strike_off(const char* name) {
-  for (auto& place : unfinished_files) {
-    const char* expected = name;
-    if (place.compare_exchange_strong(expected, nullptr)) return;
+void strike_off(const std::string& name) {
+  for (UnfinishedFile& place : unfinished_files) {
+    if (place.state.load() == UnfinishedFile::taken && name == place.name.data())
+      return place.state.store(UnfinishedFile::free);
   }
 }
 
 constexpr std::string_view kTemporaryEnd = ".part";
 
-/// A name beside the final one that no other process uses, on this machine or another.
+/// This machine, in letters and digits.
+const std::string& own_host() {
+  static const std::string host = [] {
+    std::array<char, 256> name{};
+    if (::gethostname(name.data(), name.size() - 1) != 0) return std::string("host");
+    std::string text(name.data());
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    return text.empty() ? "host" : text;
+  }();
+  return host;
+}
+
+/// A name beside the final one that no other process uses, on this machine or another: with host, process and a number.
 std::string temporary_name(const std::string& target) {
   const std::filesystem::path path(target);
-  const std::string unique = std::to_string(::getpid()) + "-" + std::to_string(std::random_device{}());
+  const std::string unique =
+      own_host() + "-" + std::to_string(::getpid()) + "-" + std::to_string(std::random_device{}());
   return (path.parent_path() / ("." + path.filename().string() + "." + unique + std::string(kTemporaryEnd))).string();
+}
+
+/// Whether a temporary file is of this machine, by its name: a lock says nothing of one that another host writes.
+bool is_of_this_host(std::string_view name) {
+  name.remove_suffix(kTemporaryEnd.size());
+  name.remove_prefix(std::min(name.rfind('.') + 1, name.size()));
+  for (int k = 0; k < 2 && !name.empty(); ++k) {  // the number and the process
+    const std::size_t dash = name.rfind('-');
+    name = dash == std::string_view::npos ? "" : name.substr(0, dash);
+  }
+  return name.empty() || name == own_host();  // an earlier version wrote no host
 }
 
 std::string advice_for(int error) {
@@ -85,7 +124,7 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) 
   if (exists) target_ = std::filesystem::canonical(path_, ignored).string();
   if (target_.empty()) target_ = path_;
   open_temporary(exists ? status.st_mode & 07777U : 0666U);
-  enlist(temporary_.c_str());
+  enlist(temporary_);
 }
 
 void WholeFile::open_temporary(unsigned rights) {
@@ -112,7 +151,7 @@ WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (temporary_.empty()) return;
   ::unlink(temporary_.c_str());
-  strike_off(temporary_.c_str());
+  strike_off(temporary_);
 }
 
 void WholeFile::fail(int error) {
@@ -153,15 +192,14 @@ void WholeFile::commit() {
   finish();
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-  strike_off(temporary_.c_str());
+  strike_off(temporary_);
   temporary_.clear();
   ::close(std::exchange(descriptor_, -1));
 }
 
 void remove_unfinished_files() noexcept {
-  for (const auto& place : unfinished_files) {
-    const char* name = place.load();
-    if (name != nullptr) ::unlink(name);
+  for (const UnfinishedFile& place : unfinished_files) {
+    if (place.state.load() == UnfinishedFile::taken) ::unlink(place.name.data());
   }
 }
 
@@ -169,7 +207,7 @@ void remove_abandoned_files(const std::string& folder) {
   std::error_code error;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (!name.starts_with('.') || !name.ends_with(kTemporaryEnd)) continue;
+    if (!name.starts_with('.') || !name.ends_with(kTemporaryEnd) || !is_of_this_host(name)) continue;
     const int descriptor = ::open(it->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) continue;
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(it->path().c_str());

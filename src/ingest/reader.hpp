@@ -15,7 +15,7 @@ namespace tribofit {
 /// -------------------
 /// 1. A folder or file of its own in ingest/ that declares one `const Reader`, as csv/csv_reader.hpp does.
 /// 2. Its line in the list of reader.cpp, before those that are less particular (CSV takes any text and stands last).
-/// 3. One test in tests/ingest/, on files that the test itself writes, and seeds for the fuzz target in tests/fuzz/.
+/// 3. One test in tests/ingest/, on files that the test itself writes, and a seed in tests/fuzz/write_seeds.cpp.
 /// Units, channels, clocks, steps, continued files and joins then work; nothing else knows of formats.
 ///
 /// A reader says two things:

@@ -10,6 +10,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "report/folder.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -116,6 +119,35 @@ TEST(WholeFile, OnlyAbandonedFilesAreSwept) {
   file.commit();
   EXPECT_EQ(contents(folder.path("a.json")), "whole");
   EXPECT_THAT(folder.names(), ::testing::UnorderedElementsAre(".mine", "a.json", "c.part"));
+}
+
+TEST(WholeFile, FilesOfAnotherHostAreLeftToIt) {
+  const Folder folder;
+  std::ofstream(folder.path(".b.json.node-17.lab-1-2.part")) << "half";  // its lock is not seen here
+  std::string own;
+  {
+    WholeFile file(folder.path("a.json"));
+    for (const std::string& name : folder.names()) {
+      if (name.starts_with(".a.json.")) own = name;
+    }
+  }
+  ASSERT_FALSE(own.empty());
+  std::ofstream(folder.path(own)) << "half";  // as if this process had been killed
+  remove_abandoned_files(folder.path(""));
+  EXPECT_THAT(folder.names(), ::testing::ElementsAre(".b.json.node-17.lab-1-2.part"));
+}
+
+TEST(WholeFile, AnInterruptionRemovesWhatIsUnfinishedAndNothingElse) {
+  const Folder folder;
+  std::vector<std::unique_ptr<WholeFile>> files;
+  for (int k = 0; k < 40; ++k) files.push_back(std::make_unique<WholeFile>(folder.path(std::to_string(k))));
+  for (int k = 0; k < 20; ++k) files[static_cast<std::size_t>(k)]->commit();
+  remove_unfinished_files();
+  EXPECT_EQ(folder.names().size(), 20u);
+  files.clear();
+  WholeFile again(folder.path("again"));
+  remove_unfinished_files();
+  EXPECT_EQ(folder.names().size(), 20u);
 }
 
 TEST(WholeFile, TwoWritersOfOneNameDoNotMix) {

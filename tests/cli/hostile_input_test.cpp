@@ -104,4 +104,34 @@ TEST(AbsurdMachine, LargeValuesAreWrittenAsTheyAre) {
   EXPECT_LT(largest, 6e6) << "a thousand normal numbers of 1e6";
 }
 
+/// A stack of a thread that is larger than the memory of the process: none can be started.
+TEST(HostileInput, AThreadThatCannotBeStartedIsOneLess) {
+  const Workshop shop;
+  shop.write("trace.csv", good_trace());
+  const std::string arguments = "identify --radius 15mm --quiet --threads 4 --json ";
+  ASSERT_EQ(shop.shell(arguments + "all.json trace.csv").status, 0);
+  const Outcome outcome = shop.shell("ulimit -s 4000000; ulimit -v 3000000; " + arguments + "one.json trace.csv");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(contents(shop / "one.json"), contents(shop / "all.json"));
+}
+
+/// Whichever of them ends first: where results of its own are gone, its status says so.
+TEST(HostileInput, TwoBatchesIntoOneFolderDoNotEndAsIfDone) {
+  const Workshop shop;
+  std::filesystem::create_directory(shop / "runs");
+  for (const char* name : {"a", "b", "c", "d"}) shop.write(std::string("runs/") + name + ".csv", good_trace());
+  shop.shell(
+      "identify --radius 15mm --law coulomb --out r runs > one.txt 2> one.err & first=$!\n"
+      "identify --radius 15mm --law fractional --out r runs > two.txt 2> two.err; echo $? > two.status\n"
+      "wait $first; echo $? > one.status");
+  for (const char* batch : {"one", "two"}) {
+    const std::string status = contents(shop / (std::string(batch) + ".status"));
+    const std::string table = contents(shop / (std::string(batch) + ".txt"));
+    ASSERT_THAT(status, ::testing::AnyOf("0\n", "1\n"));
+    const bool done = status == "0\n";
+    EXPECT_EQ(done, table.find("missing") == std::string::npos) << batch << ": " << table;
+    EXPECT_EQ(done, contents(shop / (std::string(batch) + ".err")).find("replaced meanwhile") == std::string::npos);
+  }
+}
+
 }  // namespace
