@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tribofit/ingest/helper_threads.hpp"
+#include "tribofit/statistics/helper_threads.hpp"
 
 namespace tribofit {
 

@@ -16,8 +16,8 @@
 
 #include "ingest/huge_pages.hpp"
 #include "row_parser.hpp"
-#include "tribofit/ingest/helper_threads.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/helper_threads.hpp"
 
 namespace tribofit {
 namespace {

@@ -13,8 +13,8 @@
 #include "contents.hpp"
 #include "ingest/huge_pages.hpp"
 #include "ingest/numbers.hpp"
-#include "tribofit/ingest/helper_threads.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/helper_threads.hpp"
 
 // After "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements. An element is a tag of type
 // and size, its bytes, and zeros up to a multiple of eight. A variable is an element "matrix": flags, sizes, name,
