@@ -123,12 +123,23 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
   return item;
 }
 
-HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step) {
+HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step,
+                           const LowPass& restick) {
   const Band a = band_of(friction, step);
   HealthItem item{health_check::kBandwidth, Status::ok, describe("friction", a)};
-  const Band b = velocity.empty() ? Band{} : band_of(velocity, step);
+  Band b = velocity.empty() ? Band{} : band_of(velocity, step);
+  // A smooth motion has a steep spectrum: where v_r comes to rest at once, there is no filter.
+  if (restick.slips > 0 && !restick.is_filter) b.corner = 0;
   if (!velocity.empty()) item.message += "; " + describe("velocity", b);
   item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
+  if (restick.is_filter) {
+    item.status = Status::problem;
+    item.message += fmt::format(
+        "; v_r trails off at re-stick as behind a low-pass of {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not those "
+        "of the contact, a bandwidth of {:.2g} Hz is needed",
+        restick.corner(), restick.slips, restick.corner() * restick.at_restick / kKinkHarmless);
+    return item;
+  }
   const double low = lowest_pass(a), other = lowest_pass(b);
   if (low == 0 && other == 0) return item;
   item.status = Status::warning;

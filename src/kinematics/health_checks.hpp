@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "high_pass.hpp"
+#include "lost_samples.hpp"
+#include "low_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
 #include "recording_faults.hpp"
@@ -46,13 +48,17 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
                           const Resting& resting, SpoiltSamples& spoilt);
 
 /// Gaps in time, what was spoilt, and stretches in which both channels stand still.
-HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt);
+/// plateaus: of stick.
+HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, const LostSamples& lost,
+                           std::size_t plateaus);
 
 /// What became of the high-pass search. `declared` is the declared corner, if any.
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks);
 
 /// Frequency up to which friction and velocity rise above their floor, and whether they are filtered above it.
-HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step);
+/// restick: what v_r shows where it comes to rest.
+HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step,
+                           const LowPass& restick);
 
 /// Time between re-stick in the velocity and the jump of friction there, averaged over slips. `plateaus` are in blocks
 /// of `factor` samples of `relative_velocity`.

@@ -59,6 +59,23 @@ inline constexpr double kErrorAfterHighPass = 1e-3;
 /// Standard error of the creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
 inline constexpr double kErrorOfCreep = 0.5;
 
+// ---- low-pass of the velocity
+
+/// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the
+/// second (a cubic follows it), of slips that reach the third.
+inline constexpr double kKinkFrom = 0.2, kKinkDown = 0.02, kKinkSlip = 0.5;
+/// Samples over which it falls: fewer show no kink, of more every other will do. Slips looked at.
+inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
+/// Time constants tried [samples], each so many times the one before.
+inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35;
+/// What v_r reads at re-stick over the fastest: alpha is off by some five times as much; what does not matter.
+inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;
+/// Squares that a kink leaves over those a filter leaves, and what the filter may leave over the reading: a contact
+/// that rings there is no filter.
+inline constexpr double kKinkExplained = 2.5, kKinkLeft = 0.08;
+/// How far v_r may go beyond rest, over the reading and over the noise: a filter does not, a contact that yields does.
+inline constexpr double kKinkBeyond = 0.1, kKinkNoise = 4;
+
 // ---- v_r as measured
 
 /// How far from zero it may rest in stick, over its largest excursion: creep stays below. alpha is off by some eight
@@ -66,6 +83,25 @@ inline constexpr double kErrorOfCreep = 0.5;
 inline constexpr double kZeroPart = 0.005;
 /// How far its mean may be from omega r: the block is where it was but for a part of a slip length.
 inline constexpr double kGainOff = 0.1;
+/// And from where on it is worth a word: a slip more at one end than at the other makes less of a record of a minute.
+inline constexpr double kGainWarned = 0.03;
+
+// ---- zero of v_b
+
+/// Mean v_b of a block that goes nowhere, over the plateau: a smaller one moves alpha by less than its error; a larger
+/// one belongs to a block that nothing holds.
+inline constexpr double kLeastZero = 0.002, kLargestZero = 0.5;
+/// How nearly the plateau is off omega r by as much, over the mean, where it is the zero: a compressed slip leaves the
+/// plateau where it is.
+inline constexpr double kZeroAgrees = 0.1;
+
+// ---- steps of the disc's speed
+
+/// A step over the speed, which the settled disc does not exceed; over the scatter of the plateaus on either side, and
+/// over their trend (a ripple or a drift moves within either side by half of what it moves between them).
+inline constexpr double kLeastStep = 2 * kSettled, kClearStep = 8, kSteepStep = 4;
+/// Part of the record beside the plateaus of one level in which others are looked for.
+inline constexpr double kStepPart = 0.1;
 
 // ---- steps of a converter
 
@@ -74,10 +110,21 @@ inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLe
 /// Part of the distances between levels that are whole numbers of the smallest, and how nearly.
 inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05;
 /// Steps of friction over its range that show in a fit.
-inline constexpr double kCoarseStep = 0.01;
+inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03;
 /// Steps of velocity over the fastest from which alpha is off by more than its error (at 4 % by 2 %, at 1 % by
 /// nothing).
-inline constexpr double kTooCoarse = 0.02;
+inline constexpr double kTooCoarse = 0.015;
+
+// ---- samples that are missing
+
+/// Change of the velocity within a sample over its noise that is seen, and over the changes beside it: a motion whose
+/// slip has ten samples changes by a third more.
+inline constexpr double kJumpNoise = 12, kJumpOver = 1.6;
+/// How nearly changes are alike where the motion is smooth.
+inline constexpr double kJumpSmooth = 0.3;
+/// Jumps in all and per plateau: a blow on the rig now and then is no lost sample.
+inline constexpr std::size_t kFewestJumps = 5;
+inline constexpr double kJumpsPerPlateau = 0.1;
 
 // ---- faults of the recording
 
@@ -86,9 +133,9 @@ inline constexpr double kTooCoarse = 0.02;
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
 /// Samples of markers that are not repeated exactly: a slip of more samples is a slip.
 inline constexpr std::size_t kWidestSpike = 2;
-/// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range. Nearer
-/// ones are as likely noise; leaving those out would bias the floor.
-inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05;
+/// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
+/// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the floor.
+inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;
 /// Part of the range by which the other channel changes where a lone sample is a slip: friction falls by most of it.
 inline constexpr double kSlipOfSamples = 0.3;
 /// Samples of one value in a row that a channel with noise and fine steps cannot hold; of zeros, a loose plug's value,
@@ -101,12 +148,12 @@ inline constexpr std::size_t kShortestStretch = 16;
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
 
 /// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range.
-inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 32;
+inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet, the second (where a block sticks and slips, so that nothing else holds it) does not.
 inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6;
 /// Noise at the limit over that elsewhere, below which it is the limit that holds the channel still.
-inline constexpr double kQuiet = 0.5;
+inline constexpr double kQuiet = 0.7;
 /// Samples at a limit: fewer do not bear on a fit.
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000;
 /// Samples between two at the limit that are taken for clipped too (noise brings them below it), and beside a stretch.

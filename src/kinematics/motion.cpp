@@ -11,11 +11,14 @@
 #include "disc_ripple.hpp"
 #include "health_checks.hpp"
 #include "high_pass.hpp"
+#include "motion_channels.hpp"
+#include "net_displacement.hpp"
 #include "plateau.hpp"
 #include "plateau_ratio.hpp"
 #include "plateau_search.hpp"
 #include "resolution.hpp"
 #include "ripple.hpp"
+#include "speed_steps.hpp"
 #include "spoilt_samples.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
@@ -30,54 +33,6 @@ using kinematics::PlateauSearch;
 using kinematics::RecordedPlateau;
 using kinematics::RippleEstimate;
 using kinematics::StickPlateau;
-
-void require_channels(const Trace& trace) {
-  const std::size_t n = trace.size();
-  const InputLocation where{trace.path, 0, ""};
-  if (n < 2) throw InputError("the trace has fewer than two samples", "give a longer record", where);
-  if (trace.friction.size() != n)
-    throw InputError("the trace has no friction for every sample", "name the friction column", where);
-  if (trace.velocity_kind != VelocityKind::fixed_block && trace.velocity.size() != n) {
-    throw InputError("the trace has no velocity for every sample",
-                     "name the column with --columns v_b=NAME or v_r=NAME", where);
-  }
-}
-
-void take_conditions_from_instruments(Conditions& conditions, const Instruments::Rig& rig) {
-  const auto take = [](Condition& condition, const std::optional<Declared>& declared) {
-    if (!condition.known() && declared) condition = {declared->value, "instruments"};
-  };
-  take(conditions.radius, rig.radius);
-  take(conditions.speed, rig.speed);
-  take(conditions.load, rig.load);
-}
-
-template <class T>
-void drop_ends(std::vector<T>& channel, std::size_t head, std::size_t tail) {
-  if (channel.empty()) return;
-  channel.resize(channel.size() - tail);
-  if (head > 0) channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(head));
-}
-
-std::vector<Step> steps_within(const std::vector<Step>& steps, std::size_t head, std::size_t size) {
-  std::vector<Step> kept;
-  for (Step step : steps) {
-    step.begin = step.begin > head ? step.begin - head : 0;
-    step.end = std::min(step.end > head ? step.end - head : 0, size);
-    if (step.begin < step.end) kept.push_back(std::move(step));
-  }
-  return kept;
-}
-
-// v_r in the place of v_b.
-void make_relative(std::vector<double>& velocity, const Disc& disc) {
-  if (disc.varying.empty()) {
-    const double constant = disc.constant;
-    for (double& v : velocity) v = constant - v;
-  } else {
-    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = disc.varying[i] - velocity[i];
-  }
-}
 
 // A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
 bool is_useless(const Trace& trace) {
@@ -97,6 +52,8 @@ class MotionStages {
   void find_plateau();
   void find_direction();
   void undo_high_pass();
+  void find_zero();
+  void find_speed_steps();
   void take_speed_from_plateau();
   void undo_ripple();
   void check_clipping();
@@ -115,6 +72,7 @@ class MotionStages {
   std::size_t run_up() const;
   Plateaus plateaus_in_motion() const;
   HealthItem check_level() const;
+  double taken_off() const { return zero_.kind == kinematics::BlockZero::Kind::zero ? zero_.mean.value : 0; }
 
   Trace trace_;
   const Instruments& instruments_;
@@ -126,16 +84,17 @@ class MotionStages {
   kinematics::RangeEnds range_ends_;
   kinematics::RecordedSteps steps_;  ///< of a coarse converter
   HealthItem clipping_, drop_outs_;
-  kinematics::Ends lost_;  ///< to the corrections
-
+  kinematics::Ends lost_;  ///< to corrections
   Disc disc_;
   bool speed_was_stated_ = false;
   PlateauSearch search_;
   bool is_reversed_ = false;
   std::optional<double> declared_high_pass_;
   HighPassEstimate sag_;
-  double plateau_ = 0;  ///< of v_b, or of v_r where that was measured, towards which the record tends [m/s]
+  double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
   std::optional<RecordedPlateau> recorded_;
+  kinematics::BlockZero zero_;
+  std::vector<kinematics::SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
   RippleEstimate ripple_;
   bool undoes_ripple_ = false;
   std::size_t run_up_ = 0;
@@ -143,8 +102,8 @@ class MotionStages {
 
 MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
     : trace_(std::move(trace)), instruments_(instruments), options_(options) {
-  require_channels(trace_);
-  take_conditions_from_instruments(trace_.conditions, instruments.rig);
+  kinematics::require_channels(trace_);
+  kinematics::take_conditions_from_instruments(trace_.conditions, instruments.rig);
   if (trace_.steps.empty()) trace_.steps.push_back({0, trace_.size(), "", {}});
   motion_.step = trace_.interval();
   motion_.friction_kind = trace_.friction_kind;
@@ -207,6 +166,36 @@ void MotionStages::undo_high_pass() {
   find_plateau();
 }
 
+/// A block on a spring goes nowhere: what v_b is on average is an error of the reading.
+void MotionStages::find_zero() {
+  if (!speed_is_constant() || motion_.high_pass > 0 || spoilt_->any()) return;
+  if (is_block() && search_.sticks) zero_ = kinematics::find_zero(trace_, search_, disc_, steps_.velocity);
+  if (trace_.velocity_kind == VelocityKind::relative && !search_.sticks)
+    zero_ = kinematics::find_zero_of_relative(trace_, search_, disc_);
+  if (zero_.kind != kinematics::BlockZero::Kind::zero) return;
+  for (double& v : trace_.velocity) v -= zero_.mean.value;
+  motion_.notes.push_back(fmt::format("velocity: its zero was off by {:.4g} mm/s, taken off", 1e3 * zero_.mean.value));
+  find_plateau();
+}
+
+/// A disc that changes its speed at once, which no channel and no condition says.
+void MotionStages::find_speed_steps() {
+  if (!is_block() || !search_.sticks || !speed_is_constant() || trace_.disc_speed.size() == trace_.size()) return;
+  speed_levels_ = kinematics::find_speed_levels(search_);
+  if (speed_levels_.empty()) return;
+  disc_.varying = kinematics::stepped_speed(speed_levels_, search_.blocks.length, trace_.size());
+  disc_.known = true;
+  disc_.largest = kinematics::largest_of(disc_.varying);
+  for (const kinematics::SampleSpan& change : kinematics::changes_between(speed_levels_, search_.blocks.length)) {
+    spoilt_->add_unknown(change);
+  }
+  if (trace_.conditions.radius.known()) {
+    trace_.disc_speed = disc_.varying;
+    for (double& w : trace_.disc_speed) w /= trace_.conditions.radius.value;
+  }
+  find_plateau();
+}
+
 /// Speed from the plateau where nobody said it.
 void MotionStages::take_speed_from_plateau() {
   plateau_ = search_.sticks ? kinematics::final_level(search_.plateaus) : 0;
@@ -254,7 +243,10 @@ void MotionStages::check_clipping() {
   if (is_block() && search_.sticks && speed_is_constant()) spoilt_->add_standstill(search_, plateau_, trace_);
   clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
                                          {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
-  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_);
+  const bool can_jump = search_.sticks && clipping_.status == HealthItem::Status::ok;
+  const auto lost = can_jump ? kinematics::find_lost_samples(trace_, std::max(search_.noise, steps_.velocity))
+                             : kinematics::LostSamples{};
+  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size());
   motion_.faults = spoilt_->take();
 }
 
@@ -266,7 +258,7 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
         speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
     if (unknown) return std::nullopt;
     const Extremes disc = speed_is_constant() ? Extremes{disc_.constant, disc_.constant} : extremes(disc_.varying);
-    levels = {disc.low, disc.high};
+    levels = {disc.low + taken_off(), disc.high + taken_off()};
   }
   const auto& vibrometer = instruments_.vibrometer;
   const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
@@ -292,12 +284,12 @@ void MotionStages::make_relative_motion() {
   run_up_ = run_up();
   const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
   if (undoes_ripple_) kinematics::impose_ripple(trace_, disc_, ripple_, kinematics::steady_speed(trace_));
-  if (is_block()) make_relative(trace_.velocity, disc_);
+  if (is_block()) kinematics::make_relative(trace_.velocity, disc_);
   for (auto* channel : {&trace_.time, &trace_.friction, &trace_.velocity, &trace_.load, &trace_.temperature,
                         &trace_.disc_speed, &trace_.disc_angle, &disc_.varying}) {
-    drop_ends(*channel, head, lost_.tail);
+    kinematics::drop_ends(*channel, head, lost_.tail);
   }
-  drop_ends(motion_.faults, head, lost_.tail);
+  kinematics::drop_ends(motion_.faults, head, lost_.tail);
   motion_.trimmed = head;
   motion_.time = std::move(trace_.time);
   motion_.friction = std::move(trace_.friction);
@@ -308,7 +300,7 @@ void MotionStages::make_relative_motion() {
   motion_.disc_angle = std::move(trace_.disc_angle);
   motion_.disc_velocity = std::move(disc_.varying);
   motion_.conditions = trace_.conditions;
-  motion_.steps = steps_within(trace_.steps, head, motion_.size());
+  motion_.steps = kinematics::steps_within(trace_.steps, head, motion_.size());
 }
 
 void MotionStages::settle_signs_and_levels() {
@@ -339,11 +331,15 @@ void MotionStages::check_health() {
   const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
   const std::span<const double> velocity =
       velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
+  const auto restick =
+      motion_.sticks && velocity_was_measured
+          ? kinematics::find_low_pass(velocity, motion_.plateau_velocity, motion_.velocity_noise, motion_.step)
+          : kinematics::LowPass{};
   motion_.health = {
       std::move(clipping_),
       std::move(drop_outs_),
       kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
-      kinematics::check_bandwidth(motion_.friction, velocity, motion_.step),
+      kinematics::check_bandwidth(motion_.friction, velocity, motion_.step, restick),
       kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length),
       kinematics::check_revolutions(motion_),
       kinematics::check_speed_ripple(motion_, ripple_),
@@ -356,10 +352,16 @@ void MotionStages::check_health() {
 HealthItem MotionStages::check_level() const {
   const bool can_be_held = motion_.sticks || motion_.constant_disc_velocity != 0;
   if (motion_.velocity_kind == VelocityKind::relative && can_be_held) {
-    return kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
+    HealthItem item = kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
+    kinematics::add_zero(zero_, true, item);
+    return item;
   }
-  return kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_, motion_.conditions.radius.known(),
-                                         recorded_);
+  const double stated = speed_was_stated_ ? disc_.constant : 0;
+  if (!speed_levels_.empty()) return kinematics::check_speed_steps(motion_, speed_levels_, search_.blocks, stated);
+  HealthItem item = kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_,
+                                                    motion_.conditions.radius.known(), recorded_);
+  kinematics::add_zero(zero_, speed_was_stated_, item);
+  return item;
 }
 
 void MotionStages::compare_plateau() {
@@ -382,6 +384,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   stages.find_plateau();
   stages.find_direction();
   stages.undo_high_pass();
+  stages.find_zero();
+  stages.find_speed_steps();
   stages.take_speed_from_plateau();
   stages.undo_ripple();
   stages.check_clipping();

@@ -146,7 +146,8 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   return item;
 }
 
-HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt) {
+HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, const LostSamples& lost,
+                           std::size_t plateaus) {
   const std::size_t n = trace.size();
   if (n < 16) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
   const double step = trace.interval();
@@ -163,9 +164,11 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt) {
     for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
     return item;
   }
-  if (gaps.count == 0 && spoilt_by.empty()) return item;
+  const bool loses =
+      lost.jumps >= kFewestJumps && static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
+  if (gaps.count == 0 && spoilt_by.empty() && !loses) return item;
   const auto faults = static_cast<double>(gaps.count + spoilt.spikes());
-  const bool many = faults > 1e-3 * static_cast<double>(n) || spoilt.frozen_part() > 0.05;
+  const bool many = loses || faults > 1e-3 * static_cast<double>(n) || spoilt.frozen_part() > 0.05;
   item.status = many ? Status::problem : Status::warning;
   item.message.clear();
   if (gaps.count > 0) {
@@ -173,6 +176,12 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt) {
                                1e3 * gaps.longest, 1e3 * step);
   }
   for (const std::string& sentence : spoilt_by) item.message += (item.message.empty() ? "" : "; ") + sentence;
+  if (loses) {
+    item.message += fmt::format(
+        "{}the velocity jumps {} times where the clock does not (in {:.2g} % of its fast intervals): samples were lost "
+        "and the clock was rewritten; the frequency and all times are unreliable",
+        item.message.empty() ? "" : "; ", lost.jumps, 100 * lost.part);
+  }
   return item;
 }
 

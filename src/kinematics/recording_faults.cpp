@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limits.hpp"
+#include "resolution.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -60,8 +61,9 @@ std::vector<SampleSpan> find_spikes(std::span<const double> x, std::span<const d
   const std::size_t stride = std::max<std::size_t>(1, x.size() / 8192);
   std::vector<double> usual;
   for (std::size_t i = 1; i + 1 < x.size(); i += stride) usual.push_back(std::abs(off_line(x, i)));
-  const double far = std::max(kSpikeSigmas * kSigmaPerMad * median(std::move(usual)),
-                              kSpikeDepth * (chunks.whole.high - chunks.whole.low));
+  const double far =
+      std::max(kSpikeSigmas * kSigmaPerMad * median(std::move(usual)),
+               std::max(kSpikeDepth * (chunks.whole.high - chunks.whole.low), kSpikeSteps * find_resolution(x)));
   std::vector<SampleSpan> spikes;
   for (std::size_t c = 0; c < chunks.part.size(); ++c) {
     const std::size_t begin = std::max<std::size_t>(1, c * Chunks::length);

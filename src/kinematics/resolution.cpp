@@ -57,6 +57,10 @@ HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, doubl
   if (steps.friction > kCoarseStep * steps.friction_range) {
     coarse(fmt::format("friction is recorded in steps of {:.3g}{}: the rounding is part of the noise floor",
                        steps.friction, kind == FrictionKind::force ? " N" : ""));
+    if (steps.friction > kTooCoarseFriction * steps.friction_range) {
+      item.status = HealthItem::Status::problem;
+      item.message += "; mu_k and alpha are at stake";
+    }
   }
   return item;
 }

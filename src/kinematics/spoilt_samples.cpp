@@ -101,18 +101,20 @@ void SpoiltSamples::add_standstill(const PlateauSearch& search, double plateau, 
       static_cast<double>(runs.back().begin - runs.front().begin) / static_cast<double>(runs.size() - 1);
   const std::vector<double>& v = search.blocks.mean;
   const auto stands = [&](double mean) { return std::abs(mean) < kStandstillPart * std::abs(plateau); };
-  const auto head = static_cast<std::size_t>(std::find_if_not(v.begin(), v.end(), stands) - v.begin());
-  const auto tail = static_cast<std::size_t>(std::find_if_not(v.rbegin(), v.rend(), stands) - v.rbegin());
-  const auto leave_out = [&](SampleSpan span) {
-    for (const std::uint8_t kind : {SampleFault::friction, SampleFault::velocity, SampleFault::stretch}) {
-      mark({span}, kind);
-    }
-    sentences_.push_back(fmt::format("the machine stands still from {:.4g} s to {:.4g} s (left out)",
-                                     trace.time[span.begin], trace.time[span.end - 1]));
-  };
   const std::size_t length = search.blocks.length;
-  if (static_cast<double>(head) > kStandstillPeriods * period) leave_out({0, head * length});
-  if (static_cast<double>(tail) > kStandstillPeriods * period) leave_out({(v.size() - tail) * length, size_});
+  for (std::size_t begin = 0; begin < v.size();) {
+    std::size_t end = begin;
+    while (end < v.size() && stands(v[end])) ++end;
+    if (static_cast<double>(end - begin) > kStandstillPeriods * period) {
+      const SampleSpan span{begin * length, end == v.size() ? size_ : end * length};
+      // The machine stops and starts again over a cycle or so.
+      const auto beside = static_cast<std::size_t>(period) * length;
+      mark({{span.begin - std::min(span.begin, beside), std::min(size_, span.end + beside)}}, SampleFault::any);
+      sentences_.push_back(fmt::format("the machine stands still from {:.4g} s to {:.4g} s (left out)",
+                                       trace.time[span.begin], trace.time[span.end - 1]));
+    }
+    begin = end + 1;
+  }
 }
 
 double SpoiltSamples::frozen_part() const {

@@ -21,9 +21,13 @@ class SpoiltSamples {
   /// Samples at a limit of the range of a channel (SampleFault::friction or velocity); they keep their values.
   void add_clipped(const std::vector<SampleSpan>& spans, std::uint8_t kind) { mark(spans, kind); }
 
-  /// A machine that stands still before or after it stick-slips. `plateau`: where v_b rests in stick [m/s].
+  /// A machine that stands still before, after or while it stick-slips. `plateau`: where v_b rests in stick [m/s].
   void add_standstill(const PlateauSearch& search, double plateau, const Trace& trace);
 
+  /// A stretch in which the motion is not known for another reason.
+  void add_unknown(const SampleSpan& span) { mark({span}, SampleFault::any); }
+
+  bool any() const { return !faults_.empty(); }
   /// Longest stretch in which neither channel changed.
   const SampleSpan& longest_still() const { return still_; }
   std::size_t spikes() const { return spikes_; }

@@ -1,0 +1,34 @@
+#include "lost_samples.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limits.hpp"
+
+namespace tribofit::kinematics {
+
+LostSamples find_lost_samples(const Trace& trace, double noise) {
+  LostSamples lost;
+  const std::vector<double>& v = trace.velocity;
+  const double step = trace.interval(), least = kJumpNoise * noise;
+  std::size_t looked_at = 0;
+  const auto smooth = [](double a, double b) {
+    return std::abs(a - b) < kJumpSmooth * std::max(std::abs(a), std::abs(b));
+  };
+  for (std::size_t i = 2; i + 3 < v.size(); ++i) {
+    const double here = v[i + 1] - v[i];
+    if (!(std::abs(here) > least) || trace.time[i + 1] - trace.time[i] > 1.5 * step) continue;
+    const std::array<double, 4> beside = {v[i - 1] - v[i - 2], v[i] - v[i - 1], v[i + 2] - v[i + 1],
+                                          v[i + 3] - v[i + 2]};
+    double most = 0;
+    for (const double change : beside) most = std::max(most, std::abs(change));
+    const bool moves_on = most > least && smooth(beside[0], beside[1]) && smooth(beside[2], beside[3]);
+    looked_at += moves_on ? 1U : 0U;
+    if (std::abs(here) > kJumpOver * std::max(most, 0.5 * least)) ++lost.jumps;
+  }
+  if (looked_at > 0) lost.part = std::min(1.0, static_cast<double>(lost.jumps) / static_cast<double>(looked_at));
+  return lost;
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+#include "tribofit/ingest/trace.hpp"
+
+namespace tribofit::kinematics {
+
+/// Samples that are missing though the clock does not show it: between two samples the velocity changes by far more
+/// than before and after, where no real motion jumps.
+struct LostSamples {
+  std::size_t jumps = 0;
+  double part = 0;  ///< of the intervals in which the velocity changes fast enough to show it
+};
+
+/// noise: of the velocity [m/s]. Cost: one pass.
+LostSamples find_lost_samples(const Trace& trace, double noise);
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "plateau_search.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/instruments.hpp"
+#include "tribofit/ingest/trace.hpp"
+
+// What becomes of the channels of a trace when they become those of a motion.
+
+namespace tribofit::kinematics {
+
+/// Throws InputError where the trace cannot be made a motion.
+inline void require_channels(const Trace& trace) {
+  const std::size_t n = trace.size();
+  const InputLocation where{trace.path, 0, ""};
+  if (n < 2) throw InputError("the trace has fewer than two samples", "give a longer record", where);
+  if (trace.friction.size() != n)
+    throw InputError("the trace has no friction for every sample", "name the friction column", where);
+  if (trace.velocity_kind != VelocityKind::fixed_block && trace.velocity.size() != n) {
+    throw InputError("the trace has no velocity for every sample",
+                     "name the column with --columns v_b=NAME or v_r=NAME", where);
+  }
+}
+
+inline void take_conditions_from_instruments(Conditions& conditions, const Instruments::Rig& rig) {
+  const auto take = [](Condition& condition, const std::optional<Declared>& declared) {
+    if (!condition.known() && declared) condition = {declared->value, "instruments"};
+  };
+  take(conditions.radius, rig.radius);
+  take(conditions.speed, rig.speed);
+  take(conditions.load, rig.load);
+}
+
+template <class T>
+void drop_ends(std::vector<T>& channel, std::size_t head, std::size_t tail) {
+  if (channel.empty()) return;
+  channel.resize(channel.size() - tail);
+  if (head > 0) channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(head));
+}
+
+inline std::vector<Step> steps_within(const std::vector<Step>& steps, std::size_t head, std::size_t size) {
+  std::vector<Step> kept;
+  for (Step step : steps) {
+    step.begin = step.begin > head ? step.begin - head : 0;
+    step.end = std::min(step.end > head ? step.end - head : 0, size);
+    if (step.begin < step.end) kept.push_back(std::move(step));
+  }
+  return kept;
+}
+
+/// v_r in the place of v_b.
+inline void make_relative(std::vector<double>& velocity, const Disc& disc) {
+  if (disc.varying.empty()) {
+    const double constant = disc.constant;
+    for (double& v : velocity) v = constant - v;
+  } else {
+    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = disc.varying[i] - velocity[i];
+  }
+}
+
+}  // namespace tribofit::kinematics

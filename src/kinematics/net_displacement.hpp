@@ -1,0 +1,31 @@
+#pragma once
+
+#include "plateau_search.hpp"
+#include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/health.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
+
+namespace tribofit::kinematics {
+
+/// What v_b is on average, from stick to stick. The block hangs on a spring and goes nowhere, so that it is zero. A
+/// wrong zero of the vibrometer shifts the plateau by as much; where the plateau is right, slips are read wrongly.
+struct BlockZero {
+  enum class Kind {
+    none,    ///< zero within its error, or not to be had
+    zero,    ///< the plateau is off omega r by as much
+    uneven,  ///< the plateau is not, or omega r is not known
+  };
+  Kind kind = Kind::none;
+  Estimate mean;  ///< [m/s]
+};
+
+/// step: of the converter [m/s]; 0: fine. Cost: one pass.
+BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step);
+
+/// The same of a v_r that was measured and rests nowhere: a plateau is off zero by as much as the mean is off omega r.
+BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search, const Disc& disc);
+
+/// Adds what was found to the check of the plateau.
+void add_zero(const BlockZero& zero, bool speed_was_stated, HealthItem& item);
+
+}  // namespace tribofit::kinematics
