@@ -85,19 +85,24 @@ std::string table_and_facts(const ColumnListing& listing, const std::string& pat
   return text;
 }
 
-/// What keeps the columns from making a trace at this radius [m] (0: not stated); empty where nothing does.
-std::string obstacle_to(const ColumnListing& listing, const std::string& path, double radius) {
+/// How the columns make a trace.
+struct Trial {
+  std::string obstacle;       ///< what keeps them from it; empty where nothing does
+  bool needs_radius = false;  ///< it is not stated in the file
+};
+
+Trial try_columns(const ColumnListing& listing, const std::string& path, double radius) {
   ReadOptions options;
   options.columns = listing.selected;
   if (radius > 0) options.conditions.radius = {radius, "command line"};
   try {
     const Trace trace = read_trace(path, options);
-    if (trace.velocity_kind == VelocityKind::relative) return "";
-    const bool has_radius = std::any_of(trace.steps.begin(), trace.steps.end(),
-                                        [](const Step& step) { return step.conditions.radius.known(); });
-    return trace.conditions.radius.known() || has_radius ? "" : "the friction radius is not stated";
+    const bool stated =
+        trace.conditions.radius.known() || std::any_of(trace.steps.begin(), trace.steps.end(),
+                                                       [](const Step& step) { return step.conditions.radius.known(); });
+    return {"", radius > 0 || (!stated && trace.velocity_kind != VelocityKind::relative)};
   } catch (const InputError& error) {
-    return error.problem() + "; " + error.advice();
+    return {error.problem() + "; " + error.advice(), true};
   }
 }
 
@@ -126,17 +131,15 @@ std::string missing_columns(const ColumnListing& listing) {
 std::string next_step(const ColumnListing& listing, const std::string& path) {
   if (!listing.missing.empty()) return missing_columns(listing);
   constexpr double kExample = 0.015;
-  const bool without_radius = obstacle_to(listing, path, 0).empty();
-  if (!without_radius) {
-    const std::string obstacle = obstacle_to(listing, path, kExample);
-    if (!obstacle.empty()) return "\nThese columns make no trace yet: " + printable(obstacle) + "\n";
-  }
+  Trial trial = try_columns(listing, path, 0);
+  if (!trial.obstacle.empty()) trial = try_columns(listing, path, kExample);
+  if (!trial.obstacle.empty()) return "\nThese columns make no trace yet: " + printable(trial.obstacle) + "\n";
   std::vector<std::string> examples;
-  if (!without_radius) examples.emplace_back("15mm for the friction radius of your machine");
+  if (trial.needs_radius) examples.emplace_back("15mm for the friction radius of your machine");
   for (const std::string& unit : listing.assumed) examples.push_back(unit + ", whose unit the file does not state");
   return fmt::format("\nNext{}:\n  identify{} --columns {} {}\n",
                      examples.empty() ? "" : ", where you must check " + listed(examples),
-                     without_radius ? "" : " --radius 15mm", shell_quoted(listing.selection), shell_quoted(path));
+                     trial.needs_radius ? " --radius 15mm" : "", shell_quoted(listing.selection), shell_quoted(path));
 }
 
 }  // namespace

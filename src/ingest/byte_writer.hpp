@@ -30,6 +30,7 @@ class ByteWriter {
     return *this;
   }
   ByteWriter& raw(std::string_view value) {
+    if (bytes_.capacity() - bytes_.size() < value.size()) bytes_.reserve(2 * bytes_.size() + value.size());
     bytes_ += value;
     return *this;
   }

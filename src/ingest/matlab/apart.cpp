@@ -9,11 +9,14 @@
 #include <sys/prctl.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "ingest/byte_cursor.hpp"
@@ -27,19 +30,27 @@ constexpr rlim_t longest = 120;  // [s] of processor time
 
 enum class Answer : std::uint8_t { bytes, refused, no_memory };
 
-/// What the process answers: what it is, then the bytes, or the parts of the error.
-std::string answer_of(const std::function<std::string()>& work) {
+/// What the process answers: the bytes, or the parts of the error.
+std::pair<Answer, std::string> answer_of(const std::function<std::string()>& work) {
   try {
-    const std::string bytes = work();
-    return ByteWriter().number(Answer::bytes).take() + bytes;
+    return {Answer::bytes, work()};
   } catch (const InputError& error) {
     ByteWriter out;
-    out.number(Answer::refused).text(error.problem()).text(error.advice());
-    out.text(error.where().file).text(error.where().column);
-    return out.take();
+    out.text(error.problem()).text(error.advice()).text(error.where().file).text(error.where().column);
+    return {Answer::refused, out.take()};
   } catch (const std::bad_alloc&) {
-    return ByteWriter().number(Answer::no_memory).take();
+    return {Answer::no_memory, {}};
   }
+}
+
+bool send(int pipe, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(pipe, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
 }
 
 /// The end of this process, which is the child: it leaves nothing of what the parent has half done.
@@ -53,29 +64,43 @@ std::string answer_of(const std::function<std::string()>& work) {
   ::setrlimit(RLIMIT_CPU, &time);
   int status = EXIT_FAILURE;
   try {
-    const std::string bytes = answer_of(work);
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t count = ::write(pipe, bytes.data() + done, bytes.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) break;
-      done += static_cast<std::size_t>(count);
-    }
-    if (done == bytes.size()) status = EXIT_SUCCESS;
+    const auto [answer, bytes] = answer_of(work);
+    const std::string head = ByteWriter().number(answer).number(static_cast<std::uint64_t>(bytes.size())).take();
+    if (send(pipe, head) && send(pipe, bytes)) status = EXIT_SUCCESS;
   } catch (...) {  // nobody is left to be told
   }
   ::_exit(status);
 }
 
-std::string read_to_end(int pipe) {
+/// What comes through the pipe until its end. `expected`: bytes for which there is room at once.
+std::string receive(int pipe, std::size_t expected, std::size_t most) {
   std::string bytes;
+  bytes.reserve(expected);
   std::array<char, 1 << 16> part;
-  while (true) {
-    const ssize_t count = ::read(pipe, part.data(), part.size());
+  while (bytes.size() < most) {
+    const ssize_t count = ::read(pipe, part.data(), std::min(part.size(), most - bytes.size()));
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return bytes;
+    if (count <= 0) break;
     bytes.append(part.data(), static_cast<std::size_t>(count));
   }
+  return bytes;
+}
+
+/// What the process answered; nothing where it broke off.
+struct Reply {
+  std::optional<Answer> answer;
+  std::string bytes;
+};
+
+Reply reply_of(int pipe) {
+  constexpr std::size_t head_bytes = 1 + sizeof(std::uint64_t), most_at_once = std::size_t{1} << 30;
+  const std::string head = receive(pipe, head_bytes, head_bytes);
+  if (head.size() < head_bytes) return {};
+  const auto size = number_at<std::uint64_t>(head, 1, native_big_endian);
+  Reply reply{static_cast<Answer>(head.front()), {}};
+  reply.bytes = receive(pipe, std::min<std::uint64_t>(size, most_at_once), std::string::npos);
+  if (reply.bytes.size() != size) reply.answer.reset();
+  return reply;
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem) {
@@ -83,11 +108,12 @@ std::string read_to_end(int pipe) {
                    {path, 0, ""});
 }
 
-std::string result_of(const std::string& path, std::string bytes) {
-  if (!bytes.empty() && bytes.front() == static_cast<char>(Answer::bytes)) return std::move(bytes.erase(0, 1));
-  ByteCursor cursor(std::move(bytes),
+std::string result_of(const std::string& path, Reply reply) {
+  if (!reply.answer) refuse(path, "the reading of the file broke off");
+  if (*reply.answer == Answer::bytes) return std::move(reply.bytes);
+  if (*reply.answer == Answer::no_memory) throw std::bad_alloc();
+  ByteCursor cursor(std::move(reply.bytes),
                     [&](std::uint64_t, std::uint64_t) { refuse(path, "the reading of the file broke off"); });
-  if (cursor.number<Answer>(native_big_endian) == Answer::no_memory) throw std::bad_alloc();
   std::string problem = cursor.text(native_big_endian), advice = cursor.text(native_big_endian),
               file = cursor.text(native_big_endian), column = cursor.text(native_big_endian);
   throw InputError(std::move(problem), std::move(advice), {std::move(file), 0, std::move(column)});
@@ -109,10 +135,10 @@ std::string run_apart(const std::string& path, const std::function<std::string()
     ::close(ends[0]);
     refuse(path, std::string("cannot be read: ") + std::strerror(error));
   }
-  std::string bytes;
+  Reply reply;
   std::exception_ptr failure;
   try {
-    bytes = read_to_end(ends[0]);
+    reply = reply_of(ends[0]);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -126,7 +152,7 @@ std::string run_apart(const std::string& path, const std::function<std::string()
                      ? "the library that reads version 7.3 did not come to an end with it"
                      : "the library that reads version 7.3 crashed on it");
   }
-  return result_of(path, std::move(bytes));
+  return result_of(path, std::move(reply));
 }
 
 }  // namespace tribofit
