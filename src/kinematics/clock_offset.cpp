@@ -1,5 +1,7 @@
 #include "tribofit/kinematics/clock_offset.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -12,12 +14,20 @@
 #include "statistics/golden_section.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
 
 constexpr std::size_t kEnough = 20000;  ///< samples for a quantile
+constexpr double kScanStep = 1;         ///< of the width of the minimum: it is not stepped over
+constexpr std::size_t kScanned = 8000;  ///< samples of a scan: some dozens in every slip
+/// Of the break-aways in the time that both share, those that must coincide where both files are of one run, and what
+/// the motion may leave of the variance of friction. Of two runs one in five coincides by chance.
+constexpr double kFewestMatched = 0.8, kMostUnbalanced = 0.3;
+/// What a join of one run may leave at any rate, and else over what the next best offset leaves.
+constexpr double kBalanced = 0.06, kAmbiguous = 0.5;
 
 /// The velocity most samples have, and how far slip takes it away from that.
 struct Plateau {
@@ -104,6 +114,7 @@ class ForceBalance {
     double x = 0;
     // The acceleration over a millisecond on either side: noise averages out, the jump at re-stick stays sharp enough.
     const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(1e-3 / typical_interval(velocity_time)));
+    width_ = static_cast<double>(half) * typical_interval(velocity_time);
     for (std::size_t i = 0; i < n; ++i) {
       if (i > 0) x += ((velocity[i] + velocity[i - 1]) / 2 - mean) * (velocity_time[i] - velocity_time[i - 1]);
       const std::size_t before = i - std::min(i, half), after = std::min(n - 1, i + half);
@@ -145,7 +156,10 @@ class ForceBalance {
     const Eigen::Matrix<double, count, 1> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
     const Eigen::Matrix<double, count, count> scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     const Eigen::VectorXd scaled_right = scale.asDiagonal() * right;
-    const double balanced = scaled_right.dot(solve_symmetric_system(scaled, scaled_right).x);
+    const Eigen::VectorXd solved = solve_symmetric_system(scaled, scaled_right).x;
+    // Mass and stiffness have one sign; where they have not, a shifted copy of the motion imitates friction.
+    if (!(solved[2] * solved[4] > 0)) return 1;
+    const double balanced = scaled_right.dot(solved);
     return std::clamp((squares - balanced) / variance, 0.0, 1.0);
   }
 
@@ -154,7 +168,8 @@ class ForceBalance {
                   double tolerance) const {
     const auto cost = [&](double offset) { return (*this)(offset, begin, end, stride); };
     double best = start, least = std::numeric_limits<double>::infinity();
-    constexpr int steps = 40;
+    // The minimum is as narrow as the jump of friction at re-stick, over which the acceleration is smeared.
+    const int steps = std::max(40, static_cast<int>(std::ceil(2 * reach / (kScanStep * width_))));
     for (int i = 0; i <= steps; ++i) {
       const double offset = start + reach * (2.0 * i / steps - 1);
       if (const double c = cost(offset); c < least) {
@@ -168,9 +183,37 @@ class ForceBalance {
   }
 
  private:
+  double width_ = 0;  ///< over which the acceleration is taken, to either side [s]
   const std::vector<double>&friction_time_, &friction_, &velocity_time_;
   std::vector<Eigen::Vector3d> motion_;  ///< displacement from its mean, velocity from its mean, acceleration
 };
+
+/// Refuses records of different runs. width: within which events coincide [s]; unbalanced: of the variance of friction;
+/// ambiguity: the same over that of the next best offset.
+void refuse_strangers(const std::vector<double>& falls, const std::vector<double>& jumps, double offset, double width,
+                      double unbalanced, double ambiguity) {
+  const auto within = [&](const std::vector<double>& events, double from, double to) {
+    return static_cast<std::size_t>(
+        std::count_if(events.begin(), events.end(), [&](double t) { return t >= from && t <= to; }));
+  };
+  const double from = std::max(falls.front(), jumps.front() + offset),
+               to = std::min(falls.back(), jumps.back() + offset);
+  std::size_t matched = 0, shared = 0;
+  for (const double jump : jumps) {
+    const double at = jump + offset;
+    if (at < from || at > to) continue;
+    ++shared;
+    matched += within(falls, at - width, at + width) > 0 ? 1U : 0U;
+  }
+  const bool belong = static_cast<double>(matched) >= kFewestMatched * static_cast<double>(shared) && shared > 1;
+  const bool balances = unbalanced < kMostUnbalanced && (unbalanced < kBalanced || ambiguity < kAmbiguous);
+  if (belong && balances) return;
+  throw InputError(
+      fmt::format("the two records are not of one run: {} of {} break-aways coincide, and the motion leaves "
+                  "{:.0f} % of friction unbalanced",
+                  matched, shared, 100 * unbalanced),
+      "give the two files of one run");
+}
 
 }  // namespace
 
@@ -190,14 +233,16 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
   if (falls.size() < 3 || jumps.size() < 3) return {};
 
   const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
-  const double period = std::min(median_interval(falls), median_interval(jumps));
+  // Friction falls twice a cycle, at break-away and again at re-stick.
+  const double period = median_interval(jumps);
   auto candidates = coincidences(falls, jumps, std::max(3 * interval, 0.05 * period), 0.3 * period);
   const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
   // Instruments started by one trigger share their clock.
   if (!candidates.empty()) candidates.push_back({0, candidates.front().support});
-  const std::size_t n = friction.size(), coarse = std::max<std::size_t>(1, n / 40000);
-  const double reach = std::max(4 * interval, 0.12 * period);
-  double best = 0, least = std::numeric_limits<double>::infinity(), second = least;
+  const std::size_t n = friction.size(), coarse = std::max<std::size_t>(1, n / kScanned);
+  // Either of these may have been matched, and both lag behind the jump.
+  const double reach = std::max(4 * interval, 0.25 * period);
+  double best = 0, matched = 0, least = std::numeric_limits<double>::infinity(), second = least;
   std::size_t support = 0;
   for (const Candidate& candidate : candidates) {
     const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, interval / 4);
@@ -206,9 +251,12 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
     if (cost < least) {
       least = cost;
       best = offset;
+      matched = candidate.offset;
       support = candidate.support;
     }
   }
+  refuse_strangers(falls, jumps, matched, std::max(3 * interval, 0.05 * period), unbalanced(best, 0, n, coarse),
+                   least / second);
   ClockOffset result;
   result.events = support;
   result.ambiguity = candidates.size() > 1 ? least / second : 0;

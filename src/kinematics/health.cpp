@@ -91,6 +91,30 @@ std::string describe(const char* name, const Band& band) {
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
+/// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
+struct ClockDrift {
+  double gained = 0, std_error = 0, time = 1;  // [s]
+};
+
+ClockDrift clock_drift(const std::vector<double>& times, const std::vector<double>& delays) {
+  const std::size_t third = delays.size() / 3;
+  if (third < kFewestPeriods) return {};
+  const auto part = [&](const std::vector<double>& of, std::size_t begin) {
+    return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(begin),
+                               of.begin() + static_cast<std::ptrdiff_t>(begin + third));
+  };
+  const std::size_t last = delays.size() - third;
+  const double before = median(part(delays, 0)), after = median(part(delays, last));
+  std::vector<double> off;
+  for (std::size_t k = 0; k < third; ++k) {
+    off.push_back(std::abs(delays[k] - before));
+    off.push_back(std::abs(delays[last + k] - after));
+  }
+  const double scatter = kSigmaPerMad * median(std::move(off));
+  return {after - before, 2 * scatter / std::sqrt(static_cast<double>(third)),
+          median(part(times, last)) - median(part(times, 0))};
+}
+
 }  // namespace
 
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
@@ -158,7 +182,8 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   const double edge = 0.05 * plateaus.depth;
   // Window: the steep part of re-stick and as much again, at most 10 ms.
   const auto half = static_cast<std::size_t>(std::clamp(0.01 / motion.step, 4.0, 2000.0));
-  std::vector<double> jump(2 * half, 0.0);
+  std::vector<double> jump(2 * half, 0.0), single(2 * half);
+  std::vector<double> times, delays;  // of single slips
   std::size_t used = 0;
   for (const StickPlateau& run : plateaus.runs) {
     std::size_t i = std::min(run.inner_begin() * factor, n - 1);
@@ -171,10 +196,24 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
         slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 0.25 * static_cast<double>(half)) : 0;
     const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
     if (zero + half + 1 >= n) continue;
-    for (std::size_t k = 0; k < 2 * half; ++k) jump[k] += sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
+    for (std::size_t k = 0; k < 2 * half; ++k) single[k] = sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
+    for (std::size_t k = 0; k < 2 * half; ++k) jump[k] += single[k];
+    times.push_back(motion.time[zero]);
+    delays.push_back(motion.step *
+                     static_cast<double>(std::min_element(single.begin(), single.end()) - single.begin()));
     ++used;
   }
   if (used < 3) return item;
+  const ClockDrift drift = clock_drift(times, delays);
+  if (std::abs(drift.gained) > std::max(kDriftSamples * motion.step, kSignificance * drift.std_error)) {
+    item.status = Status::problem;
+    item.message = fmt::format(
+        "friction falls behind the velocity by {:.2f} ms from the first third of the record to the last ({:.0f} ppm, "
+        "{} "
+        "slips): their clocks run apart; mu_k and alpha are at stake",
+        1e3 * drift.gained, 1e6 * drift.gained / drift.time, used);
+    return item;
+  }
   const auto sharpest = std::min_element(jump.begin(), jump.end());
   double squares = 0;
   for (double j : jump) squares += j * j;

@@ -59,6 +59,11 @@ inline constexpr double kErrorAfterHighPass = 1e-3;
 /// Standard error of the creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
 inline constexpr double kErrorOfCreep = 0.5;
 
+// ---- clocks of the two channels
+
+/// Samples by which one may fall behind the other over a record: re-stick is not seen more closely in a slip.
+inline constexpr double kDriftSamples = 3;
+
 // ---- low-pass of the velocity
 
 /// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the

@@ -166,6 +166,18 @@ inline std::function<void(Trace&, Random&)> lost(double part, std::size_t length
   };
 }
 
+/// The velocity has a clock of its own.
+inline std::function<void(Trace&, Random&)> clocks_apart(double ppm) {
+  return [=](Trace& trace, Random&) {
+    const std::vector<double> v = trace.velocity;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const double at = std::min(static_cast<double>(v.size() - 2), static_cast<double>(i) * (1 + 1e-6 * ppm));
+      const auto k = static_cast<std::size_t>(at);
+      trace.velocity[i] = v[k] + (at - static_cast<double>(k)) * (v[k + 1] - v[k]);
+    }
+  };
+}
+
 /// From now on the disc turns at another speed, which nobody says.
 inline std::function<void(Trace&, Random&)> then_at(double rpm) {
   return [=](Trace& trace, Random&) {
@@ -241,6 +253,9 @@ inline const std::vector<Alteration>& beyond_rescue() {
       {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", "slips are not read like sticks"},
       {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "alpha is at stake"},
       {"friction: twenty levels", rounded(kFriction, 0.02), "resolution", "alpha are at stake"},
+      {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", "their clocks run apart"},
+      {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", "their clocks run apart"},
+      {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", "their clocks run apart"},
       {"one in five samples lost, 20 ms each", lost(0.2, 400), "drop-outs", "samples were lost"},
   };
   return list;

@@ -12,6 +12,8 @@
 #include "../kinematics/stick_slip_truth.hpp"
 #include "alterations.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/kinematics/clock_offset.hpp"
 #include "tribofit/pipeline.hpp"
 
 namespace tribofit {
@@ -165,6 +167,39 @@ TEST(NotAltered, AMeasuredVelocityIsHeldAgainstRestAndOmegaR) {
   EXPECT_EQ(check(1.05, 0).status, HealthItem::Status::warning) << check(1.05, 0).message;
   EXPECT_THAT(gain.message, ::testing::HasSubstr("2 times the truth"));
   EXPECT_THAT(block.message, ::testing::HasSubstr("name the column v_b"));
+}
+
+/// The offset between two records that begin at these times [s] and have clocks of their own.
+ClockOffset joined(const Trace& friction, double friction_from, const Trace& velocity, double velocity_from) {
+  const auto part = [](const std::vector<double>& channel, double from, double step) {
+    return std::vector<double>(channel.begin() + static_cast<std::ptrdiff_t>(from / step + 0.5), channel.end());
+  };
+  const auto clock = [&](const Trace& trace, double from) {
+    std::vector<double> time = part(trace.time, from, trace.interval());
+    for (double& t : time) t -= from;
+    return time;
+  };
+  return estimate_clock_offset(
+      clock(friction, friction_from), part(friction.friction, friction_from, friction.interval()),
+      clock(velocity, velocity_from), part(velocity.velocity, velocity_from, velocity.interval()));
+}
+
+TEST(Joined, ALateStartIsFound) {
+  const Trace trace = truth::simulate(rig_of(11)).trace;
+  for (const double late : {0.1, 0.7, 1.3, 3.0, 5.0}) {
+    EXPECT_NEAR(joined(trace, 0, trace, late).offset, late, 1e-4) << late;
+    EXPECT_NEAR(joined(trace, late, trace, 0).offset, -late, 1e-4) << late;
+  }
+}
+
+TEST(Joined, RecordsOfDifferentRunsAreRefused) {
+  const Trace trace = truth::simulate(rig_of(11)).trace;
+  for (const unsigned seed : {12U, 13U, 14U}) {
+    EXPECT_THROW(joined(trace, 0, truth::simulate(rig_of(seed)).trace, 0), InputError) << seed;
+  }
+  truth::Rig faster = rig_of(11);
+  faster.rpm = 8;
+  EXPECT_THROW(joined(trace, 0, truth::simulate(faster).trace, 0), InputError);
 }
 
 }  // namespace
