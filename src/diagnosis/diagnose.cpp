@@ -94,6 +94,7 @@ Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
       cycles > 0 ? fmt::format("Record for at least {:.0f} s under the same conditions.",
                                std::ceil(1.2 * duration * limits::kFewestCycles / static_cast<double>(cycles)))
                  : "Record until the block has broken away a dozen times.";
+  out.next_experiment += " If the block never stuck, say so: --never-sticks.";
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <span>
 
+#include "fit/assessment.hpp"
 #include "fit/starts.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
@@ -45,12 +46,29 @@ LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
   return out;
 }
 
-std::string why_not(const CandidateResult& judged, const Candidate& candidate) {
+/// The first parameter on its bound, and that bound; empty where none is.
+std::string bound_reached(const CandidateResult& judged, const Candidate& candidate, const Observations& observations) {
+  const Trial& trial = judged.trial;
+  const std::size_t offset = trial.model.offset_of(candidate.info.key);
+  for (std::size_t k = 0; k < candidate.info.parameters.size(); ++k) {
+    if (!trial.at_bound[offset + k]) continue;
+    const Parameter q = on_scale_of(candidate.info.parameters[k], observations);
+    return fmt::format("{} beyond {:.3g}{}{}", q.name, trial.p[offset + k] / q.si, q.unit == "1" ? "" : " ",
+                       q.unit == "1" ? "" : q.unit);
+  }
+  return "";
+}
+
+std::string why_not(const CandidateResult& judged, const Candidate& candidate, const Observations& observations) {
   const double value = judged.trial.p[judged.trial.model.offset_of(candidate.info.key)];
   if (candidate.allowed && !candidate.allowed->holds(value)) {
     return "it would help only by more than the instruments file leaves room for";
   }
-  if (!judged.plausible) return "it would help only with values that are not plausible";
+  if (!judged.plausible) {
+    const std::string bound = bound_reached(judged, candidate, observations);
+    return bound.empty() ? "it would help only with values that are not plausible"
+                         : "it would help only with " + bound + ", the end of what is plausible";
+  }
   if (judged.fall <= 0) return "it does not lower the error on held-out cycles";
   if (judged.p_value >= limits::kChance)
     return fmt::format("what it explains may be chance (p = {:.2g})", judged.p_value);
@@ -156,11 +174,12 @@ bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judge
 }
 
 /// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
-/// of what is left above the noise; or its bounds alone.
+/// of what is left above the noise; or its bounds alone. At the noise floor nothing is left to take away.
 bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;
   if (!(judged.size > limits::kLeastPossible) || !(judged.fall > 0)) return false;
+  if (in.fits.back().error.held_out_rmse <= kAtFloor * in.fits.back().floor.rmse) return false;
   if (!judged.plausible) return acts_beyond_bounds(in.all[k], judged);
   const double excess = in.ladder.top().held_out_squares - in.context.noise_squares();
   return judged.p_value < limits::kChanceOfPossible && judged.fall > limits::kPossiblePart * excess;
@@ -170,7 +189,7 @@ bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last)
 void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last, EffectFinding& finding) {
   finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::unsupported;
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
-                   : last.judged != nullptr ? why_not(*last.judged, in.all[k])
+                   : last.judged != nullptr ? why_not(*last.judged, in.all[k], in.context.fine.observations)
                                             : "it promises no fall of the error";
   if (finding.status == EffectStatus::unsupported && is_possible(in, k, last)) {
     finding.status = EffectStatus::possible;

@@ -12,7 +12,7 @@ namespace tribofit::diagnosis {
 namespace {
 
 /// Where the evidence of an effect is.
-enum class Evidence { within_cycle, at_break_away, in_time, elsewhere };
+enum class Evidence { within_cycle, on_plateau, at_break_away, in_time, elsewhere };
 
 Evidence evidence_of(SketchView view) {
   switch (view) {
@@ -22,8 +22,9 @@ Evidence evidence_of(SketchView view) {
     case SketchView::creep:
     case SketchView::since_break_away:
     case SketchView::acceleration:
-    case SketchView::plateau:
       return Evidence::within_cycle;
+    case SketchView::plateau:
+      return Evidence::on_plateau;
     case SketchView::stick_time:
       return Evidence::at_break_away;
     case SketchView::time:
@@ -45,8 +46,10 @@ bool imitates(std::string_view check, Evidence evidence) {
   if (evidence == Evidence::elsewhere) return false;
   if (check == kDropOuts) return evidence == Evidence::in_time;
   if (check == kClipping || check == kBandwidth) return evidence != Evidence::in_time;
-  const bool distorts = check == kResolution || check == kChannelDelay || check == kPlateauSpeed;
-  return distorts && evidence == Evidence::within_cycle;
+  // What explains a plateau that is not at omega r is not imitated by it.
+  if (check == kPlateauSpeed) return evidence == Evidence::within_cycle;
+  const bool distorts = check == kResolution || check == kChannelDelay;
+  return distorts && (evidence == Evidence::within_cycle || evidence == Evidence::on_plateau);
 }
 
 /// Checks that report a problem, each once.

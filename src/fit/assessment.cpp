@@ -6,18 +6,6 @@
 #include "tribofit/fit/observations.hpp"
 
 namespace tribofit {
-namespace {
-
-/// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
-constexpr double kLearntByHeart = 1.5;
-/// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
-constexpr double kClose = 0.02, kOutline = 0.08;
-/// Held-out error over the floor from which a fit is well above it.
-constexpr double kWellAbove = 1.25;
-/// p value from which one law is clearly better than another.
-constexpr double kSignificant = 0.05;
-
-}  // namespace
 
 double over_floor(const Fit& fit) {
   constexpr double kRounding = 1e-9;
@@ -70,7 +58,7 @@ std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t c
                             other.cycle_squares.size() == best.cycle_squares.size() && !best.cycle_squares.empty();
     if (!comparable) continue;
     const Comparison comparison = compare_held_out(best, other);
-    comparisons.push_back({chosen, k, comparison, comparison.p_value < kSignificant});
+    comparisons.push_back({chosen, k, comparison, comparison.p_value < kClearlyBetter});
   }
   return comparisons;
 }

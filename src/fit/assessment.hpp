@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "limits.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/segmentation/cycles.hpp"
 
@@ -26,9 +27,6 @@ FitQuality quality_of(const Fit& fit);
 
 /// Held-out error over the noise floor: 1 where both are rounding, NaN where no floor is known.
 double over_floor(const Fit& fit);
-
-/// The same ratio up to which what remains is called noise, and from which it says no more than "far above".
-inline constexpr double kAtFloor = 1.15, kFarAboveFloor = 100;
 
 /// The fit leaves clearly more than the noise floor, so that a mean that agrees may hide what it misses.
 bool well_above_floor(const Fit& fit);

@@ -163,7 +163,7 @@ namespace {
 double beside_slow_noise(const Eigen::VectorXd& influence, const SlowNoise& noise, const Eigen::VectorXd& of_level) {
   const auto n = static_cast<double>(influence.size());
   const double independent = (influence.array() - influence.mean()).square().sum() / (n * n);
-  const double own = noise.covariance[0] * of_level.squaredNorm();  // of which `independent` knows already
+  const double own = noise.variance_within() * of_level.squaredNorm();  // of which `independent` knows already
   const std::span weights(of_level.data(), static_cast<std::size_t>(of_level.size()));
   return std::sqrt(std::max(0.0, independent + noise.variance_of_sum(weights) - own));
 }

@@ -18,4 +18,22 @@ inline constexpr std::size_t kShortestNoiseStretch = 12, kLongestNoiseStretch = 
 /// with 60 in hardly any; more only cost time.
 inline constexpr std::size_t kEnoughLevels = 2000;
 
+// ---- how good a fit is
+
+/// Held-out error over the noise floor up to which what remains is called noise: floors are known to some per cent, and
+/// every parameter costs a little on held-out cycles. Lower: true laws of short records count as lacking something.
+inline constexpr double kAtFloor = 1.15;
+/// The same ratio from which a fit is well above the floor, so that means that agree may hide what it misses, and from
+/// which it says no more than "far above".
+inline constexpr double kWellAbove = 1.25, kFarAboveFloor = 100;
+
+/// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
+inline constexpr double kLearntByHeart = 1.5;
+
+/// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
+inline constexpr double kClose = 0.02, kOutline = 0.08;
+
+/// p value from which one law is clearly better than another.
+inline constexpr double kClearlyBetter = 0.05;
+
 }  // namespace tribofit

@@ -38,7 +38,7 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
           "{} describes this trace as well as its noise allows: the held-out error is {}, the noise floor {}.", name,
           held_out, floor);
     case FitQuality::close:
-      return fmt::format("{} is close (typically {} off), but {}: it lacks a small effect.", name, typical, remains);
+      return fmt::format("{} is close (typically {} off), but {}: a small effect may be missing.", name, typical, remains);
     case FitQuality::outline:
       return fmt::format("{} gives the outline only (typically {} off): {}, so it lacks an effect.", name, typical,
                          remains);

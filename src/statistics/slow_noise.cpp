@@ -7,28 +7,11 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "limits.hpp"
+
 namespace tribofit {
 
 namespace {
-
-constexpr std::size_t kFewestValues = 16;
-constexpr double kRounding = 1e-20;  ///< of the squares of a series: what is left of one that is constant
-/// By how much the logarithm of its likelihood must exceed that of 1/f noise: an autoregression has a parameter more,
-/// and a record that is not much longer than its memory cannot tell the two from each other.
-constexpr double kClearlyLikelier = 5;
-
-/// By how much it must exceed that of independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
-constexpr double kLikelier = 1;
-
-/// By how much another spectrum's must exceed that of 1/f noise before it is the likelier one: the best of several
-/// gains as much by chance.
-constexpr double kRatherLikelier = 1;
-
-/// Below as many periods in the record a model that was fitted has taken power away.
-constexpr double kFirstBin = 3;
-
-/// 1/f noise has power below the lowest frequency of its record too: down to that of one eight times as long.
-constexpr std::size_t kLonger = 8;
 
 using Transform = std::vector<std::complex<double>>;
 
@@ -122,7 +105,7 @@ struct Likeliest {
 
 Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
   Likeliest best;
-  constexpr double kLeast = 1.0 / 256, kMost = 256, kStep = 1.5;
+  constexpr double kStep = 1.5;
   const auto n = static_cast<double>(seen.power.size());
   const auto try_ratio = [&](double ratio) {  // of slow to independent noise
     double scale = 0, logs = 0;
@@ -136,16 +119,15 @@ Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
   };
   try_ratio(0);
   const double without = best.log_likelihood;
-  for (double ratio = kLeast; ratio < kMost; ratio *= kStep) try_ratio(ratio);
+  for (double ratio = 1 / kMostSlow; ratio < kMostSlow; ratio *= kStep) try_ratio(ratio);
   best.gain = best.log_likelihood - without;
   return best;
 }
 
 /// The same where no value of the periodogram counts for more than chance would give the largest of them.
 Likeliest robust_fit(Periodogram seen, const std::vector<double>& shape) {
-  constexpr double kChance = 0.5;
   constexpr int kRounds = 3;
-  const double most = -std::log(kChance / (seen.resolved * static_cast<double>(seen.power.size())));
+  const double most = -std::log(kChanceOfLine / (seen.resolved * static_cast<double>(seen.power.size())));
   Likeliest out = likeliest(seen, shape);
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t j = 0; j < seen.power.size(); ++j) {
@@ -182,12 +164,12 @@ double SlowNoise::variance_within() const {
 
 SlowNoise slow_noise(std::span<const double> series) {
   const std::size_t n = series.size();
-  if (n < kFewestValues) return {};
+  if (n < kFewestSlowValues) return {};
   const Periodogram seen = windowed_periodogram(series);
   double squares = 0, left = 0;
   for (const double x : series) squares += x * x;
   for (const double x : seen.power) left += x;
-  if (!(left > kRounding * squares)) return {};
+  if (!(left > kConstantSeries * squares)) return {};
   const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
   Likeliest best;
   double memory = 0;

@@ -19,7 +19,7 @@ struct Ageing {
         .parameters = {{.name = "B",
                         .description = "rise of static friction with the logarithm of the stick time",
                         .lower = 0.002,
-                        .upper = 0.03,
+                        .upper = 0.1,
                         .start = 0.005,
                         .neutral = 0.002,
                         .scales_with_friction = true},

@@ -23,8 +23,9 @@ struct Drift {
             .parameters = {{.name = "d",
                             .description = "relative change of friction in unit time",
                             .unit = "1/s",
-                            .lower = -0.005,
-                            .upper = 0.005,
+                            // Friction keeps its sign to the end of the record, and no more than trebles.
+                            .lower = -0.02,
+                            .upper = 0.05,
                             .bound_scaling = BoundScaling::against_duration}},
             .sketch = {.view = SketchView::time, .values = {0.003}},
             .hidden = {.sizes = {0.0006, 0.0009, 0.0012}, .either_sign = true}};

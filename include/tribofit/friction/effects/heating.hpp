@@ -17,8 +17,8 @@ struct Heating {
         .experiment = "pause ten minutes and restart: heating comes back, run-in does not",
         .parameters = {{.name = "h",
                         .description = "share of friction that is lost once the parts are warm",
-                        .lower = -0.3,
-                        .upper = 0.3},
+                        .lower = -2,  // warm parts have a fifth to three times the friction
+                        .upper = 0.8},
                        {.name = "tau_h",
                         .description = "time in which the parts warm up",
                         .unit = "s",

@@ -19,7 +19,7 @@ struct Interference {
             .parameters = {{.name = "A",
                             .description = "amplitude of the line",
                             .lower = 0,
-                            .upper = 0.03,
+                            .upper = 0.2,
                             .start = 0.003,
                             .neutral = 0,
                             .scales_with_friction = true},

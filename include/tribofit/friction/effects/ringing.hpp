@@ -19,7 +19,7 @@ struct Ringing {
             .parameters = {{.name = "A",
                             .description = "amplitude right after break-away",
                             .lower = 0,
-                            .upper = 0.05,
+                            .upper = 0.2,
                             .start = 0.003,
                             .neutral = 0,
                             .scales_with_friction = true},

@@ -15,8 +15,8 @@ struct RunIn {
             .experiment = "pause ten minutes and restart: run-in does not come back, heating does",
             .parameters = {{.name = "w",
                             .description = "share by which friction is higher on fresh surfaces",
-                            .lower = -0.5,
-                            .upper = 0.5},
+                            .lower = -0.8,  // fresh surfaces have a fifth to three times the friction
+                            .upper = 2},
                            {.name = "L",
                             .description = "sliding distance over which the surfaces wear in",
                             .unit = "mm",

@@ -17,7 +17,7 @@ struct Runout {
         .parameters = {{.name = "A",
                         .description = "amplitude of the swing of the load, relative to its mean",
                         .lower = 0,
-                        .upper = 0.15,
+                        .upper = 0.5,
                         .start = 0.01,
                         .neutral = 0},
                        {.name = "phase",

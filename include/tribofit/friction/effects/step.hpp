@@ -17,8 +17,8 @@ struct StepChange {
             .experiment = "repeat the run on fresh surfaces: a step does not come back at the same time",
             .parameters = {{.name = "delta",
                             .description = "change of friction",
-                            .lower = -0.1,
-                            .upper = 0.1,
+                            .lower = -0.4,
+                            .upper = 0.4,
                             .start = 0.01,
                             .neutral = 0,
                             .scales_with_friction = true},
@@ -36,11 +36,13 @@ struct StepChange {
             .hidden = {.sizes = {0.015, 0.03}, .either_sign = true, .others = {{.lower = 8, .upper = 32}}}};
   }
 
-  /// The change takes 20 ms, shorter than a cycle, so that its time has a derivative.
+  /// The change takes a thousandth of the time before it, shorter than a cycle, so that its time has a derivative.
   template <class T>
   T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
+    using std::abs;
     using std::tanh;
-    return mu + x.direction * p[0] * (0.5 + 0.5 * tanh((x.time - p[1]) / 0.01));
+    constexpr double kWidth = 2.5e-4, kNotZero = 1e-9;
+    return mu + x.direction * p[0] * (0.5 + 0.5 * tanh((x.time - p[1]) / (kWidth * (x.time + abs(p[1])) + kNotZero)));
   }
 };
 

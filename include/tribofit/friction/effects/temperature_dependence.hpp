@@ -18,8 +18,8 @@ struct TemperatureDependence {
         .parameters = {{.name = "k_T",
                         .description = "relative change of friction per kelvin",
                         .unit = "1/K",
-                        .lower = -0.01,
-                        .upper = 0.01}},
+                        .lower = -0.05,
+                        .upper = 0.05}},
         .needs = {.temperature = true},
         .sketch = {.view = SketchView::temperature, .values = {0.005}},
         .hidden = {.sizes = {0.003, 0.006}, .either_sign = true}};

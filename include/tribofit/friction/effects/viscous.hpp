@@ -21,7 +21,7 @@ struct Viscous {
                             .unit = "s/mm",
                             .si = 1e3,
                             .lower = -0.00125,
-                            .upper = 0.005,
+                            .upper = 0.015,
                             .neutral = 0,
                             .scales_with_friction = true,
                             .bound_scaling = BoundScaling::against_top_speed}},

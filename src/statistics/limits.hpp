@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+// The thresholds by which statistics decide, with their reasons and what moves when they change.
+
+namespace tribofit {
+
+// ---- slow noise; all likelihoods are logarithms
+
+/// Values of a series that show slow noise: fewer have no frequencies beside those that a model takes away.
+inline constexpr std::size_t kFewestSlowValues = 16;
+
+/// Of the squares of a series: what rounding leaves of one that is constant.
+inline constexpr double kConstantSeries = 1e-20;
+
+/// By how much the likelihood of an autoregression must exceed that of 1/f noise: it has a parameter more, and a record
+/// that is not much longer than its memory cannot distinguish the two. Less: 1/f noise passes for an autoregression,
+/// and slow effects are named in it.
+inline constexpr double kClearlyLikelier = 5;
+
+/// By how much slow noise must exceed independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
+inline constexpr double kLikelier = 1;
+
+/// By how much another spectrum must exceed that of 1/f noise before it is the likelier one: the best of several gains
+/// as much by chance. More: what a wrong law leaves passes for 1/f noise and raises the noise floor.
+inline constexpr double kRatherLikelier = 1;
+
+/// Below as many periods in the record a model that was fitted has taken power away.
+inline constexpr double kFirstBin = 3;
+
+/// 1/f noise has power below the lowest frequency of its record too: down to that of one so many times as long.
+inline constexpr std::size_t kLonger = 8;
+
+/// Greatest ratio of slow to independent noise at the lowest frequencies, and of independent to slow.
+inline constexpr double kMostSlow = 256;
+
+/// No value of a periodogram counts beyond the largest that this chance would give: it is a line, perhaps an effect.
+inline constexpr double kChanceOfLine = 0.5;
+
+}  // namespace tribofit
