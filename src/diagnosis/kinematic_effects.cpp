@@ -200,8 +200,8 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
   const double off = std::abs(motion.plateau_ratio - 1);
   const bool open =
       instruments.vibrometer.gain && !plateau_says(instruments, motion.conditions, motion.plateau_ratio).not_the_gain;
-  return !open && is_gap(off, motion.plateau_ratio_std_error) && motion.plateau_ratio > 1 - limits::kLargestGap &&
-         motion.plateau_ratio < 1 + limits::kLargestGap;
+  return !open && is_gap(off, motion.plateau_ratio_std_error) && motion.plateau_ratio > 1 / limits::kLargestRatio &&
+         motion.plateau_ratio < limits::kLargestRatio;
 }
 
 void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,

@@ -43,7 +43,7 @@ inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
 inline constexpr double kDeclaredSigmas = 3;  ///< standard uncertainties that are still possible
 inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
 inline constexpr double kGapSigmas = 5;       ///< standard errors: plateaus of one record are not independent
-inline constexpr double kLargestGap = 0.15;   ///< beyond it something else is wrong than radius or gain
+inline constexpr double kLargestRatio = 2.5;  ///< or its inverse: a diameter for a radius is two; beyond, another fault
 
 // Whether a candidate is plausible.
 inline constexpr double kInside = 0.1;     ///< of its range a parameter is moved off its bound, to see what that costs

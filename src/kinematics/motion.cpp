@@ -259,6 +259,11 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
     if (unknown) return std::nullopt;
     const Extremes disc = speed_is_constant() ? Extremes{disc_.constant, disc_.constant} : extremes(disc_.varying);
     levels = {disc.low + taken_off(), disc.high + taken_off()};
+    // Where radius, speed or gain are not as stated the block rests at another level.
+    if (search_.sticks && speed_is_constant()) {
+      levels.low = std::min(levels.low, plateau_ + taken_off());
+      levels.high = std::max(levels.high, plateau_ + taken_off());
+    }
   }
   const auto& vibrometer = instruments_.vibrometer;
   const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
