@@ -52,11 +52,13 @@ bool imitates(std::string_view check, Evidence evidence) {
   return distorts && (evidence == Evidence::within_cycle || evidence == Evidence::on_plateau);
 }
 
-/// Checks that report a problem, each once.
+/// Checks that report a problem, each once; not one that was corrected.
 std::vector<std::string> problems_of(std::span<const Record> records) {
   std::vector<std::string> checks;
   for (const Record& record : records) {
+    const bool is_plateau_right = record.motion->plateau_correction != PlateauCorrection::none;
     for (const HealthItem& item : record.motion->health) {
+      if (is_plateau_right && item.check == health_check::kPlateauSpeed) continue;
       const bool is_known = std::find(checks.begin(), checks.end(), item.check) != checks.end();
       if (item.status == HealthItem::Status::problem && !is_known) checks.push_back(item.check);
     }

@@ -188,9 +188,9 @@ TEST(Fit, SaysWhatTheDataDoNotSay) {
   // A viscous term beyond its plausible bound ends there.
   const FrictionModel viscous(ExponentialLaw{}, {make_effect("viscous")});
   options.peak = 0.08;
-  const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, 45.0}, options));
+  const Fit bound = fit_record(viscous, synthetic::make(viscous, {0.509, 0.318, 52.14, -3.0}, options));
   EXPECT_TRUE(bound.parameters[3].at_bound);
-  EXPECT_TRUE(has(bound, "sigma is at its upper bound of"));
+  EXPECT_TRUE(has(bound, "sigma is at its lower bound of"));
 }
 
 TEST(Fit, FewerThanThreeCyclesIsAReasonNotAnException) {
