@@ -26,12 +26,9 @@ namespace tribofit {
 namespace {
 
 using kinematics::Disc;
-using kinematics::HighPassEstimate;
 using kinematics::LevelRange;
 using kinematics::Plateaus;
 using kinematics::PlateauSearch;
-using kinematics::RecordedPlateau;
-using kinematics::RippleEstimate;
 using kinematics::StickPlateau;
 
 // A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
@@ -90,12 +87,12 @@ class MotionStages {
   PlateauSearch search_;
   bool is_reversed_ = false;
   std::optional<double> declared_high_pass_;
-  HighPassEstimate sag_;
+  kinematics::HighPassEstimate sag_;
   double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
-  std::optional<RecordedPlateau> recorded_;
+  std::optional<kinematics::RecordedPlateau> recorded_;
   kinematics::BlockZero zero_;
   std::vector<kinematics::SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
-  RippleEstimate ripple_;
+  kinematics::RippleEstimate ripple_;
   bool undoes_ripple_ = false;
   std::size_t run_up_ = 0;
 };
@@ -257,13 +254,11 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
     const bool unknown =
         speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
     if (unknown) return std::nullopt;
-    const Extremes disc = speed_is_constant() ? Extremes{disc_.constant, disc_.constant} : extremes(disc_.varying);
-    levels = {disc.low + taken_off(), disc.high + taken_off()};
-    // Where radius, speed or gain are not as stated the block rests at another level.
-    if (search_.sticks && speed_is_constant()) {
-      levels.low = std::min(levels.low, plateau_ + taken_off());
-      levels.high = std::max(levels.high, plateau_ + taken_off());
-    }
+    // Where radius, speed or gain are not as stated the block rests beside omega r.
+    const Extremes rest = speed_is_constant()
+                              ? Extremes{std::min(disc_.constant, plateau_), std::max(disc_.constant, plateau_)}
+                              : extremes(disc_.varying);
+    levels = {rest.low + taken_off(), rest.high + taken_off()};
   }
   const auto& vibrometer = instruments_.vibrometer;
   const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
@@ -272,9 +267,9 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
 }
 
 void MotionStages::add_sensor_mass() {
-  const std::optional<Declared>& mass = instruments_.force_sensor.mass_below;
-  if (!is_block() || !mass) return;
-  kinematics::add_sensor_mass(trace_, trace_.velocity, mass->value, motion_.step, motion_.notes);
+  const auto& mass = instruments_.force_sensor.mass_below;
+  if (is_block() && mass)
+    kinematics::add_sensor_mass(trace_, trace_.velocity, mass->value, motion_.step, motion_.notes);
 }
 
 /// Samples before the disc has come to its speed; looked for only where that is taken as constant.
