@@ -103,7 +103,10 @@ struct MotionOptions {
   StickRule stick = {};
 };
 
-/// Computes the motion: declared instrument corrections first, then run-up, high-pass, speed, v_r, health.
+/// Computes the motion: declared instrument corrections first, then high-pass, zero and speed, v_r, health. Samples
+/// that the recording spoilt (markers, spikes, frozen and clipped stretches, standstill) are marked in `faults`. A
+/// block on a spring goes nowhere: a mean of v_b that agrees with a plateau off omega r is a wrong zero and is taken
+/// off. Steps of the disc's speed that nobody stated follow from the plateaus, each with its own level.
 ///
 /// The plateau of stick (the level on which v_b rests, found as the half-sample mode of block means) gives the speed
 /// where nobody said it, the noise of v_r, the direction of the vibrometer and, by its sag dv_m/dt = -2 pi f_c v_m, an
