@@ -69,6 +69,22 @@ TEST(Scale, BoundsGoWithTheScalesOfTheRecord) {
   EXPECT_NEAR(slow.upper[stiffness] / here.upper[stiffness], 1, 1e-6);  // lengths are the same
 }
 
+/// Friction that rises by two fifths, or falls by as much, over a record is a drift still.
+TEST(Scale, AStrongDriftIsNamed) {
+  const FrictionModel model(ExponentialLaw{}, {make_effect("drift")});
+  const double duration =
+      synthetic::make(FrictionModel(ExponentialLaw{}), {0.509, 0.318, 52.14}, on_a_rig(1)).motion.duration();
+  for (const double change : {0.4, -0.4}) {
+    const double d = change / duration;
+    const synthetic::Record made = synthetic::make(model, {0.509, 0.318, 52.14, d}, on_a_rig(1));
+    const Record record = {&made.motion, &made.segmentation};
+    const Diagnosed out = diagnose({&record, 1}, {ExponentialLaw{}, FractionalLaw{}});
+    EXPECT_THAT(names(out.diagnosis), ElementsAre("drift")) << change;
+    const FitParameter& found = out.fits.back().parameters.back();
+    EXPECT_NEAR(found.value, d, 0.005 * std::abs(d)) << change;
+  }
+}
+
 /// Ten records of 200 samples: a constant force with noise at ten constant speeds.
 std::vector<TraceInput> constant_friction(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
