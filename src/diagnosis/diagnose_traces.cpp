@@ -27,14 +27,13 @@ namespace {
 /// Prepares the trace again without undoing the high-pass, and keeps that where a contact that turns with the disc
 /// explains the sag of the plateau.
 void reconsider_high_pass(const Instruments& instruments, PreparedTrace& prepared) {
-  constexpr double kChance = 15;  // fall of chi-squared that happens by chance once in 1e4
   const Identification& trace = prepared.trace;
   if (!trace.analysed || !(trace.motion.high_pass > 0) || instruments.vibrometer.high_pass) return;
   MotionOptions raw = prepared.motion;
   raw.undo_high_pass = false;
   Identification plain = prepared.prepare(raw);
   // Where the high-pass would leave the plateau off, the spin explains by one effect what else takes two.
-  const double at_least = plateau_is_off(trace.motion, instruments) ? 0 : kChance;
+  const double at_least = plateau_is_off(trace.motion, instruments) ? 0 : limits::kFallOfSag;
   if (!plain.analysed || !spins_rather_than_sags(plain.motion, plain.segmentation, at_least)) return;
   prepared.motion = raw;
   prepared.trace = std::move(plain);
@@ -56,11 +55,11 @@ void correct_plateau(const Instruments& instruments, PreparedTrace& prepared) {
 
 /// A load that follows friction within every cycle would pass for friction that follows the load.
 void remove_load_coupling(Identification& trace) {
-  constexpr double kLeast = 0.01, kChance = 0.01 / 28;  // one of the catalogue's effects
   if (!trace.analysed) return;
   const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
-  if (!(std::abs(kappa.value) > kLeast)) return;
-  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > kChance) return;
+  if (!(std::abs(kappa.value) > limits::kLeastCoupling)) return;
+  const double chance = limits::kChance / static_cast<double>(effect_catalogue().size());
+  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > chance) return;
   uncouple_load(kappa.value, trace.motion);
   trace.load_coupling = kappa;
 }

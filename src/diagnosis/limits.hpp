@@ -44,6 +44,8 @@ inline constexpr double kDeclaredSigmas = 3;  ///< standard uncertainties that a
 inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
 inline constexpr double kGapSigmas = 5;       ///< standard errors: plateaus of one record are not independent
 inline constexpr double kLargestRatio = 2.5;  ///< or its inverse: a diameter for a radius is two; beyond, another fault
+inline constexpr double kFallOfSag = 15;      ///< of chi-squared, by which a spin explains a sag: by chance once in 1e4
+inline constexpr double kLeastCoupling = 0.01;  ///< kappa: a load that follows friction by less is left as it is
 
 // Whether a candidate is plausible.
 inline constexpr double kInside = 0.1;     ///< of its range a parameter is moved off its bound, to see what that costs
