@@ -1,0 +1,1 @@
+// Empty: the target test_headers needs a source to precompile its headers for.
