@@ -93,6 +93,7 @@ constexpr std::array kinds = {
     Kind{Quantity::temperature, {0, 0, 0, 0, 1, 0, 0}, "temperature"},
     Kind{Quantity::voltage, {0, 0, 0, 0, 0, 1, 0}, "voltage"},
     Kind{Quantity::inverse_velocity, {-1, 0, 1, 0, 0, 0, 0}, "inverse velocity"},
+    Kind{Quantity::inverse_square_of_velocity, {-2, 0, 2, 0, 0, 0, 0}, "inverse square of a velocity"},
     Kind{Quantity::inverse_length, {-1, 0, 0, 0, 0, 0, 0}, "inverse length"},
     Kind{Quantity::inverse_time, {0, 0, -1, 0, 0, 0, 0}, "inverse time"},
     Kind{Quantity::inverse_temperature, {0, 0, 0, 0, -1, 0, 0}, "inverse temperature"},
@@ -247,11 +248,11 @@ std::optional<Unit> find_exactly(std::string_view text) {
 
 const std::vector<std::string>& known_units() {
   static const std::vector<std::string> names = {
-      "s",    "ms",   "us",    "min", "h",     "m",     "mm",    "um",     "cm",  "in",   "m/s", "mm/s",
-      "um/s", "cm/s", "rad/s", "rpm", "deg/s", "rev/s", "m/s^2", "mm/s^2", "N",   "mN",   "kN",  "MN",
-      "kgf",  "gf",   "lbf",   "kip", "Nm",    "mNm",   "Nmm",   "kNm",    "kg",  "g",    "N/m", "N/mm",
-      "kN/m", "Ns/m", "Ns/mm", "Hz",  "kHz",   "MHz",   "rad",   "deg",    "rev", "degC", "K",   "V",
-      "mV",   "s/m",  "s/mm",  "1/m", "1/mm",  "1/s",   "1/min", "1/K",    "%"};
+      "s",    "ms",   "us",    "min",      "h",     "m",     "mm",    "um",     "cm",  "in",   "m/s", "mm/s",
+      "um/s", "cm/s", "rad/s", "rpm",      "deg/s", "rev/s", "m/s^2", "mm/s^2", "N",   "mN",   "kN",  "MN",
+      "kgf",  "gf",   "lbf",   "kip",      "Nm",    "mNm",   "Nmm",   "kNm",    "kg",  "g",    "N/m", "N/mm",
+      "kN/m", "Ns/m", "Ns/mm", "Hz",       "kHz",   "MHz",   "rad",   "deg",    "rev", "degC", "K",   "V",
+      "mV",   "s/m",  "s/mm",  "s^2/mm^2", "1/m",   "1/mm",  "1/s",   "1/min",  "1/K", "%"};
   return names;
 }
 
@@ -358,6 +359,8 @@ std::string_view example_of(Quantity quantity) {
       return "10V";
     case Quantity::inverse_velocity:
       return "0.05s/mm";
+    case Quantity::inverse_square_of_velocity:
+      return "0.0001s^2/mm^2";
     case Quantity::inverse_length:
       return "100/mm";
     case Quantity::inverse_time:

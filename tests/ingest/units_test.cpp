@@ -66,8 +66,12 @@ TEST(Units, BareNumbersTakeTheNamedUnit) {
 }
 
 TEST(Units, SiPrefixesAreTheSameUnitToTheLastBit) {
-  for (const auto& [text, factor] :
-       {std::pair{"1/mm", 1000.0}, {"s/mm", 1000.0}, {"mm/s", 1e-3}, {"N/mm", 1000.0}, {"kHz", 1000.0}}) {
+  for (const auto& [text, factor] : {std::pair{"1/mm", 1000.0},
+                                     {"s/mm", 1000.0},
+                                     {"s^2/mm^2", 1e6},
+                                     {"mm/s", 1e-3},
+                                     {"N/mm", 1000.0},
+                                     {"kHz", 1000.0}}) {
     ASSERT_TRUE(find_unit(text)) << text;
     EXPECT_EQ(find_unit(text)->factor, factor) << text;
   }

@@ -10,24 +10,25 @@ namespace tribofit {
 /// Kinds of quantity that users state and files hold.
 enum class Quantity {
   dimensionless,
-  time,                 // s
-  length,               // m
-  velocity,             // m/s
-  angular_velocity,     // rad/s
-  acceleration,         // m/s^2
-  force,                // N
-  torque,               // N m
-  mass,                 // kg
-  stiffness,            // N/m
-  damping,              // N s/m
-  frequency,            // Hz
-  angle,                // rad
-  temperature,          // degC
-  voltage,              // V
-  inverse_velocity,     // s/m (decay factors, viscous coefficient)
-  inverse_length,       // 1/m
-  inverse_time,         // 1/s
-  inverse_temperature,  // 1/K
+  time,                        // s
+  length,                      // m
+  velocity,                    // m/s
+  angular_velocity,            // rad/s
+  acceleration,                // m/s^2
+  force,                       // N
+  torque,                      // N m
+  mass,                        // kg
+  stiffness,                   // N/m
+  damping,                     // N s/m
+  frequency,                   // Hz
+  angle,                       // rad
+  temperature,                 // degC
+  voltage,                     // V
+  inverse_velocity,            // s/m (decay factors, viscous coefficient)
+  inverse_square_of_velocity,  // s^2/m^2 (drag)
+  inverse_length,              // 1/m
+  inverse_time,                // 1/s
+  inverse_temperature,         // 1/K
 };
 
 /// SI values of the units people read and write.
