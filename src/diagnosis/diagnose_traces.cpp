@@ -132,8 +132,26 @@ void take_rungs(std::vector<Fit> rungs, DiagnosedTraces& out) {
   out.rungs = std::move(rungs);
 }
 
+/// A fit of several records as the first of them has it.
+Fit of_first_record(const Fit& joint) {
+  Fit fit = joint;
+  fit.model = joint.model.of_one_record();
+  fit.parameters.clear();
+  fit.covariance.clear();
+  const std::size_t n = joint.parameters.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (joint.model.is_of_further_record(k)) continue;
+    fit.parameters.push_back(joint.parameters[k]);
+    for (std::size_t i = 0; i < n && !joint.covariance.empty(); ++i) {
+      if (!joint.model.is_of_further_record(i)) fit.covariance.push_back(joint.covariance[k * n + i]);
+    }
+  }
+  return fit;
+}
+
 /// The fit with what belongs to a record alone (phases, the time of a change) found anew on this one.
-Fit with_values_of_record(const Fit& fit, const Identification& trace) {
+Fit with_values_of_record(const Fit& joint, const Identification& trace) {
+  const Fit fit = of_first_record(joint);
   FitOptions options;
   const auto belongs_to_record = [&](std::size_t k) {
     return fit.model.parameters()[k].parameter.scope == ParameterScope::record;

@@ -98,7 +98,7 @@ double level_p_value(const Level& level, const Trial& poorer, const Trial& trial
   const double fall = poorer.plain_minimum - trial.plain_minimum;
   if (poorer.plain_held_out - trial.plain_held_out <= limits::kLeastSizeOfLevel * floor) return 1;
   const double noise = (trial.plain_minimum + trial.stick.rigid - trial.stick.left) / level.values;
-  const Added added = added_by(trial.plain, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  const Added added = added_by(trial.plain, trial.model.offset_of(info.key), trial.model.count_of(info.key), noise);
   const double freedom = few_frequencies(static_cast<double>(trial.plain.rows.size()));
   return fall_p_value(fall, added.free, noise, added.design_effect(), freedom);
 }
@@ -113,7 +113,7 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const Trial& trial = out.trial;
   if (!trial.usable) return out;
   const double noise = noise_of(level, trial);
-  const Added added = added_by(trial.linear, trial.model.offset_of(info.key), info.parameters.size(), noise);
+  const Added added = added_by(trial.linear, trial.model.offset_of(info.key), trial.model.count_of(info.key), noise);
   out.design_effect = added.design_effect();
   // The noise is known from all cycles where neighbours are independent, and from few frequencies where they are not. A
   // line stands among as many frequencies as it likes.

@@ -70,7 +70,7 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
   Ladder ladder;
   ladder.law = law;
   LadderStep base;
-  base.trial = try_base(context, context.fine, FrictionModel(law));
+  base.trial = try_base(context, context.fine, FrictionModel(law, {}, context.records.size()));
   for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect);
   look_beside(context, base);
   ladder.finished = !base.trial.usable;
@@ -129,7 +129,7 @@ Trial try_other_law(const DiagnosisContext& context, const Law& law, const Trial
   if (without < effects.size()) effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(without));
   if (!std::all_of(effects.begin(), effects.end(), [&](const Effect& e) { return obstacle_on(law, e).empty(); }))
     return {};
-  const FrictionModel model(law, std::move(effects));
+  const FrictionModel model(law, std::move(effects), known.model.records());
   const Observations& observations = context.coarse.observations;
   std::vector<double> start = start_from_data(model, observations, bounds_of(model, observations));
   for (std::size_t k = model.base_count(); k < start.size(); ++k) {

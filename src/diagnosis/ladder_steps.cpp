@@ -19,7 +19,7 @@ std::size_t index_of(const FrictionModel& model, const std::string& key) {
 Trial try_instead(const DiagnosisContext& context, const Trial& without, const Candidate& candidate,
                   const Trial& judged) {
   FrictionModel model = with_effect(without.model, candidate.effect);
-  const std::size_t offset = model.offset_of(candidate.info.key), added = candidate.info.parameters.size();
+  const std::size_t offset = model.offset_of(candidate.info.key), added = model.count_of(candidate.info.key);
   const std::size_t from = judged.model.offset_of(candidate.info.key);
   std::vector<double> start = without.p;
   start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -207,7 +208,7 @@ std::vector<double> residual_of(const DiagnosisContext& context, const Trial& tr
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect) {
   std::vector<Effect> effects(model.effects().begin(), model.effects().end());
   effects.push_back(effect);
-  return FrictionModel(model.law(), std::move(effects));
+  return FrictionModel(model.law(), std::move(effects), model.records());
 }
 
 namespace {
@@ -219,17 +220,22 @@ struct Promise {
   double score = 0, squares = 0;
 };
 
-/// The start with the effect's `values` among the parameters of the base: the model has an order of its own.
-Promise start_with(const std::vector<double>& base, const EffectInfo& effect, std::size_t offset,
+/// The start with the effect's `values` among the parameters of the base: the model has an order of its own. Phases
+/// that further records have are those of the first.
+Promise start_with(const std::vector<double>& base, const FrictionModel& model, const EffectInfo& effect,
                    const std::vector<double>& values, const Bounds& bounds) {
   Promise promise;
-  std::size_t from_base = 0;
-  const std::size_t added = effect.parameters.size();
-  for (std::size_t k = 0; k < base.size() + added; ++k) {
-    const bool own = k >= offset && k < offset + added;
-    promise.start.push_back(std::clamp(own ? values[k - offset] : base[from_base], bounds.lower[k], bounds.upper[k]));
-    if (!own) ++from_base;
-    if (own && !effect.parameters[k - offset].periodic) promise.place.push_back(values[k - offset]);
+  const std::size_t offset = model.offset_of(effect.key), added = model.count_of(effect.key);
+  promise.start = base;
+  promise.start.insert(promise.start.begin() + static_cast<std::ptrdiff_t>(offset), added, 0.0);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    for (std::size_t record = 0; record < model.records(); ++record) {
+      promise.start[model.slot_of(offset + k, record)] = values[k];
+    }
+    if (!effect.parameters[k].periodic) promise.place.push_back(values[k]);
+  }
+  for (std::size_t k = 0; k < promise.start.size(); ++k) {
+    promise.start[k] = std::clamp(promise.start[k], bounds.lower[k], bounds.upper[k]);
   }
   return promise;
 }
@@ -275,6 +281,29 @@ std::optional<StepSquares> squares_of_step(const ModelResiduals& residuals, cons
                      sum(squares_after(linear, bounded_step(linear, range.lower, range.upper))) - rigid};
 }
 
+/// The start of one place in which every record has the phases with which it leaves least, of those that were tried.
+std::optional<Promise> combined_phases(const FrictionModel& model, const ModelResiduals& residuals,
+                                       const Observations& observations, const std::vector<Promise>& tried) {
+  std::optional<Promise> best;
+  std::vector<double> least(model.records(), std::numeric_limits<double>::infinity());
+  for (const Promise& one : tried) {
+    const std::vector<double> squares = residuals.squares(one.start.data());
+    if (squares.empty()) continue;
+    if (!best) best = one;
+    std::vector<double> of_record(model.records(), 0.0);
+    for (std::size_t s = 0; s < squares.size(); ++s) of_record[observations.slips[s].record] += squares[s];
+    for (std::size_t record = 0; record < model.records(); ++record) {
+      if (!(of_record[record] < least[record])) continue;
+      least[record] = of_record[record];
+      for (std::size_t k = 0; k < one.start.size(); ++k) {
+        const std::size_t slot = model.slot_of(k, record);
+        if (record == 0 ? model.slot_of(k, 1) != k : slot != k) best->start[slot] = one.start[slot];
+      }
+    }
+  }
+  return best;
+}
+
 /// Of the starts in one place, which differ in their phases alone, the best is kept.
 void keep_best_of_place(Promise promise, std::vector<Promise>& promises) {
   const auto same = std::find_if(promises.begin(), promises.end(),
@@ -294,13 +323,10 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
-  const std::size_t offset = model.offset_of(candidate.info.key);
   const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
   std::vector<Promise> promises;
   const std::vector<std::vector<double>> bases = bases_of_search(level, base);
-  const auto try_start = [&](std::size_t from, const std::vector<double>& values) {
-    Promise promise = start_with(bases[from], candidate.info, offset, values, bounds);
-    promise.place.push_back(static_cast<double>(from));
+  const auto try_start = [&](Promise promise) {
     const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds);
     if (!step) return;
     promise.squares = std::min(step->here, step->there);
@@ -308,8 +334,19 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
     promise.score = step->there + 1e-2 * step->here;
     keep_best_of_place(std::move(promise), promises);
   };
+  std::map<std::vector<double>, std::vector<Promise>> places;
   for (const auto& values : starts.values) {
-    for (std::size_t from = 0; from < bases.size(); ++from) try_start(from, values);
+    for (std::size_t from = 0; from < bases.size(); ++from) {
+      Promise promise = start_with(bases[from], model, candidate.info, values, bounds);
+      promise.place.push_back(static_cast<double>(from));
+      if (model.count_of(candidate.info.key) > candidate.info.parameters.size()) {
+        places[promise.place].push_back(promise);
+      }
+      try_start(std::move(promise));
+    }
+  }
+  for (const auto& [place, tried] : places) {
+    if (auto combined = combined_phases(model, residuals, level.observations, tried)) try_start(std::move(*combined));
   }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.score < b.score; });
@@ -344,10 +381,9 @@ Trial try_without(const DiagnosisContext& context, const Level& level, const Tri
   for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
     if (k == effect) continue;
     effects.push_back(full.model.effects()[k]);
-    const std::size_t count = describe(effects.back()).parameters.size();
-    for (std::size_t i = 0; i < count; ++i) start.push_back(full.p[full.model.offset(k) + i]);
+    for (std::size_t i = 0; i < full.model.count(k); ++i) start.push_back(full.p[full.model.offset(k) + i]);
   }
-  return try_model(context, level, FrictionModel(full.model.law(), effects), std::move(start));
+  return try_model(context, level, FrictionModel(full.model.law(), effects, full.model.records()), std::move(start));
 }
 
 }  // namespace tribofit::diagnosis

@@ -124,15 +124,17 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   return curve;
 }
 
-std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
+                            std::size_t record) {
   std::vector<double> mu(motion.size(), std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> p = fit.values();
   if (p.empty()) return mu;
   const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
-  const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
+  const FullRecord samples(std::span(&one, 1), observations, fit.model.needs());
   for (const auto& range : observations.slips) {
-    const Slip slip = record.slip(range);
+    Slip slip = samples.slip(range);
+    slip.record = record;
     evaluate<double>(fit.model, p.data(), slip, slip.velocity,
                      std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));
   }

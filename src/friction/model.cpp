@@ -46,7 +46,8 @@ std::string obstacle_on(const Law& law, const Effect& effect) {
   return "the " + std::string(to_string(law)) + " law has no scale of speed that it could change";
 }
 
-FrictionModel::FrictionModel(Law law, std::vector<Effect> effects) : law_(law), effects_(std::move(effects)) {
+FrictionModel::FrictionModel(Law law, std::vector<Effect> effects, std::size_t records)
+    : law_(law), effects_(std::move(effects)), records_(records) {
   // One order for any order given. A memory that acts in stick comes after those of rigid stick: it turns |mu| into
   // signed mu.
   std::stable_sort(effects_.begin(), effects_.end(), [&](const Effect& a, const Effect& b) {
@@ -64,6 +65,15 @@ FrictionModel::FrictionModel(Law law, std::vector<Effect> effects) : law_(law), 
     const EffectInfo info = describe(effect);
     offsets_.push_back(slots_.size());
     for (const Parameter& parameter : info.parameters) slots_.push_back({parameter, info.key});
+    for (std::size_t k = 0; k < info.parameters.size() && records_ > 1; ++k) {
+      if (!info.parameters[k].periodic || info.parameters[k].scope != ParameterScope::record) continue;
+      own_.push_back({offsets_.back() + k, slots_.size()});
+      for (std::size_t record = 2; record <= records_; ++record) {
+        slots_.push_back({info.parameters[k], info.key});
+        slots_.back().parameter.name += "[" + std::to_string(record) + "]";
+        slots_.back().parameter.description += " in record " + std::to_string(record);
+      }
+    }
     std::visit(
         [&]<class E>(const E&) {
           if constexpr (hooks::Remembers<E, double> || hooks::HasContactAge<E, double>) ++state_count_;
@@ -75,6 +85,22 @@ FrictionModel::FrictionModel(Law law, std::vector<Effect> effects) : law_(law), 
 std::size_t FrictionModel::offset_of(std::string_view key) const {
   const auto at = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.effect == key; });
   return static_cast<std::size_t>(at - slots_.begin());
+}
+
+std::size_t FrictionModel::count_of(std::string_view key) const {
+  return static_cast<std::size_t>(
+      std::count_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.effect == key; }));
+}
+
+bool FrictionModel::is_of_further_record(std::size_t k) const {
+  return std::any_of(own_.begin(), own_.end(),
+                     [&](const Own& own) { return k >= own.further && k < own.further + records_ - 1; });
+}
+
+std::size_t FrictionModel::slot_of(std::size_t k, std::size_t record) const {
+  if (!has_values_of(record)) return k;
+  const auto own = std::find_if(own_.begin(), own_.end(), [k](const Own& o) { return o.first == k; });
+  return own == own_.end() ? k : own->further + record - 1;
 }
 
 std::vector<std::string> FrictionModel::effect_keys() const {

@@ -88,14 +88,14 @@ void write_errors(WholeFolder& folder, const Identification& result, const std::
   }
 }
 
-/// Adds the files of one trace; `best` is the index of the fit they show, `before` the cycles of the traces it holds
-/// before this one.
+/// Adds the files of one trace; `best` is the index of the fit they show, which is of `record` traces, and `before`
+/// cycles, before this one.
 void add_files(WholeFolder& files, const Identification& trace, std::span<const Fit> fits, std::size_t best,
-               std::size_t before = 0) {
+               std::size_t record = 0, std::size_t before = 0) {
   const Fit* shown = fits.empty() ? nullptr : &fits[best];
   const Membership member = membership(trace.motion, trace.segmentation, shown, before);
   std::vector<double> model;
-  if (shown != nullptr) model = predict(*shown, trace.motion, trace.segmentation);
+  if (shown != nullptr) model = predict(*shown, trace.motion, trace.segmentation, record);
   write_samples(files, trace, model, member);
   write_cycles(files, trace, member);
   write_curves(files, fits);
@@ -125,7 +125,7 @@ void write_csv_folder(const std::string& folder, const DiagnosedTraces& result) 
     std::string name = stem;
     for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}-{}", stem, n);
     folders.push_back(std::make_unique<WholeFolder>(folder + "/" + name));
-    add_files(*folders.back(), trace, result.fits, result.best, before);
+    add_files(*folders.back(), trace, result.fits, result.best, folders.size() - 1, before);
     folders.back()->finish();  // closes its files
     before += evidence_of(trace.motion, trace.segmentation);
   }

@@ -177,7 +177,7 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
         s->heading(trace.path);
       }
     }
-    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn)));
+    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
   }
   if (count > drawn) {
     sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));

@@ -1,4 +1,4 @@
-/// A finding on a run that was held back.
+/// A finding on a run that was held back, and on two runs together.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,6 +62,46 @@ TEST(Confirm, ARunWithoutTheEffectVetoes) {
   EXPECT_EQ(diagnosis.verdict, Verdict::unconfirmed);
   ASSERT_FALSE(diagnosis.messages.empty());
   EXPECT_NE(diagnosis.messages.back().find("does not bear out"), std::string::npos);
+}
+
+/// The value of a parameter of a fit within four standard errors of the truth.
+void expect_parameter(const Fit& fit, const std::string& name, double truth) {
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    if (fit.model.parameters()[k].full_name() != name) continue;
+    const FitParameter& p = fit.parameters[k];
+    EXPECT_GT(p.std_error, 0) << name;
+    EXPECT_LT(p.std_error, 0.05) << name;
+    EXPECT_NEAR(p.value, truth, 4 * p.std_error) << name;
+    return;
+  }
+  ADD_FAILURE() << name << " is no parameter of " << fit.model.name();
+}
+
+TEST(Together, RunsShareARunoutButNotItsStartingAngle) {
+  const Identification first = run(0.05, 0.4, 1), second = run(0.05, 2.6, 2);
+  const Record both[] = {{&first.motion, &first.segmentation}, {&second.motion, &second.segmentation}};
+  const Diagnosed found = diagnose(both, {ExponentialLaw{}});
+  ASSERT_EQ(found.diagnosis.ladder.size(), 2u);
+  EXPECT_EQ(found.diagnosis.ladder.back().added, "runout");
+  EXPECT_EQ(found.diagnosis.verdict, Verdict::effect_found);
+  const Fit& fit = found.fits.back();
+  expect_parameter(fit, "runout.A", 0.05);
+  expect_parameter(fit, "runout.phase", 0.4);
+  expect_parameter(fit, "runout.phase[2]", 2.6);
+  // Each record is predicted with the phase that it has.
+  for (std::size_t r = 0; r < 2; ++r) {
+    const std::vector<double> model = predict(fit, *both[r].motion, *both[r].segmentation, r);
+    double squares = 0, count = 0;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      if (!std::isfinite(model[i])) continue;
+      squares += (model[i] - both[r].motion->friction[i]) * (model[i] - both[r].motion->friction[i]);
+      count += 1;
+    }
+    EXPECT_LT(std::sqrt(squares / count), 1.1 * 0.003) << "record " << r;
+  }
+  // A third run is tried with a phase of its own.
+  const Confirmation third = diagnosis::confirm(run(0.05, -1.5, 4), found.fits);
+  EXPECT_LT(third.final_rmse, 0.6 * third.base_rmse);
 }
 
 }  // namespace

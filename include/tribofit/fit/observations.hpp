@@ -14,8 +14,8 @@
 namespace tribofit {
 
 /// The scales of a motion, in which bounds and windows are stated: medians over the slips that begin in stick; where
-/// nothing sticks, the sixth part of a piece of the record, as a slip is of a cycle. The values given here are those of the rig of [D] (a pad on a disc,
-/// 15 mm, 4 rpm, 50 N), for which the catalogue states its bounds.
+/// nothing sticks, the sixth part of a piece of the record, as a slip is of a cycle. The values given here are those of
+/// the rig of [D] (a pad on a disc, 15 mm, 4 rpm, 50 N), for which the catalogue states its bounds.
 struct RecordScales {
   double slip_time = 1.0 / 30;   ///< [s]
   double slip_length = 1.25e-3;  ///< [m]
@@ -43,7 +43,6 @@ struct Observations {
     SampleRange samples;                             ///< the same in samples of the Motion
     std::size_t cycle = 0;                           ///< unit of evidence it belongs to, from 0, in order of time
     std::size_t segment = 0;                         ///< index in Segmentation::cycles
-    std::size_t record = 0;                          ///< which of several records
     double break_away_friction = 0;                  ///< |mu| at break-away; NaN when there is none
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded

@@ -292,15 +292,24 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
 /// |mu| that the model expects to be read at the break-away which begins `slip` [1], after every effect on the level.
 template <class T>
 T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
+  if (model.has_values_of(slip.record)) {
+    const std::vector<T> own = model.values_of(slip.record, p);
+    return slip.direction * detail::break_away(model, own.data(), slip, true);
+  }
   return slip.direction * detail::break_away(model, p, slip, true);
 }
 
 /// Friction of the model at every sample of a slip, signed as v_r is.
 ///
-/// p: parameters in SI, model.parameters().size() of them; velocity: v_r [m/s]; mu: one value a sample, written.
-/// Cost: linear in samples; one pass per memory.
+/// p: parameters in SI, model.parameters().size() of them, of which those of slip.record are taken; velocity: v_r
+/// [m/s]; mu: one value a sample, written. Cost: linear in samples; one pass per memory.
 template <class T>
 void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) {
+  std::vector<T> own;
+  if (model.has_values_of(slip.record)) {
+    own = model.values_of(slip.record, p);
+    p = own.data();
+  }
   const LawValues<T> law = law_for(model, p, slip);
   const std::size_t n = slip.size();
   steady_friction(model, p, law, slip, velocity, mu);

@@ -38,6 +38,7 @@ struct SlidingState {
 
 /// What is known of a slip and of the stick before it beside its samples. SI; friction signed.
 struct SlipFacts {
+  std::size_t record = 0;      ///< which of several records, where a model has phases of each
   bool from_stick = false;     ///< it begins with a break-away; otherwise the record (or a reversal) begins it
   double break_away_time = 0;  ///< [s], where from_stick
   double stick_time = 0;       ///< of the stick before [s]; NaN when its beginning was not recorded
