@@ -102,6 +102,7 @@ Channels FrictionModel::needs() const {
     all.lead |= c.lead;
     all.force |= c.force;
     all.plateau |= c.plateau;
+    all.time |= c.time;
   }
   return all;
 }
