@@ -1,5 +1,6 @@
 #include "tribofit/pipeline.hpp"
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,9 +34,10 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   out.warnings = trace.warnings;
 
   out.motion = compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects));
+  if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   out.segmentation = find_cycles(out.motion);
   exclude(options.selection, out.motion, out.segmentation);
-  out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
+  if (!out.motion.is_points()) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 

@@ -179,6 +179,12 @@ void refuse_extremes(const IdentifyOptions& options) {
   }
 }
 
+std::optional<RecordKind> kind_from(const Settings& s) {
+  if (s.never_sticks && !s.kind.empty() && s.kind != to_string(RecordKind::sliding))
+    throw UsageError("--never-sticks says --kind sliding, and --kind " + s.kind + " another");
+  return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
+}
+
 }  // namespace
 
 IdentifyOptions options_from(const Settings& s) {
@@ -186,9 +192,10 @@ IdentifyOptions options_from(const Settings& s) {
   options.threads = s.threads;
   read_reading(s, options.read);
   options.motion.trim = s.trim;
-  options.motion.stick.never = s.never_sticks;
+  options.read.kind = kind_from(s);
   if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
-  if (s.never_sticks && !s.stick_below.empty()) throw UsageError("--never-sticks and --stick-below exclude each other");
+  if (options.read.kind && options.read.kind != RecordKind::stick_slip && !s.stick_below.empty())
+    throw UsageError("--stick-below is for records that stick and slip, and excludes --never-sticks and other kinds");
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);
   read_laws(s.laws, options.laws);
   read_effects(s, options.laws, options.effects);

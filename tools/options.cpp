@@ -2,6 +2,7 @@
 
 #include "parameter_options.hpp"
 #include "stated_value.hpp"
+#include "tribofit/ingest/record_kind.hpp"
 
 void add_input_options(const Command& app, Settings& s) {
   app.add_option("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
@@ -23,8 +24,10 @@ void add_input_options(const Command& app, Settings& s) {
   input("--with-columns", s.second_columns, "--columns of the second file: v_b=Velocity:mm/s").one_value_each();
   input("--with-units", s.second_units, "--units of the second file").one_value_each();
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
-  app.add_flag("--never-sticks", s.never_sticks, "The block never sticks: every sample is sliding, however slow")
-      .group("Reading");
+
+  input("--kind", s.kind, "What was recorded: stick-slip, sliding (never sticks: every sample counts), points, ...")
+      .one_of(tribofit::record_kind_names());
+  app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group("Reading");
   input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
   app.add_flag("--trim,!--no-trim", s.trim, "Exclude the run-up of the disc (default); --no-trim keeps it")
       .group("Reading");

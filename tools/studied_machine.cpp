@@ -85,6 +85,7 @@ void require_machine(const Identification& trace) {
   if (!trace.analysed || trace.fits.empty())
     refuse(trace, trace.warnings.empty() ? "nothing was fitted" : trace.warnings.back());
   if (!trace.fits[trace.best].converged) refuse(trace, "the fit of the law did not converge");
+  if (trace.motion.is_points()) refuse(trace, "points without time show no machine; give its numbers instead");
   if (trace.motion.disc_velocity.empty() && !(trace.motion.constant_disc_velocity > 0))
     refuse(trace, "the disc does not turn forwards, or its speed is not known");
   if (std::abs(trace.motion.plateau_ratio - 1) > kLargestGap) {

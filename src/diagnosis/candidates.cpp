@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "fit/starts.hpp"
 #include "imitations.hpp"
@@ -92,6 +93,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
 std::string obstacle(const EffectInfo& info, std::span<const Record> records, const Observations& observations,
                      const Excitation& seen) {
   const Channels& needs = info.needs;
+  if (needs.time && are_points(records)) return "points have no order in time: nothing shows what came before";
   if (needs.temperature && observations.temperature.empty()) return "there is no temperature channel";
   if (needs.load && observations.load.empty()) return "there is no load channel";
   if (needs.angle && observations.angle.empty()) return "the disc angle is not known (give --speed)";

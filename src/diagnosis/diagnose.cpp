@@ -8,6 +8,7 @@
 #include "findings.hpp"
 #include "fit/assessment.hpp"
 #include "fit/fit_laws.hpp"
+#include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "limits.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -36,7 +37,7 @@ class ProgressReporter {
 /// Everything these data offer to an effect.
 Channels all_channels(std::span<const Record> records) {
   Channels all;
-  all.acceleration = all.distance = all.stick_time = all.lead = true;
+  all.acceleration = all.distance = all.stick_time = all.lead = !are_points(records);
   const auto each = [&](auto has) { return std::all_of(records.begin(), records.end(), has); };
   all.angle = each([](const Record& r) {
     return !r.motion->disc_angle.empty() || !r.motion->disc_speed.empty() || r.motion->conditions.speed.known();
@@ -60,6 +61,10 @@ Observations observe_all(std::span<const Record> records, const Channels& channe
 std::size_t count_cycles(std::span<const Record> records) {
   std::size_t cycles = 0;
   for (const Record& record : records) {
+    if (record.motion->is_points()) {
+      cycles += record.motion->size();
+      continue;
+    }
     const bool sticks = record.segmentation->kind == MotionKind::stick_slip;
     const auto& all = record.segmentation->cycles;
     const auto taken = std::count_if(all.begin(), all.end(),
@@ -74,7 +79,8 @@ Floor floor_of(std::span<const Record> records) {
   double noise = 0, scatter = 0;
   for (const Record& record : records) {
     const Floor floor = estimate_floor(*record.motion, *record.segmentation);
-    noise += std::pow(noise_without_line(record, floor.noise), 2) / static_cast<double>(records.size());
+    const double own = record.motion->is_points() ? floor.noise : noise_without_line(record, floor.noise);
+    noise += std::pow(own, 2) / static_cast<double>(records.size());
     scatter += std::pow(floor.scatter, 2) / static_cast<double>(records.size());
   }
   Floor out;
@@ -86,6 +92,12 @@ Floor floor_of(std::span<const Record> records) {
 Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
   Diagnosis out;
   out.verdict = Verdict::not_enough_data;
+  if (are_points(records)) {
+    out.messages.push_back(
+        fmt::format("there are {} points; {} are needed to hold some of them out", cycles, limits::kFewestCycles));
+    out.next_experiment = "Measure more points, most of them where friction changes with speed.";
+    return out;
+  }
   out.messages.push_back(
       fmt::format("there are {} cycles; {} are needed to hold some of them out", cycles, limits::kFewestCycles));
   double duration = 0;
@@ -140,6 +152,12 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
   fits.erase(failed, fits.end());
   return fits;
+}
+
+/// Points that are far apart in speed differ by more than noise: what the best rung leaves is no less than that.
+double noise_of_points(double noise, const std::vector<Fit>& fits) {
+  for (const Fit& rung : fits) noise = std::min(noise, rung.floor.noise);
+  return noise;
 }
 
 /// One noise floor for all rungs, since it is a property of the records: the sensor noise, and the least of what the
@@ -280,7 +298,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   }
   progress.say("fitting every rung", 0.85);
   out.fits = fit_rungs(context, instruments, fit, ladder);
-  diagnosis.floor_rmse = share_floor(context.noise, out.fits);
+  diagnosis.floor_rmse =
+      share_floor(are_points(records) ? noise_of_points(context.noise, out.fits) : context.noise, out.fits);
   const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes);
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);

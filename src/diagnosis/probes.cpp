@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
@@ -355,6 +356,10 @@ std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coars
     if (probe) out.push_back(std::move(*probe));
   };
   add(over_velocity(context, coarse));
+  if (are_points(context.records)) {
+    add(over_load(context, coarse, inputs));
+    return out;
+  }
   add(over_branch(context, coarse));
   add(over_time(context, coarse, inputs));
   add(over_angle(context, coarse, inputs));

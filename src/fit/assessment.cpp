@@ -13,12 +13,25 @@ double over_floor(const Fit& fit) {
   return fit.floor.rmse > 0 ? fit.error.held_out_rmse / fit.floor.rmse : std::nan("");
 }
 
+namespace {
+
+/// What the parameters alone do to an error on held-out points, over the noise: where they are few, and as many
+/// parameters, the true law is not at the noise floor.
+double cost_of_parameters(const Fit& fit) {
+  const auto count = static_cast<double>(fit.observations), parameters = static_cast<double>(fit.parameters.size());
+  const bool points = fit.cycles == fit.observations;  // each is evidence of its own
+  return points && count > parameters ? std::sqrt(1 + parameters / (count - parameters)) : 1;
+}
+
+}  // namespace
+
 FitQuality quality_of(const Fit& fit) {
   if (!fit.converged || fit.parameters.empty()) return FitQuality::unusable;
-  const double ratio = over_floor(fit);
+  const double ratio = over_floor(fit), cost = cost_of_parameters(fit);
   if (ratio < 1 / kAtFloor) return FitQuality::floor_too_high;
-  if (fit.error.held_out_rmse > kLearntByHeart * fit.error.rmse) return FitQuality::not_transferable;
-  if (ratio <= kAtFloor) return FitQuality::at_floor;
+  // The parameters lower the error of what they were fitted to by as much again.
+  if (fit.error.held_out_rmse > kLearntByHeart * cost * cost * fit.error.rmse) return FitQuality::not_transferable;
+  if (ratio <= kAtFloor * cost) return FitQuality::at_floor;
   if (fit.error.mean_relative <= kClose) return FitQuality::close;
   return fit.error.mean_relative <= kOutline ? FitQuality::outline : FitQuality::poor;
 }

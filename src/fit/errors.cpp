@@ -25,6 +25,10 @@ bool FullRecord::is_spoilt(const Observations::SlipObservation& range, std::size
   return records_[range.record].motion->has_fault(range.samples.begin + i, SampleFault::any);
 }
 
+double FullRecord::weight(const Observations::SlipObservation& range, std::size_t i) const {
+  return records_[range.record].motion->is_points() ? observations_.weight[range.begin + i] : 1;
+}
+
 Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   const auto part = [&](const std::vector<double>& channel) {
     return part_of(channel, range.samples.begin, range.samples.end);
@@ -95,15 +99,16 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
       if (record.is_spoilt(range, i)) continue;
       good += 1;
       const double r = measured[i] - mu[i];
-      squares += r * r;
+      const double weight = record.weight(range, i);
+      squares += weight * r * r;
       stretch += r;
       if (++in_stretch == length) {
         out.levels.push_back(std::exchange(stretch, 0) / static_cast<double>(length));
         in_stretch = 0;
       }
       const double level = measured[i] * range.direction;
-      sum += level;
-      sum_squares += level * level;
+      sum += weight * level;
+      sum_squares += weight * level * level;
       if (measured[i] != 0) {
         const double e = std::abs(r / measured[i]);
         relative += e;

@@ -17,6 +17,8 @@ class FullRecord {
   std::span<const double> friction(const Observations::SlipObservation& range) const;
   /// Whether a fault of the recording spoilt sample i of a slip.
   bool is_spoilt(const Observations::SlipObservation& range, std::size_t i) const;
+  /// Weight of its square: 1, of a point as the observations weigh it.
+  double weight(const Observations::SlipObservation& range, std::size_t i) const;
 
  private:
   struct Channel {

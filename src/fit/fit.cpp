@@ -1,5 +1,7 @@
 #include "tribofit/fit/fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,7 @@
 #include "limits.hpp"
 #include "messages.hpp"
 #include "parameter_errors.hpp"
+#include "points.hpp"
 #include "profile.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
@@ -104,6 +107,13 @@ double slow_noise_beyond_stretches(const SampleErrors& errors) {
   return std::sqrt(std::clamp(slow.variance_within() - within_stretch, 0.0, squares));
 }
 
+/// What a fit with so many parameters leaves of points, as one value: their noise is no larger, though points that are
+/// far apart in speed differ by more.
+double noise_beside(const Fit& fit, std::size_t parameters) {
+  const auto count = static_cast<double>(fit.observations), left = count - static_cast<double>(parameters);
+  return fit.error.rmse * std::sqrt(count / std::max(1.0, left));
+}
+
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
@@ -116,7 +126,9 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   const bool sticks = std::any_of(context.records.begin(), context.records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;
   });
-  if (!sticks) floor.slow_noise = slow_noise_beyond_stretches(errors);
+  const bool points = are_points(context.records);
+  if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
+  if (!sticks && !points) floor.slow_noise = slow_noise_beyond_stretches(errors);
   floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.slow_noise, 2) + scatter);
   set_floor(floor, fit);
 }
@@ -168,6 +180,10 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   if (observations.cycles < kFewestCycles)
     return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
 
+  if (observations.size() <= model.parameters().size()) {
+    return failed_fit(std::move(fit), fmt::format("there are {} values for {} parameters: nothing is left to test",
+                                                  observations.size(), model.parameters().size()));
+  }
   if (options.protocol == Protocol::published && !describe(model.law()).has_per_cycle_extremes())
     return failed_fit(std::move(fit), "per-cycle extremes are for laws of mu_s, mu_k and at most one more parameter");
 

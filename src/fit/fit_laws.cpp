@@ -9,23 +9,29 @@
 #include "requested_effects.hpp"
 #include "slip_ranges.hpp"
 #include "tribofit/fit/observations.hpp"
+#include "tribofit/friction/effects/all.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
 namespace {
 
-/// Every model and protocol to fit: joint fits first, then the per-cycle extremes for the bare laws.
+/// Every model and protocol to fit: joint fits first, then the per-cycle extremes for the bare laws. Points have no
+/// cycles; their laws are fitted with a viscous part as well, where no effect is asked for.
 std::vector<std::pair<FrictionModel, FitOptions>> planned_fits(const IdentifyOptions& options,
-                                                               const std::vector<Effect>& effects) {
+                                                               const std::vector<Effect>& effects, bool has_cycles) {
   std::vector<std::pair<FrictionModel, FitOptions>> fits;
   FitOptions inner = options.fit;
   for (const Law& law : options.laws) fits.emplace_back(FrictionModel(law, effects), inner);
+  // A table mostly reaches over the whole Stribeck curve, where friction rises again with speed.
+  for (const Law& law : options.laws) {
+    if (!has_cycles && effects.empty()) fits.emplace_back(FrictionModel(law, {Viscous{}}), inner);
+  }
   inner.protocol = Protocol::published;
   for (const Law& law : options.laws) {
     const LawInfo info = describe(law);
     const bool fits_more = info.has_per_cycle_extremes() && !info.constant_in_slip;  // than the extremes themselves
-    if (options.published_protocol && fits_more) fits.emplace_back(FrictionModel(law), inner);
+    if (options.published_protocol && fits_more && has_cycles) fits.emplace_back(FrictionModel(law), inner);
   }
   return fits;
 }
@@ -75,7 +81,7 @@ void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail d
     return;
   }
   const Record record = {&trace.motion, &trace.segmentation};
-  const auto fits = planned_fits(options, effects);
+  const auto fits = planned_fits(options, effects, !trace.motion.is_points());
   trace.fits.resize(fits.size());
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
     const Observations observations = observations_for(fits[k].first, {&record, 1}, detail);

@@ -8,6 +8,7 @@
 
 #include "errors.hpp"
 #include "limits.hpp"
+#include "points.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -135,6 +136,7 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
 }  // namespace
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
+  if (motion.is_points()) return noise_of_points(motion, segmentation);
   Floor floor;
   std::vector<Remainder> parts = stick_residuals(motion, segmentation);
   floor.source = "stick";

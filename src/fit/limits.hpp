@@ -14,6 +14,10 @@ inline constexpr std::size_t kFewestCycles = 3;
 /// parabola.
 inline constexpr std::size_t kShortestNoiseStretch = 12, kLongestNoiseStretch = 200;
 
+/// Degrees of freedom below which a variance of its own for each point says too little of a parameter: its interval
+/// would be a quarter wider than with one variance for all, which a standard error of each point serves better.
+inline constexpr double kFewestFreeVariances = 5;
+
 /// Levels by which 1/f noise is distinguished from what a wrong model leaves: with 600 it is in four of five records,
 /// with 60 in hardly any; more only cost time.
 inline constexpr std::size_t kEnoughLevels = 2000;

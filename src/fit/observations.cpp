@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "points.hpp"
 #include "slip_ranges.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -375,6 +376,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.weight.push_back(good > 0 ? static_cast<double>(good) : kWeightOfSpoilt);
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
+  weigh_points(motion, out);
   if (out.samples_per_value > 1) add_velocity_variance(motion, reduce, out);
   add_channels(motion, needs, reduce, out);
   set_extent(out);

@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "points.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -76,6 +77,22 @@ void open_intervals(const std::vector<std::vector<std::size_t>>& groups, Fit& fi
   }
 }
 
+/// Points scatter independently. A parameter on its bound is as in influences_of().
+Spread spread_between_points(const FitContext& context, const NormalEquations& equations, const Freedom& freedom,
+                             double squares) {
+  Spread spread = spread_of_points(equations, squares, freedom.inside);
+  if (freedom.inside == freedom.free) return spread;
+  const Spread with_bound = spread_of_points(equations, squares, freedom.free);
+  for (std::size_t k = 0; k < context.model.parameters().size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (!freedom.free[k] || freedom.inside[k]) continue;
+    spread.std_error(i) = with_bound.std_error(i);
+    spread.degrees_of_freedom(i) = with_bound.degrees_of_freedom(i);
+    spread.covariance(i, i) = with_bound.covariance(i, i);
+  }
+  return spread;
+}
+
 }  // namespace
 
 Freedom freedom_of(const FitContext& context, const std::vector<double>& p, const NormalEquations& equations) {
@@ -100,10 +117,12 @@ Freedom freedom_of(const FitContext& context, const std::vector<double>& p, cons
 void fill_parameters(const FitContext& context, const Solution& solution, const NormalEquations& equations,
                      const Freedom& freedom, Fit& fit) {
   SlowLevels slow;
+  const bool points = are_points(context.records);
   // Several records have levels of their own, which are no noise that wanders from one to the next.
-  if (!context.by_extremes() && context.records.size() == 1)
+  if (!context.by_extremes() && context.records.size() == 1 && !points)
     slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside);
-  const Spread spread = spread_of(influences_of(context, solution, equations, freedom), slow);
+  const Spread spread = points ? spread_between_points(context, equations, freedom, 2 * solution.result.cost)
+                               : spread_of(influences_of(context, solution, equations, freedom), slow);
   for (std::size_t k = 0; k < solution.values().size(); ++k) {
     fit.parameters.push_back(fitted_parameter(context, solution, spread, k));
     fit.degrees_of_freedom = spread.degrees_of_freedom(static_cast<Eigen::Index>(k));

@@ -94,6 +94,8 @@ void require_channels(std::span<const Effect> effects, Identification& trace) {
       !motion.conditions.load.known()) {
     trace.refuse("an effect needs the normal force, which is not known: give it with --load 50N");
   }
+  if (needs.time && motion.is_points())
+    trace.refuse("an effect needs to know what came before each sample, and points have no order in time");
   require(needs.temperature, !motion.temperature.empty(), "temperature");
   require(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }

@@ -1,6 +1,7 @@
 #include "slip_ranges.hpp"
 
 #include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -119,9 +120,24 @@ Observations::SlipObservation slip_range(const Motion& motion, const Segmentatio
   return range;
 }
 
+/// Every point is evidence of its own. They come in an order that goes with nothing, so that a block of them is one at
+/// random, and neighbours have no more in common than others.
+std::vector<Observations::SlipObservation> each_point(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Observations::SlipObservation> points;
+  for (const Cycle& cycle : segmentation.cycles) {
+    for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i)
+      points.push_back(slip_range(motion, segmentation, cycle, {i, i + 1}, false));
+  }
+  boost::random::mt19937_64 engine(1);
+  for (std::size_t k = points.size(); k > 1; --k) std::swap(points[k - 1], points[engine() % k]);
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].cycle = k;
+  return points;
+}
+
 }  // namespace
 
 std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, const Segmentation& segmentation) {
+  if (motion.is_points()) return each_point(motion, segmentation);
   std::vector<Observations::SlipObservation> ranges;
   std::vector<bool> is_selected;
   std::size_t slipping = 0;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -35,8 +36,14 @@ std::span<const Effect> effect_catalogue() {
 
 namespace {
 
+bool shows_without_time(SketchView view) {
+  constexpr std::array kViews = {SketchView::curve, SketchView::directions, SketchView::load, SketchView::temperature};
+  return std::find(kViews.begin(), kViews.end(), view) != kViews.end();
+}
+
 EffectInfo own_words(const Effect& effect) {
   EffectInfo info = std::visit([](const auto& e) { return e.info(); }, effect);
+  if (info.group != EffectGroup::user) info.needs.time |= !shows_without_time(info.sketch.view);
   info.kinematic_effect = is_kinematic(effect);
   return info;
 }

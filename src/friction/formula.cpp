@@ -262,7 +262,9 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
                .distance = used.contains("distance"),
                .load = used.contains("load"),
                .temperature = used.contains("temperature"),
-               .stick_time = used.contains("stick_time")};
+               .stick_time = used.contains("stick_time"),
+               .time = used.contains("t")};
+    p.needs.time |= p.needs.acceleration || p.needs.angle || p.needs.distance || p.needs.stick_time;
     p.parser.Eval();
     if (p.parser.GetNumResults() != 1) reject("there is more than one expression", p.text);
   } catch (const mu::Parser::exception_type& error) {

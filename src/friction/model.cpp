@@ -128,6 +128,7 @@ Channels FrictionModel::needs() const {
     all.lead |= c.lead;
     all.force |= c.force;
     all.plateau |= c.plateau;
+    all.time |= c.time;
   }
   return all;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "points.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -25,7 +26,9 @@ class Assembler {
     trace_.notes = std::move(run_.notes);
     trace_.clock_offset_std_error = run_.clock_offset_std_error;
     trace_.warnings = std::move(run_.warnings);
+    set_kind();
     set_steps();
+    set_lever();
     set_load();
     set_friction();
     warn_of_large_coefficient();
@@ -37,12 +40,27 @@ class Assembler {
     trace_.disc_angle = std::move(run_[Channel::angle]);
     unwrap(trace_.disc_angle);
     trace_.time = std::move(run_[Channel::time]);
+    if (run_.is_points()) sort_points(trace_);
     if (trace_.disc_angle.empty() && trace_.disc_speed.empty()) set_angle_turned();
     return std::move(trace_);
   }
 
  private:
   InputLocation file() const { return {run_.path, 0, ""}; }
+
+  void set_kind() {
+    const bool spring_alone = run_.has(Channel::spring) && !run_.has(Channel::mu) && !run_.has(Channel::force);
+    if (!run_.kind && spring_alone) {
+      run_.kind = RecordKind::spring_slider;
+      run_.kind_source = "the pull of a spring was recorded";
+    }
+    trace_.kind = run_.kind;
+    trace_.kind_source = run_.kind_source;
+    trace_.spring = options_.spring;
+    if (run_.has(Channel::std_error) && !run_.is_points()) {
+      trace_.notes.emplace_back("standard errors of friction are used for points only");
+    }
+  }
 
   void set_steps() {
     trace_.steps = std::move(run_.steps);
@@ -103,6 +121,23 @@ class Assembler {
                      file());
   }
 
+  /// A joint has no radius: torque and rotational speed are those at a lever of 1 m.
+  void set_lever() {
+    const bool steady = run_.is_points() || run_.kind == RecordKind::sliding;
+    const bool unknown = std::none_of(trace_.steps.begin(), trace_.steps.end(),
+                                      [](const Step& step) { return step.conditions.radius.known(); });
+    const bool torque = run_.has(Channel::torque) && !run_.has(Channel::mu) && !run_.has(Channel::force);
+    const Column* column = run_.columns.find(run_.has(Channel::v_b) ? Channel::v_b : Channel::v_r);
+    const bool turns = column != nullptr ? column->angular : run_.has(Channel::speed);
+    if (!steady || !unknown || !torque || !turns) return;
+    const Condition lever = {1, "lever of 1 m"};
+    trace_.conditions.radius = lever;
+    for (Step& step : trace_.steps) step.conditions.radius = lever;
+    trace_.notes.emplace_back(
+        "no radius is known: torque and rotational speed are taken at a lever of 1 m, so that N stands for N m, mm/s "
+        "for mrad/s and s/mm for s/mrad");
+  }
+
   void set_load() {
     auto& load = run_[Channel::load];
     if (load.empty()) return;
@@ -132,7 +167,30 @@ class Assembler {
     return {sum / static_cast<double>(step.end - step.begin), "file"};
   }
 
+  void set_std_error() {
+    trace_.friction_std_error = std::move(run_[Channel::std_error]);
+    for (std::size_t i = 0; i < trace_.friction_std_error.size(); ++i) {
+      if (trace_.friction_std_error[i] > 0) continue;
+      throw InputError("a standard error must be above zero",
+                       "correct it, or leave the column out with --columns std_error=none",
+                       run_.location(i, Channel::std_error));
+    }
+  }
+
+  void divide_friction(std::size_t i, double by) {
+    trace_.friction[i] /= by;
+    if (!trace_.friction_std_error.empty()) trace_.friction_std_error[i] /= by;
+  }
+
   void set_friction() {
+    if (run_.is_points()) set_std_error();
+    const bool spring = run_.has(Channel::spring) && run_.kind == RecordKind::spring_slider;
+    if (spring) {
+      trace_.friction = std::move(run_[Channel::spring]);
+      const Column* column = run_.columns.find(Channel::spring);
+      if (column == nullptr || !column->over_load) divide_by_load("pull of the spring");
+      return;
+    }
     if (run_.has(Channel::mu)) {
       trace_.friction = std::move(run_[Channel::mu]);
       return;
@@ -143,7 +201,7 @@ class Assembler {
     if (torque) {
       for (const Step& step : trace_.steps) {
         const double radius = radius_of(step, "friction from a torque");
-        for (std::size_t i = step.begin; i < step.end; ++i) trace_.friction[i] /= radius;
+        for (std::size_t i = step.begin; i < step.end; ++i) divide_friction(i, radius);
       }
     }
     divide_by_load(torque ? "torque/radius" : "tangential force");
@@ -165,7 +223,7 @@ class Assembler {
     for (const Step& step : trace_.steps) {
       const double nominal = step.conditions.load.value;
       if (!(nominal > 0)) throw InputError("the load must be above zero", "give it as --load 50N", file());
-      for (std::size_t i = step.begin; i < step.end; ++i) trace_.friction[i] /= nominal;
+      for (std::size_t i = step.begin; i < step.end; ++i) divide_friction(i, nominal);
     }
     const Condition& load = trace_.conditions.load;
     trace_.notes.push_back("mu is " + force + " over the nominal load of " +
@@ -182,7 +240,7 @@ class Assembler {
             "remove the rows without load, or leave the channel out with --columns load=none and state --load",
             run_.location(i, Channel::load));
       }
-      trace_.friction[i] /= load[i];
+      divide_friction(i, load[i]);
     }
     trace_.notes.push_back("mu is " + force + " over the measured load");
   }
@@ -212,17 +270,21 @@ class Assembler {
   }
 
   void set_velocity() {
+    if (run_.kind == RecordKind::spring_slider) {  // follows from the pull, kinematics/ makes it
+      trace_.velocity_kind = VelocityKind::relative;
+      return;
+    }
     const bool block = run_.has(Channel::v_b), relative = run_.has(Channel::v_r);
     if (!block && !relative) {
       set_fixed_block();
       return;
     }
-    trace_.velocity_kind = block ? VelocityKind::block : VelocityKind::relative;
+    trace_.velocity_kind = block && !run_.is_points() ? VelocityKind::block : VelocityKind::relative;
     const Channel channel = block ? Channel::v_b : Channel::v_r;
     trace_.velocity = std::move(run_[channel]);
     const Column* column = run_.columns.find(channel);
     if (column == nullptr || !column->angular) return;
-    if (!block && !options_.conditions.speed.known()) turning_ = trace_.velocity;
+    if (!block && !run_.is_points() && !options_.conditions.speed.known()) turning_ = trace_.velocity;
     for (const Step& step : trace_.steps) {
       const double radius = radius_of(step, "a velocity given as a rotational speed");
       for (std::size_t i = step.begin; i < step.end; ++i) trace_.velocity[i] *= radius;
@@ -241,7 +303,17 @@ class Assembler {
     }
   }
 
+  /// Points of a block that stands still on a disc.
+  void set_points_over_disc() {
+    trace_.velocity_kind = VelocityKind::relative;
+    trace_.velocity = std::move(run_[Channel::speed]);
+    const double radius = radius_of(trace_.steps.front(), "the sliding velocity of a fixed block");
+    for (double& v : trace_.velocity) v *= radius;
+    trace_.notes.emplace_back("no sliding velocity: the block is taken as fixed, v_r = omega r");
+  }
+
   void set_fixed_block() {
+    if (run_.is_points() && run_.has(Channel::speed)) return set_points_over_disc();
     const auto said = [&](const char* channel) {
       const auto at = options_.columns.find(channel);
       return at != options_.columns.end() && (at->second.empty() || at->second == "none");

@@ -1,5 +1,7 @@
 #include "column_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -45,6 +47,10 @@ const std::vector<Names>& names_of_the_field() {
       {Channel::angle,
        {"angle", "discangle", "diskangle", "rotaryposition", "theta", "phi", "position", "winkel", "\u89d2\u5ea6"}},
       {Channel::temperature, {"temperature", "temp", "temperatur", "\u6e29\u5ea6"}},
+      {Channel::std_error,
+       {"stderror", "standarderror", "stderr", "muerror", "mustderror", "frictionstderror", "uncertainty", "sem",
+        "se"}},
+      {Channel::spring, {"spring", "springforce", "springpull", "pull", "fspring", "federkraft"}},
       {Channel::step, {kStepColumn, "recipestep", "stepnumber", "segment"}},
   };
   return table;
@@ -93,6 +99,19 @@ std::optional<double> value_in(std::string_view number, std::string_view unit, C
 
 }  // namespace
 
+std::string lists_columns(const std::string& path) {
+  return fmt::format("'identify columns {}' lists what it holds", path);
+}
+
+std::string_view to_string(Channel channel) {
+  return kChannelNames[index_of(channel)];
+}
+
+const Column* Columns::find(Channel channel) const {
+  const auto at = std::find_if(used.begin(), used.end(), [&](const Column& c) { return c.channel == channel; });
+  return at != used.end() ? &*at : nullptr;
+}
+
 bool is_field_name(std::string_view base) {
   const auto& table = names_of_the_field();
   return std::any_of(table.begin(), table.end(), [&](const Names& names) {
@@ -127,6 +146,8 @@ std::span<const Quantity> quantities(Channel channel) {
                                            force = {Quantity::force}, torque = {Quantity::torque},
                                            speed = {Quantity::angular_velocity}, angle = {Quantity::angle},
                                            temperature = {Quantity::temperature};
+  static constexpr std::array friction = {Quantity::dimensionless, Quantity::force, Quantity::torque};
+  static constexpr std::array pull = {Quantity::force, Quantity::dimensionless};
   switch (channel) {
     case Channel::time:
       return time;
@@ -146,6 +167,10 @@ std::span<const Quantity> quantities(Channel channel) {
       return angle;
     case Channel::temperature:
       return temperature;
+    case Channel::std_error:
+      return friction;
+    case Channel::spring:
+      return pull;
     case Channel::step:
       break;
   }
@@ -153,14 +178,14 @@ std::span<const Quantity> quantities(Channel channel) {
 }
 
 std::string_view usual_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {"s", "1",   "mm/s", "mm/s", "N", "Nm",
-                                                                        "N", "rpm", "deg",  "degC", ""};
+  static constexpr std::array<std::string_view, channel_count> units = {"s",   "1",   "mm/s", "mm/s", "N", "Nm", "N",
+                                                                        "rpm", "deg", "degC", "1",    "N", ""};
   return units[index_of(channel)];
 }
 
 std::string_view si_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {"s", "1",     "m/s", "m/s",  "N", "N m",
-                                                                        "N", "rad/s", "rad", "degC", ""};
+  static constexpr std::array<std::string_view, channel_count> units = {"s",     "1",   "m/s",  "m/s", "N", "N m", "N",
+                                                                        "rad/s", "rad", "degC", "1",   "N", ""};
   return units[index_of(channel)];
 }
 

@@ -29,7 +29,10 @@ using Requests = std::array<std::optional<Request>, channel_count>;
 class Finder {
  public:
   Finder(const RawTable& table, const ReadOptions& options)
-      : table_(table), two_files_(!options.second_file.empty()), has_rate_(options.rate.has_value()) {
+      : table_(table),
+        two_files_(!options.second_file.empty()),
+        needs_no_time_(options.rate.has_value() || options.kind == RecordKind::points),
+        is_spring_slider_(options.kind == RecordKind::spring_slider) {
     read_requests(options);
   }
 
@@ -45,7 +48,11 @@ class Finder {
     }
     refuse_two_roles();
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
-    choose_one({Channel::mu, Channel::force, Channel::torque});
+    if (is_spring_slider_) {
+      choose_one({Channel::spring, Channel::force, Channel::mu, Channel::torque});
+    } else {
+      choose_one({Channel::mu, Channel::force, Channel::torque, Channel::spring});
+    }
     choose_one({Channel::v_b, Channel::v_r});
     settle_clocks();
     for (std::size_t i = 0; i < channel_count; ++i) {
@@ -154,7 +161,8 @@ class Finder {
     const bool is_time = channel == Channel::time;
     if (taken || (request && request->ignored())) return;
     if (request && !request->column.empty() && !is_time) return;  // it is in the other file
-    if (is_time && has_rate_ && !two_files_) return;
+    if (is_time && needs_no_time_ && !two_files_) return;
+    if (channel == Channel::std_error && taken_[index_of(Channel::time)]) return;  // of points
     taken = most_usual(channel, std::nullopt);
   }
 
@@ -196,7 +204,7 @@ class Finder {
     const bool of_no_channel = time && !sets.empty() && !sets.contains(column(*time).rows);
     if (of_no_channel) time.reset();
     const auto& request = requests_[index_of(Channel::time)];
-    if ((request && request->ignored()) || (has_rate_ && !two_files_)) return;
+    if ((request && request->ignored()) || (needs_no_time_ && !two_files_)) return;
     for (const std::size_t rows : sets) {
       if (time && column(*time).rows == rows) continue;
       if (const auto other = most_usual(Channel::time, rows)) other_times_.push_back(*other);
@@ -268,6 +276,7 @@ class Finder {
         used.factor = unit->factor;
         used.offset = unit->offset;
         used.angular = quantity == Quantity::angular_velocity && channel != Channel::speed;
+        used.over_load = quantity == Quantity::dimensionless && channel == Channel::spring;
         return true;
       }
     }
@@ -325,6 +334,9 @@ class Finder {
       case Channel::mu:
       case Channel::step:
         return true;
+      case Channel::std_error:  // as friction is
+        used.factor = friction_factor();
+        return true;
       case Channel::v_b:
       case Channel::v_r:
       case Channel::speed:
@@ -341,7 +353,8 @@ class Finder {
     }
     const std::string advice =
         fmt::format("state it with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
-    const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity_is_taken());
+    const bool velocity = taken_[index_of(Channel::v_b)] || taken_[index_of(Channel::v_r)];
+    const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity);
     if (needed || requests_[index_of(used.channel)]) {
       throw InputError("has no unit", advice, table_.heading(used.index));
     }
@@ -349,8 +362,12 @@ class Finder {
     return false;
   }
 
-  bool velocity_is_taken() const {
-    return taken_[index_of(Channel::v_b)].has_value() || taken_[index_of(Channel::v_r)].has_value();
+  double friction_factor() const {
+    const Column* column = nullptr;
+    for (const Channel channel : {Channel::mu, Channel::force, Channel::torque}) {
+      if (column == nullptr) column = result_.find(channel);
+    }
+    return column == nullptr ? 1 : column->factor;
   }
 
   void note_unused() {
@@ -365,7 +382,7 @@ class Finder {
 
   const RawTable& table_;
   const bool two_files_;  // a column may be in the other one
-  const bool has_rate_;
+  const bool needs_no_time_, is_spring_slider_;
   Requests requests_;
   std::map<std::size_t, std::string> units_of_columns_;  // that the user states by the name of the column
   std::array<std::optional<std::size_t>, channel_count> taken_;
@@ -374,19 +391,6 @@ class Finder {
 };
 
 }  // namespace
-
-std::string lists_columns(const std::string& path) {
-  return fmt::format("'identify columns {}' lists what it holds", path);
-}
-
-std::string_view to_string(Channel channel) {
-  return kChannelNames[index_of(channel)];
-}
-
-const Column* Columns::find(Channel channel) const {
-  const auto at = std::find_if(used.begin(), used.end(), [&](const Column& c) { return c.channel == channel; });
-  return at != used.end() ? &*at : nullptr;
-}
 
 Columns find_columns(const RawTable& table, const ReadOptions& options) {
   return Finder(table, options).find();

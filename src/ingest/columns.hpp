@@ -12,8 +12,8 @@
 
 namespace tribofit {
 
-enum class Channel { time, mu, v_b, v_r, force, torque, load, speed, angle, temperature, step };
-constexpr std::size_t channel_count = 11;
+enum class Channel { time, mu, v_b, v_r, force, torque, load, speed, angle, temperature, std_error, spring, step };
+constexpr std::size_t channel_count = 13;
 constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);
 }
@@ -30,7 +30,8 @@ struct Column {
   std::size_t index = 0;  ///< in RawTable::columns
   std::string name;       ///< as the file gives it, with its place
   double factor = 1, offset = 0;
-  bool angular = false;  ///< a velocity given as a rotational speed [rad/s], to be multiplied by the radius
+  bool angular = false;    ///< a velocity given as a rotational speed [rad/s], to be multiplied by the radius
+  bool over_load = false;  ///< the pull of a spring, given over the load
 };
 
 struct Columns {

@@ -8,6 +8,7 @@
 
 #include "column_names.hpp"
 #include "columns.hpp"
+#include "points.hpp"
 #include "reader.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -154,6 +155,12 @@ void select_trace(ColumnListing& listing) {
   if (!select({"mu", "force", "torque"}, listing)) listing.missing.emplace_back("friction");
   if (!select({"v_b", "v_r", "speed"}, listing)) listing.missing.emplace_back("velocity");
   select({"load"}, listing);
+  const bool tabulated = std::all_of(listing.columns.begin(), listing.columns.end(),
+                                     [](const ListedColumn& column) { return column.count <= kMostTabulated; });
+  const bool only_time = listing.missing == std::vector<std::string>{"time"};
+  if (!only_time || !tabulated || listing.selected.contains("v_b")) return;
+  listing.missing.clear();
+  listing.notes.emplace_back("no time: a table of steady points");
 }
 
 }  // namespace

@@ -96,6 +96,10 @@ Trace read_trace(const std::string& path, const ReadOptions& options, std::span<
     for (std::size_t k = 0; k < i; ++k) refuse_twice(options.continued_in[k], options.continued_in[i]);
     continue_recording(run, read_recording(options.continued_in[i], first, readers), i + 2);
   }
+  if (run.is_points() && !options.second_file.empty()) {
+    throw InputError("points have no time on which a second file could be joined", "put all columns into one file",
+                     {options.second_file, 0, ""});
+  }
   if (!options.second_file.empty()) join_second(run, options, std::move(second), readers);
   return assemble(std::move(run), options);
 }

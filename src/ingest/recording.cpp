@@ -12,6 +12,7 @@
 #include "content_hash.hpp"
 #include "gaps.hpp"
 #include "join.hpp"
+#include "points.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -48,6 +49,7 @@ struct RowsPlan {
   std::size_t rows = 0;
   Columns columns;
   std::optional<Sampling> sampling;
+  bool may_be_points = false;  ///< as far as the columns show it, and nobody said what the record is
 };
 
 /// Throws InputError where the file has times, but for other rows than this column's.
@@ -62,15 +64,19 @@ void refuse_without_time(const RawTable& table, const Column& column) {
                    table.heading(column.index));
 }
 
-/// Throws InputError where nothing says when the rows were recorded.
+/// Throws InputError where nothing says when the rows were recorded, and they are no points.
 std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, const ReadOptions& options) {
   std::vector<RowsPlan> plans;
   for (const std::size_t rows : rows_used(table, file.columns.used)) {
-    RowsPlan plan{rows, {}, stated_sampling(table, rows, options.rate)};
+    const bool points = options.kind == RecordKind::points;
+    RowsPlan plan{rows, {}, points ? std::nullopt : stated_sampling(table, rows, options.rate), false};
     for (const Column& column : file.columns.used) {
       if (table.columns[column.index].rows == rows) plan.columns.used.push_back(column);
     }
-    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling) {
+    const bool alone = plan.columns.used.size() == file.columns.used.size();
+    plan.may_be_points =
+        !options.kind && options.second_file.empty() && !plan.sampling && alone && are_columns_of_points(plan.columns);
+    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling && !points && !plan.may_be_points) {
       refuse_without_time(table, plan.columns.used.front());
       refuse_columns(file, "no time column");
     }
@@ -115,14 +121,26 @@ void to_si(const Column& column, std::vector<double>& values) {
   for (double& value : values) value = factor * value + offset;
 }
 
-/// The channels of one set of rows, in SI, on a clock that starts at 0.
+/// Whether rows, in SI, are points: by statement, or because they have no times, or none that a clock made.
+void recognise_points(const RowsPlan& plan, FileRecord& recording) {
+  const std::vector<double>& time = recording[Channel::time];
+  if (!plan.may_be_points || !(time.empty() || (time.size() <= kMostTabulated && is_no_clock(time)))) return;
+  const std::size_t rows = recording.channels[index_of(plan.columns.used.front().channel)].size();
+  if (time.empty() && rows > kMostTabulated) refuse_columns(recording, "no time column");
+  recording.kind = RecordKind::points;
+  recording.kind_source = time.empty() ? "no time column" : "the times are in no order";
+}
+
+/// The channels of one set of rows, in SI, on a clock that starts at 0; points are numbered instead.
 FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   FileRecord recording;
   recording.path = file.path;
   recording.column_names = file.column_names;
   recording.has_names = file.has_names;
   recording.file_conditions = file.file_conditions;
-  recording.columns = std::move(plan.columns);
+  recording.kind = file.kind;
+  recording.kind_source = file.kind_source;
+  recording.columns = plan.columns;
   recording.lines = std::move(table.rows[plan.rows].lines);
   recording.stated_steps = std::move(table.rows[plan.rows].steps);
   const std::vector<Column>& used = recording.columns.used;
@@ -137,8 +155,13 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
     to_si(used[k], recording[used[k].channel]);
   }
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
-  if (!recording.has(Channel::time)) set_time(recording, *plan.sampling);
+  recognise_points(plan, recording);
+  if (!recording.has(Channel::time) && !recording.is_points()) set_time(recording, *plan.sampling);
   leave_out(gappy, recording);
+  if (recording.is_points()) {
+    set_points(recording);
+    return recording;
+  }
   set_clock(recording, plan.sampling);
   return recording;
 }
@@ -151,6 +174,8 @@ FileRecord read_recording(const std::string& path, const ReadOptions& options, s
   file.path = path;
   file.column_names = table.names();
   file.has_names = table.has_names();
+  file.kind = options.kind;
+  if (options.kind) file.kind_source = "stated";
   take_messages(table, file);
   const StatedConditions stated = stated_conditions(table.facts, table);
   file.file_conditions = stated.conditions;
@@ -183,7 +208,8 @@ void refuse_columns(const FileRecord& recording, const std::string& problem) {
             : problem + fmt::format("; the file has no header and {} columns", recording.column_names.size());
   std::string advice = names ? "name the columns: --columns time=NAME,mu=NAME,v_b=NAME"
                              : "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s";
-  if (problem == "no time column") advice += ", or give the sampling rate: --rate 20kHz";
+  if (problem == "no time column")
+    advice += ", or give the sampling rate: --rate 20kHz; a table of steady points without time is --kind points";
   advice += "; " + lists_columns(recording.path);
   throw InputError(text, advice, {recording.path, 0, ""});
 }
@@ -198,13 +224,19 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
   }
   if (run.steps.size() == 1 && run.steps.front().label.empty()) run.steps.front().label = file_name(run.path);
   const std::size_t before = run.size(), recipe = run.recipe_size();
+  if (run.is_points() != next.is_points()) {
+    throw InputError("is a table of points, unlike the other file of the run, or the other way round", "state --kind",
+                     {next.path, 0, ""});
+  }
   const double gap = next.clock_start - run.clock_end;
   const double interval = typical_interval(run[Channel::time]);
-  const bool goes_on = gap > 0;
+  const bool goes_on = gap > 0 && !run.is_points();
   const double shift = run[Channel::time].back() + (goes_on ? gap : interval);
-  run.notes.push_back(goes_on ? fmt::format("{} continues the run after {:.6g} s", file_name(next.path), gap)
-                              : fmt::format("{} continues the run; its clock restarts and was joined without a pause",
-                                            file_name(next.path)));
+  const std::string continued = file_name(next.path);
+  run.notes.push_back(run.is_points() ? continued + " adds points"
+                      : goes_on       ? fmt::format("{} continues the run after {:.6g} s", file_name(next.path), gap)
+                                : fmt::format("{} continues the run; its clock restarts and was joined without a pause",
+                                              file_name(next.path)));
   for (double& t : next[Channel::time]) t += shift;
   for (std::size_t k = 0; k < channel_count; ++k) {
     if (run.channels[k].empty()) continue;

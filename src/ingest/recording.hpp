@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,12 +39,17 @@ struct FileRecord {
   std::vector<RawStep> stated_steps;      ///< as the file divides itself
   std::vector<Step> steps;                ///< with the conditions that the file states
   std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
+  std::optional<RecordKind> kind;         ///< as stated, or as the file shows it
+  std::string kind_source;                ///< as in Trace
   std::vector<std::string> notes, warnings;
 
+  bool is_points() const { return kind == RecordKind::points; }
   std::vector<double>& operator[](Channel channel) { return channels[index_of(channel)]; }
   const std::vector<double>& operator[](Channel channel) const { return channels[index_of(channel)]; }
   bool has(Channel channel) const { return !channels[index_of(channel)].empty(); }
-  bool has_friction() const { return has(Channel::mu) || has(Channel::force) || has(Channel::torque); }
+  bool has_friction() const {
+    return has(Channel::mu) || has(Channel::force) || has(Channel::torque) || has(Channel::spring);
+  }
   bool has_velocity() const { return has(Channel::v_b) || has(Channel::v_r); }
   std::size_t size() const { return channels[index_of(Channel::time)].size(); }
   /// Where a row came from, for messages.

@@ -16,6 +16,7 @@
 #include "plateau.hpp"
 #include "plateau_ratio.hpp"
 #include "plateau_search.hpp"
+#include "points.hpp"
 #include "resolution.hpp"
 #include "ripple.hpp"
 #include "speed_steps.hpp"
@@ -30,13 +31,6 @@ using kinematics::LevelRange;
 using kinematics::Plateaus;
 using kinematics::PlateauSearch;
 using kinematics::StickPlateau;
-
-// A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
-bool is_useless(const Trace& trace) {
-  constexpr std::size_t few = 16;
-  const Extremes range = extremes(trace.velocity);
-  return range.low == range.high || (trace.size() < few && trace.conditions.radius.known());
-}
 
 /// A trace on its way to a motion. Each stage reads what the stages before it have settled.
 class MotionStages {
@@ -103,9 +97,7 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
   kinematics::take_conditions_from_instruments(trace_.conditions, instruments.rig);
   if (trace_.steps.empty()) trace_.steps.push_back({0, trace_.size(), "", {}});
   motion_.step = trace_.interval();
-  motion_.friction_kind = trace_.friction_kind;
-  motion_.velocity_kind = trace_.velocity_kind;
-  motion_.stick = options.stick;
+  kinematics::take_kinds(trace_, options.stick, motion_);
   motion_.clock_offset_std_error = trace_.clock_offset_std_error;
 }
 
@@ -135,7 +127,7 @@ void MotionStages::find_disc() {
 }
 
 void MotionStages::find_plateau() {
-  search_ = kinematics::search_plateaus(trace_, disc_, motion_.step, options_.stick);
+  search_ = kinematics::search_plateaus(trace_, disc_, motion_.step, motion_.stick);
 }
 
 /// A vibrometer that points the other way.
@@ -198,7 +190,7 @@ void MotionStages::take_speed_from_plateau() {
   plateau_ = search_.sticks ? kinematics::final_level(search_.plateaus) : 0;
   if (!is_block() || disc_.known) return;
   const bool unknown = !search_.sticks || trace_.disc_speed.size() == trace_.size();
-  if (unknown && !is_useless(trace_)) {
+  if (unknown && !kinematics::is_useless(trace_)) {
     throw InputError("v_r cannot be made: the block never sticks, so that no plateau shows the speed of the disc",
                      "give --radius and --speed, or a column with v_r", {trace_.path, 0, ""});
   }
@@ -377,6 +369,9 @@ void MotionStages::compare_plateau() {
 }  // namespace
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
+  if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
+  if (trace.kind == RecordKind::spring_slider)
+    throw InputError("records of a spring slider are not analysed yet", "give the slider's velocity", {trace.path, 0, ""});
   MotionStages stages(std::move(trace), instruments, options);
   stages.look_at_recording();
   stages.correct_declared();

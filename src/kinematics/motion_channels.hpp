@@ -10,6 +10,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/motion.hpp"
 
 // What becomes of the channels of a trace when they become those of a motion.
 
@@ -26,6 +27,25 @@ inline void require_channels(const Trace& trace) {
     throw InputError("the trace has no velocity for every sample",
                      "name the column with --columns v_b=NAME or v_r=NAME", where);
   }
+}
+
+/// A channel that was not recorded, or a handful of samples: valid, but nothing can be found in it.
+inline bool is_useless(const Trace& trace) {
+  constexpr std::size_t few = 16;
+  const Extremes range = extremes(trace.velocity);
+  return range.low == range.high || (trace.size() < few && trace.conditions.radius.known());
+}
+
+/// The kinds of record, friction and velocity, with the rule of stick that goes with it, beside what the user says of
+/// stick.
+inline void take_kinds(const Trace& trace, const StickRule& stick, Motion& motion) {
+  motion.kind = trace.kind;
+  motion.kind_source = trace.kind_source;
+  motion.friction_kind = trace.friction_kind;
+  motion.velocity_kind = trace.velocity_kind;
+  motion.stick = stick;
+  motion.stick.never |= trace.kind == RecordKind::sliding;
+  motion.stick.always |= trace.kind == RecordKind::stick_slip;
 }
 
 inline void take_conditions_from_instruments(Conditions& conditions, const Instruments::Rig& rig) {

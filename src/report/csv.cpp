@@ -32,13 +32,18 @@ double index_cell(std::size_t index) {
   return index == Membership::none ? std::nan("") : static_cast<double>(index);
 }
 
+/// Points have no time.
+double time_cell(const Motion& motion, std::size_t i) {
+  return motion.is_points() ? std::nan("") : motion.time[i];
+}
+
 void write_samples(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
                    const Membership& member) {
   const Motion& motion = result.motion;
   const std::vector<bool> slips = slipping_samples(motion, result.segmentation);
   CsvTable table = table_in(folder, "samples.csv");
   for (std::size_t i = 0; i < motion.size(); ++i) {
-    table.row(motion.time[i], motion.relative_velocity[i] / kMillimetre, motion.friction[i],
+    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i],
               model.empty() ? std::nan("") : model[i], slips[i] ? "slip" : "stick", index_cell(member.cycle[i]),
               index_cell(member.fold[i]));
   }
@@ -83,7 +88,7 @@ void write_errors(WholeFolder& folder, const Identification& result, const std::
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(model[i])) continue;
     const double residual = motion.friction[i] - model[i];
-    table.row(motion.time[i], motion.relative_velocity[i] / kMillimetre, residual,
+    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, residual,
               std::abs(residual / motion.friction[i]), index_cell(member.cycle[i]), index_cell(member.fold[i]));
   }
 }

@@ -7,6 +7,7 @@
 #include "diagnosis/conclusions.hpp"
 #include "diagnosis_sentences.hpp"
 #include "numbers.hpp"
+#include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "terminal_text.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -18,14 +19,26 @@ namespace {
 /// Cycles; samples where nothing sticks.
 std::string amount_of_data(const DiagnosedTraces& result) {
   std::size_t cycles = 0, samples = 0;
-  bool sticks = false;
+  bool sticks = false, points = true;
   for (const Identification& trace : result.traces) {
     cycles += count_of_cycles(trace.segmentation);
     samples += trace.motion.size();
+    points &= trace.motion.is_points();
     sticks |= trace.segmentation.kind == MotionKind::stick_slip;
   }
+  if (points) return grouped(samples) + " points";
   if (!sticks) return grouped(samples) + " samples, no stick";
   return grouped(cycles) + (cycles == 1 ? " cycle" : " cycles");
+}
+
+/// The distinct kinds of record.
+std::string kinds_of(const DiagnosedTraces& result) {
+  std::vector<std::string> kinds;
+  for (const Identification& trace : result.traces) {
+    const std::string kind = kind_text(trace);
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  }
+  return enumerated(kinds);
 }
 
 /// The distinct values of one condition over the traces, "1, 2, 4, 8 rpm"; empty where none is known.
@@ -69,7 +82,7 @@ void add_header(const DiagnosedTraces& result, TerminalText& text) {
   const bool one = result.traces.size() == 1;
   const std::string title =
       one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size());
-  std::vector<std::string> known = {condition(result, &Conditions::radius, kMillimetre, "mm"),
+  std::vector<std::string> known = {kinds_of(result), condition(result, &Conditions::radius, kMillimetre, "mm"),
                                     condition(result, &Conditions::speed, kRpm, "rpm"),
                                     condition(result, &Conditions::load, 1, "N"), amount_of_data(result)};
   std::erase(known, "");

@@ -83,10 +83,15 @@ ReportTable correlation_table(const Fit& fit) {
 void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
   const std::string slow = fit.floor.slow_noise > 0 ? ", slow 1/f noise " + level(fit.floor.slow_noise) : "";
-  section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}{}).",
-                           level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
-                           level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
-                           level(fit.floor.scatter), slow));
+  if (motion.is_points()) {
+    section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (from {}).", level(fit.error.rmse),
+                             level(fit.error.held_out_rmse), level(fit.floor.rmse), fit.floor.source));
+  } else {
+    section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}{}).",
+                             level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
+                             level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
+                             level(fit.floor.scatter), slow));
+  }
   section.soft(fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
                            percent(fit.error.mean_relative), percent(fit.error.max_relative),
                            share_text(fit.explained)));
@@ -160,12 +165,12 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
     add_fit(fits[k], motion, k == best && fits.size() > 1, instruments_declared, section);
   }
   section.heading("Intervals and range");
-  section.soft(
-      instruments_declared
-          ? "Intervals are statistical, from cycle to cycle; systematic is one standard uncertainty from the declared "
-            "instruments, not part of them."
-          : "Intervals are statistical, from cycle to cycle; no instrument uncertainties declared (--instruments), so "
-            "there is no systematic part.");
+  const std::string between = motion.is_points() ? "from point to point" : "from cycle to cycle";
+  section.soft("Intervals are statistical, " + between +
+               (instruments_declared
+                    ? "; systematic is one standard uncertainty from the declared "
+                      "instruments, not part of them."
+                    : "; no instrument uncertainties declared (--instruments), so there is no systematic part."));
   if (fits[best].fastest > 0) {
     section.soft(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
                              significant(fits[best].fastest / kMillimetre, 3)));

@@ -38,7 +38,8 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
           "{} describes this trace as well as its noise allows: the held-out error is {}, the noise floor {}.", name,
           held_out, floor);
     case FitQuality::close:
-      return fmt::format("{} is close (typically {} off), but {}: a small effect may be missing.", name, typical, remains);
+      return fmt::format("{} is close (typically {} off), but {}: a small effect may be missing.", name, typical,
+                         remains);
     case FitQuality::outline:
       return fmt::format("{} gives the outline only (typically {} off): {}, so it lacks an effect.", name, typical,
                          remains);
@@ -84,6 +85,11 @@ Facts result_facts(const Identification& result) {
   return facts;
 }
 
+/// Of what the motion shows.
+const char* heading_of(RecordKind kind) {
+  return kind == RecordKind::points ? "Points" : kind == RecordKind::sliding ? "Sliding" : "Stick-slip";
+}
+
 }  // namespace
 
 std::string verdict(const Identification& result) {
@@ -117,7 +123,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
 std::string render_terminal(const Identification& result, const TerminalOptions& options) {
   TerminalText text(options);
   add_record(result, text);
-  text.heading("Stick-slip");
+  text.heading(heading_of(kind_of_record(result.motion, result.segmentation)));
   for (const auto& [name, value] : stick_slip_facts(result)) {
     text.item(name, name == "frequency" ? value + " (+/- is one standard error, here and below)" : value);
   }

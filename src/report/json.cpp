@@ -149,7 +149,8 @@ Json conditions_json(const Conditions& c) {
 Json trace_json(const Identification& r) {
   return object("path", r.path, "samples", r.samples, "duration_s", r.duration, "rate_hz", r.rate, "checksum",
                 fmt::format("{:016x}", r.checksum), "friction_unit", friction_unit(r.motion), "trimmed_s",
-                static_cast<double>(r.motion.trimmed) * r.motion.step, "notes", r.notes);
+                static_cast<double>(r.motion.trimmed) * r.motion.step, "notes", r.notes, "kind",
+                to_string(kind_of_record(r.motion, r.segmentation)), "kind_source", text_or_null(r.motion.kind_source));
 }
 
 Json conditions_of(const Motion& motion) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "numbers.hpp"
 #include "report_parts.hpp"
@@ -60,6 +61,29 @@ std::string slip_text(const Identification& r) {
                      : fmt::format("; the others stick{} and take no part in the law of sliding", below));
 }
 
+/// "72 points, |v_r| from 0.1 to 600 mm/s, in both directions".
+std::string points_sentence(const Motion& motion) {
+  double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
+  bool back = false, forth = false;
+  for (const double v : motion.relative_velocity) {
+    slowest = std::min(slowest, std::abs(v));
+    fastest = std::max(fastest, std::abs(v));
+    (v < 0 ? back : forth) = true;
+  }
+  return fmt::format("{} points, |v_r| from {} to {} mm/s{}", grouped(motion.size()), brief(slowest / kMillimetre),
+                     brief(fastest / kMillimetre), back && forth ? ", in both directions" : "");
+}
+
+/// Points have no motion of their own; what there is of one are their directions.
+Facts point_facts(const Motion& motion) {
+  const auto back = static_cast<std::size_t>(
+      std::count_if(motion.relative_velocity.begin(), motion.relative_velocity.end(), [](double v) { return v < 0; }));
+  return {{"forwards", fmt::format("{} points", grouped(motion.size() - back))},
+          {"backwards", fmt::format("{} points", grouped(back))},
+          {"standard errors", motion.friction_std_error.empty() ? "not stated: all points weigh the same"
+                                                                : "stated: points weigh against their squares"}};
+}
+
 Facts condition_facts(const Motion& motion) {
   return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
           {"disc speed", speed_text(motion)},
@@ -81,11 +105,19 @@ void add_health(const Motion& motion, TerminalText& text) {
 
 }  // namespace
 
+std::string kind_text(const Identification& r) {
+  std::string text(to_string(kind_of_record(r.motion, r.segmentation)));
+  if (!r.motion.kind_source.empty()) text += " (" + r.motion.kind_source + ")";
+  return text;
+}
+
 std::string record_sentence(const Identification& r) {
+  if (r.motion.is_points()) return points_sentence(r.motion);
   return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
 }
 
 Facts stick_slip_facts(const Identification& r) {
+  if (r.motion.is_points()) return point_facts(r.motion);
   const Segmentation& s = r.segmentation;
   Facts facts = {{"cycles", cycles_text(s)}};
   if (s.kind != MotionKind::always_sticking) facts.emplace_back("in slip", slip_text(r));
@@ -116,7 +148,7 @@ Facts stick_slip_facts(const Identification& r) {
 }
 
 Facts facts_of(const Identification& r) {
-  Facts facts = {{"record", record_sentence(r)}};
+  Facts facts = {{"kind of record", kind_text(r)}, {"record", record_sentence(r)}};
   for (const Facts& more : {condition_facts(r.motion), stick_slip_facts(r)}) {
     facts.insert(facts.end(), more.begin(), more.end());
   }
@@ -145,7 +177,8 @@ ReportTable health_table(std::span<const Identification> traces) {
 
 void add_record(const Identification& r, TerminalText& text) {
   const Motion& m = r.motion;
-  text.raw(fmt::format("{}  {}\n", text.bold(fmt::format("tribofit {}", version)), printable(r.path)));
+  text.raw(
+      fmt::format("{}  {}: {}\n", text.bold(fmt::format("tribofit {}", version)), printable(r.path), kind_text(r)));
   std::string line = record_sentence(r);
   if (m.trimmed > 0) {
     line += fmt::format("; the first {} s (run-up) left out", significant(static_cast<double>(m.trimmed) * m.step, 3));

@@ -74,6 +74,11 @@ std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std:
 }
 
 void TraceSections::add_trace(const DrawnTrace& drawn) {
+  if (drawn.trace.motion.is_points()) {
+    law.add(points_chart(drawn));
+    errors.add(error_charts(drawn));
+    return;
+  }
   std::vector<Chart> windows = cycle_charts(drawn);
   if (drawn.trace.motion.size() < 2) return;
   ReportSection& whole = windows.empty() ? trace : cycles;

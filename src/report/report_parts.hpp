@@ -12,6 +12,8 @@ namespace tribofit {
 
 /// What several kinds of text and page have in common.
 
+/// "sliding (stated)", "points (no time column)", "stick-slip".
+std::string kind_text(const Identification& record);
 /// "100 000 samples, 5.000 s at 20 kHz".
 std::string record_sentence(const Identification& record);
 /// Cycles, frequency, amplitude, stick and slip time, branches, RMS.

@@ -115,7 +115,7 @@ bool any_stick(const Motion& motion, const std::vector<Cycle>& cycles, const Thr
   }
   if (cycles.back().slip_complete && cycles.back().slip.end + 2 < motion.size())
     sticks.push_back({cycles.back().slip.end, motion.size()});
-  if (motion.sticks || motion.stick.below > 0) return !sticks.empty();
+  if (motion.sticks || motion.stick.below > 0 || motion.stick.always) return !sticks.empty();
   return std::any_of(sticks.begin(), sticks.end(),
                      [&](const SampleRange& stick) { return segmentation::rests(motion, stick, t); });
 }
@@ -233,8 +233,8 @@ std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawS
 /// A record that never sticks is one slip per direction and step.
 void slide_throughout(const Motion& motion, double peak, Segmentation& result) {
   const Thresholds t = segmentation::thresholds_without_stick(motion);
-  result.slip_threshold = t.slip;
-  result.stick_threshold = t.stick;
+  result.slip_threshold = motion.stick.never ? 0 : t.slip;
+  result.stick_threshold = motion.stick.never ? 0 : t.stick;
   result.cycles.clear();
   std::vector<RawSlip> slides = segmentation::find_slides(motion);
   if (!motion.stick.never) slides = segmentation::without_rests(motion, slides, peak);
@@ -295,13 +295,34 @@ void add_notes(Segmentation& result) {
   }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
-  if (complete < 3)
-    result.notes.push_back(fmt::format("only {} complete cycle{}", complete, complete == 1 ? "" : "s"));
+  if (complete < 3) result.notes.push_back(fmt::format("only {} complete cycle{}", complete, complete == 1 ? "" : "s"));
+}
+
+/// Points, which are sorted by v_r: one slip for each direction. At rest friction shows it.
+Segmentation slips_of_points(const Motion& motion) {
+  Segmentation result;
+  result.kind = MotionKind::always_slipping;
+  std::size_t forward = 0;
+  const auto& v = motion.relative_velocity;
+  while (forward < motion.size() && (v[forward] < 0 || (v[forward] == 0 && motion.friction[forward] < 0))) ++forward;
+  const RawSlip back{{0, forward}, -1, 0, false, false}, forth{{forward, motion.size()}, 1, 0, false, false};
+  for (const RawSlip& slip : {back, forth}) {
+    if (slip.samples.size() > 0) result.cycles.push_back(blank_cycle(slip));
+  }
+  measure(motion, result.cycles);
+  summarise(result);
+  return result;
 }
 
 }  // namespace
 
+RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation) {
+  if (motion.kind == RecordKind::points || motion.kind == RecordKind::spring_slider) return *motion.kind;
+  return segmentation.kind == MotionKind::always_slipping ? RecordKind::sliding : RecordKind::stick_slip;
+}
+
 Segmentation find_cycles(const Motion& motion) {
+  if (motion.is_points()) return slips_of_points(motion);
   Segmentation result;
   const Thresholds t = segmentation::thresholds_of(motion);
   result.slip_threshold = t.slip;
@@ -313,7 +334,8 @@ Segmentation find_cycles(const Motion& motion) {
   const bool sticks = any_stick(motion, result.cycles, t);
   result.kind = sticks ? MotionKind::stick_slip : MotionKind::always_slipping;
   if (slips.empty() && !motion.stick.never) result.kind = MotionKind::always_sticking;
-  const bool rests_only = sticks && motion.stick.below == 0 && mostly_slides(motion, result.cycles, t);
+  const bool rests_only =
+      sticks && motion.stick.below == 0 && !motion.stick.always && mostly_slides(motion, result.cycles, t);
   if (rests_only) result.kind = MotionKind::always_slipping;
   if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
   measure(motion, result.cycles);

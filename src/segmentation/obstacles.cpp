@@ -9,7 +9,7 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::size_t kFewestSamples = 16;
+constexpr std::size_t kFewestSamples = 16, kFewestPoints = 5;
 
 bool is_constant(const std::vector<double>& channel) {
   return std::all_of(channel.begin(), channel.end(), [&](double x) { return x == channel.front(); });
@@ -18,7 +18,11 @@ bool is_constant(const std::vector<double>& channel) {
 }  // namespace
 
 std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation, bool must_slip) {
-  if (motion.size() < kFewestSamples)
+  if (motion.is_points() && motion.size() < kFewestPoints)
+    return {fmt::format("there are only {} points: too few for any law", motion.size())};
+  if (motion.is_points() && !must_slip)
+    return {"these are points without time: a rig shows in the motion of a record only"};
+  if (!motion.is_points() && motion.size() < kFewestSamples)
     return {fmt::format("there are only {} samples: too few for any analysis", motion.size())};
   std::vector<std::string> found;
   if (is_constant(motion.friction))

@@ -112,10 +112,37 @@ Thresholds thresholds_without_stick(const Motion& motion) {
   return {band, band, 0};
 }
 
+namespace {
+
+/// Every sample, however slow, cut where v_r reverses by more than `band`.
+std::vector<RawSlip> all_slides(const std::vector<double>& v, double band) {
+  std::vector<RawSlip> slides;
+  RawSlip slide;
+  slide.direction = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (slide.direction == 0 && std::abs(v[i]) > band) slide.direction = v[i] > 0 ? 1 : -1;
+    const double u = slide.direction * v[i];
+    if (u < -band) {
+      const std::size_t turned = slide.samples.end;
+      slides.push_back(slide);
+      slide = {{turned, turned}, -slide.direction, 0, false, false};
+    }
+    if (slide.direction * v[i] > 0) slide.samples.end = i + 1;
+    slide.peak = std::max(slide.peak, slide.direction * v[i]);
+  }
+  if (slide.direction == 0) return slides;
+  slide.samples.end = v.size();
+  slides.push_back(slide);
+  return slides;
+}
+
+}  // namespace
+
 std::vector<RawSlip> find_slides(const Motion& motion) {
   std::vector<RawSlip> slides;
   const double band = thresholds_without_stick(motion).slip;
   const std::vector<double>& v = motion.relative_velocity;
+  if (motion.stick.never) return all_slides(v, band);
   std::size_t i = 0;
   while (i < v.size() && std::abs(v[i]) <= band) ++i;  // nobody knows in which direction
   while (i < v.size()) {

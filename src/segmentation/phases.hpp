@@ -34,7 +34,7 @@ std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& threshol
 Thresholds thresholds_without_stick(const Motion& motion);
 
 /// Sliding of a record that never sticks, in pieces of one direction, however slow: all samples but those within the
-/// noise of zero before, after and between them.
+/// noise of zero before, after and between them; where it is said that nothing sticks, all of them.
 std::vector<RawSlip> find_slides(const Motion& motion);
 
 /// The same without the stretches in which v_r is zero within its noise: before, between and after.

@@ -56,6 +56,10 @@ std::size_t samples_in_slip(const Segmentation& segmentation) {
 void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation) {
   segmentation.left_out = segmentation::spoilt_stretches(motion);
   if (selection.empty()) return;
+  if (motion.is_points()) {
+    segmentation.notes.emplace_back("points have neither cycles nor time to choose by: all of them take part");
+    return;
+  }
   if (selection.cycles) exclude_cycles(*selection.cycles, motion, segmentation);
   for (const Selection::Stretch& stretch : selection.excluded) {
     segmentation.left_out.push_back({sample_at(motion, stretch.from), sample_at(motion, stretch.to)});

@@ -204,6 +204,10 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
     throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
                      "`identify` without 'explore' says more", {trace.path, 0, ""});
   }
+  if (trace.motion.is_points()) {
+    throw InputError("the workbench follows a record over time, and points have none",
+                     "`identify` and `identify diagnose` with --report draw them", {trace.path, 0, ""});
+  }
   model_of(s.options.begin);
 }
 

@@ -111,8 +111,8 @@ TEST_F(Readers, TheSameNumbersGiveTheSameTraceFromCsv) {
 
 TEST_F(Readers, ScalarsStateTheRate) {
   RawTable table;
-  table.columns = {column("COF", "", series(30, 0.3, 0)), column("v_r", "mm/s", series(30, 5, 0))};
-  EXPECT_THAT(error_of(write_binary(table)).problem(), HasSubstr("no time column among: COF, v_r"));
+  table.columns = {column("COF", "", series(30, 0.3, 0)), column("v_b", "mm/s", series(30, 5, 0))};
+  EXPECT_THAT(error_of(write_binary(table)).problem(), HasSubstr("no time column among: COF, v_b"));
   EXPECT_THAT(error_of(write_binary(table)).advice(), HasSubstr("--rate"));
   for (const auto& [name, value] :
        {std::pair{"fs", "2000"}, {"dt", "0.0005"}, {"Sampling rate", "2 kHz"}, {"Sample interval (ms)", "0,5"}}) {

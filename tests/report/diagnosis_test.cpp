@@ -162,8 +162,8 @@ TEST(DiagnosisPage, TellsTheWholeStoryInOrder) {
   const std::string text = prose(made_up_diagnosis());
   std::size_t at = 0;
   for (const char* part :
-       {"runs/r15.csv: 15 mm; 4 rpm; 50 N; 2 cycles", "0 exponential law", "0.00880 +/- 0.00020", "1 + runout", "99 %",
-        "floor", "0.00310", "Where the exponential law fails",
+       {"runs/r15.csv: stick-slip; 15 mm; 4 rpm; 50 N; 2 cycles", "0 exponential law", "0.00880 +/- 0.00020",
+        "1 + runout", "99 %", "floor", "0.00310", "Where the exponential law fails",
         "Most of the error above the noise floor goes with the disc angle", "angle", "82 %", "Verdict: effect-found",
         "The effect found is runout (A = 0.0480 +/- 0.0010)", "falls from 0.00880 to 0.00320", "runout.A",
         "[0.0460, 0.0500]", "load-dependence, crosstalk: there is no load channel",
@@ -222,9 +222,9 @@ TEST(DiagnosisPage, AConfirmationSaysWhetherItHeld) {
 TEST(DiagnosisPage, SeveralTracesAreNamedTogether) {
   DiagnosedTraces result = two_traces();
   const std::string text = prose(result);
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("2 traces: 15 mm; 4, 8 rpm; 50 N; 4 cycles"), HasSubstr("warning: more/r15.csv: a gap"),
-                    HasSubstr("identify diagnose --radius 15mm --csv diagnosis-csv runs/r15.csv more/r15.csv")));
+  EXPECT_THAT(text, AllOf(HasSubstr("2 traces: stick-slip; 15 mm; 4, 8 rpm; 50 N; 4 cycles"),
+                          HasSubstr("warning: more/r15.csv: a gap"),
+                          HasSubstr("identify diagnose --radius 15mm --csv diagnosis-csv runs/r15.csv more/r15.csv")));
 }
 
 TEST(DiagnosisPage, NoLineIsWiderThanThePage) {

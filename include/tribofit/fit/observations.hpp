@@ -30,7 +30,7 @@ struct RecordScales {
 ///
 /// This is the definition for the whole library: rigid-stick laws are judged over the slip samples plus one break-away
 /// residual per cycle (in rigid stick mu is set by the spring, not by the law). The unit of evidence is the cycle, or a
-/// stretch of equal length where nothing sticks.
+/// stretch of equal length where nothing sticks; of points each is one, in an order that goes with nothing.
 ///
 /// Samples may be means over `samples_per_value` neighbours. Each carries the variance of v_r within it, so that the
 /// bare laws are averaged over it as the samples are (mean_friction of a law): at 80 values a slip their parameters
@@ -62,7 +62,8 @@ struct Observations {
 
   std::vector<double> time, velocity, friction;  ///< [s], [m/s], [1 or N]
   std::vector<double> velocity_variance;         ///< of v_r within each value [m^2/s^2]; empty when values are samples
-  std::vector<double> weight, root_weight;       ///< samples behind each value, and its square root
+  std::vector<double> weight, root_weight;       ///< samples behind each value (of points: as their standard errors
+                                                 ///< say, one on average), and its square root
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<SlipObservation> slips;

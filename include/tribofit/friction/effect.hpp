@@ -81,6 +81,9 @@ struct Channels {
   bool lead = false;     ///< the last samples of the stick before each slip
   bool force = false;    ///< the normal force, or friction as a force
   bool plateau = false;  ///< v_b on the plateau of stick, with a stated speed
+  /// What came before, or when: points have none of it. describe() sets it where the sketch shows the effect over
+  /// anything else than speed, direction, load and temperature.
+  bool time = false;
 };
 
 /// What must happen in a record before it can show an effect, beyond that the channels it needs vary.

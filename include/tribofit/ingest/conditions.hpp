@@ -20,4 +20,11 @@ struct Conditions {
   Condition load;    ///< nominal normal force [N], > 0
 };
 
+/// What draws the slider of a spring-slider record.
+struct SpringDrive {
+  Condition velocity;   ///< of the driven end of the spring [m/s]
+  Condition stiffness;  ///< of the spring [N/m], > 0
+  Condition mass;       ///< that it pulls [kg]; 0 where it is not known
+};
+
 }  // namespace tribofit

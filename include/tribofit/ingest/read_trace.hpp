@@ -26,13 +26,15 @@ using ClockOffsetFinder =
 
 /// How to read a trace; what is not stated is taken from the file.
 struct ReadOptions {
-  /// Channel (time, mu, v_b, v_r, force, torque, load, speed, angle, temperature, step) -> column as the file
-  /// names it, optionally with ":UNIT" ("Velocity:mm/s"). Columns are also named by number ("#3").
+  /// Channel (as in kChannelNames) -> column as the file names it, optionally with ":UNIT" ("Velocity:mm/s"). Columns
+  /// are also named by number ("#3").
   std::map<std::string, std::string> columns;
   /// Channel -> unit, or channel -> sensitivity of a voltage ("v_b" -> "5 mm/s/V").
   std::map<std::string, std::string> units;
-  std::optional<double> rate;  ///< samples per second [Hz] where there is no time column
-  Conditions conditions;       ///< as given by the user or the manifest; beats the file
+  std::optional<RecordKind> kind;  ///< as the user states it
+  SpringDrive spring;              ///< of a spring slider, as the user states it
+  std::optional<double> rate;      ///< samples per second [Hz] where there is no time column
+  Conditions conditions;           ///< as given by the user or the manifest; beats the file
   /// One friction radius [m] per step, in the order of the steps, for files whose radius changes.
   std::vector<double> step_radii;
   /// A second file holding the other instrument's channels; joined on time.
@@ -56,7 +58,8 @@ struct ReadOptions {
 /// conditions. MATLAB 5 to 7.3, UFF 58 and 58b, TDMS. Any format: radius, speed and load that the file states with a
 /// unit; rows with a cell that is no number left out as gaps, where they are isolated and one in a thousand at most; a
 /// clock that restarts at each step; without a time column the rate of the user, else that of the file; friction as mu,
-/// as tangential force with a load channel or a nominal load, or as torque with a radius. Throws InputError with file,
+/// as tangential force with a load channel or a nominal load, or as torque with a radius. A short table of friction and
+/// sliding velocity without any time is one of points (RecordKind). Throws InputError with file,
 /// line (or value), column, what is wrong and what to do. Cost: linear in bytes.
 Trace read_trace(const std::string& path, const ReadOptions& options = {});
 

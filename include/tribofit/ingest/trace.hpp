@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tribofit/ingest/conditions.hpp"
+#include "tribofit/ingest/record_kind.hpp"
 
 namespace tribofit {
 
@@ -33,7 +35,8 @@ struct Step {
 ///
 /// Channels are empty when absent; those present all have the length of `time`.
 /// Time is in seconds from the first sample and strictly increasing; where a file restarts its
-/// clock at each step the steps follow one another.
+/// clock at each step the steps follow one another. Points (RecordKind::points) have no time: `time` numbers them, in
+/// an order of their values.
 struct Trace {
   std::string path;
   std::uint64_t checksum = 0;  ///< of the values of the channels in SI, by XXH64
@@ -42,6 +45,8 @@ struct Trace {
   std::vector<double> friction;  ///< [1] or [N], see friction_kind
   std::vector<double> velocity;  ///< [m/s], see velocity_kind; empty for a fixed block
 
+  std::vector<double> friction_std_error;  ///< of points [1] or [N]; empty: not stated
+
   std::vector<double> load;         ///< normal force [N]
   std::vector<double> temperature;  ///< [degC]
   std::vector<double> disc_speed;   ///< [rad/s]
@@ -49,6 +54,10 @@ struct Trace {
 
   FrictionKind friction_kind = FrictionKind::coefficient;
   VelocityKind velocity_kind = VelocityKind::block;
+
+  std::optional<RecordKind> kind;  ///< as the user stated it, or as the file shows it; nothing: the motion shows it
+  std::string kind_source;         ///< "stated", or what in the file shows it
+  SpringDrive spring;              ///< of a spring slider, whose `friction` is the pull of the spring
 
   Conditions conditions;    ///< of the whole trace; radius unknown where the steps differ
   std::vector<Step> steps;  ///< at least one; they cover the trace without gaps

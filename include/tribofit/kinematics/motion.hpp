@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,15 @@ struct SampleFault {
 
 /// What counts as stick, where the user says it.
 struct StickRule {
-  bool never = false;  ///< nothing sticks: every sample slides, however slowly
-  double below = 0;    ///< |v_r| below which the block sticks [m/s]; 0: found from the record
+  bool never = false;   ///< nothing sticks: every sample slides, however slowly
+  bool always = false;  ///< it sticks and slips: what is slow beside the slips is stick
+  double below = 0;     ///< |v_r| below which the block sticks [m/s]; 0: found from the record
 };
 
 /// A trace turned into relative motion: instruments corrected, run-up trimmed, v_r computed.
 ///
-/// v_r = omega r - v_b ([D] Eq 4). All vectors have the same length; optional channels are empty when absent.
+/// v_r = omega r - v_b ([D] Eq 4). Points (is_points()) have no time: their samples are sorted by v_r and numbered. All
+/// vectors have the same length; optional channels are empty when absent.
 struct Motion {
   double step = 0;                        ///< sampling interval [s]
   std::vector<double> time;               ///< [s] from the trace's first sample (not from the trimmed start)
@@ -56,6 +59,12 @@ struct Motion {
   /// As in Trace; where a ripple of the speed was undone, disc_speed holds it and disc_angle its integral.
   std::vector<double> load, temperature, disc_speed, disc_angle;
 
+  /// Standard error of friction [1 or N] and of v_r [m/s] at every sample, where it is stated or follows from how they
+  /// were made; empty: not known.
+  std::vector<double> friction_std_error, velocity_std_error;
+
+  std::optional<RecordKind> kind;  ///< as in Trace
+  std::string kind_source;         ///< as in Trace
   FrictionKind friction_kind = FrictionKind::coefficient;
   VelocityKind velocity_kind = VelocityKind::block;
   Conditions conditions;    ///< speed and its source filled in, from the plateau where nobody said it
@@ -88,6 +97,7 @@ struct Motion {
   std::vector<std::string> notes;  ///< corrections made and conventions settled, for the report
 
   std::size_t size() const { return time.size(); }
+  bool is_points() const { return kind == RecordKind::points; }
   bool has_fault(std::size_t i, std::uint8_t kinds) const { return !faults.empty() && (faults[i] & kinds) != 0; }
   double disc_velocity_at(std::size_t i) const {
     return disc_velocity.empty() ? constant_disc_velocity : disc_velocity[i];
@@ -121,7 +131,8 @@ struct MotionOptions {
 /// ratio then follows from no net displacement of the block.
 ///
 /// `trace` is consumed so that no channel is held twice. Throws InputError when v_r cannot be made: channels missing,
-/// or neither speed and radius nor a plateau. Cost: about six passes over the samples.
+/// or neither speed and radius nor a plateau. Of points only v_r and the declared zero, gain and crosstalk of the force
+/// sensor are settled. Cost: about six passes over the samples.
 Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});
 
 /// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1

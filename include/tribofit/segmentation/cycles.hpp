@@ -74,6 +74,10 @@ struct Segmentation {
   bool is_selected(const Cycle& cycle) const;
 };
 
+/// What kind of record this is: as stated or as the file shows it, else as the motion shows it. A record that never
+/// slips counts as stick-slip.
+RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation);
+
 /// What part of a record is fitted.
 struct Selection {
   /// Numbers of cycles as in cycles.csv, the first is 0; both ends take part.
@@ -103,6 +107,7 @@ std::size_t samples_in_slip(const Segmentation& segmentation);
 /// The block sticks where v_r is within the noise of zero, not where it is slow beside the fastest slip: a record in
 /// which it never rests is sliding throughout, whatever its range of speeds.
 ///
+/// Points have neither stick nor cycles: they are one slip for each direction.
 ///
 /// Break-away is placed between samples by fitting the growth of v_r after it (v_r ~ exp(lambda t) - 1 - lambda t, the
 /// solution of m v_r' = k (omega r) t + |dmu/dv| N v_r near v_r = 0); re-stick by a line through v_r before it.

@@ -186,6 +186,7 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
     add_errors(curve_name(*d.models[k]), k, speed.result(), charts[0]);
     add_errors(curve_name(*d.models[k]), k, time.result(), charts[1]);
   }
+  if (m.is_points()) charts.pop_back();
   if (d.trace.segmentation.kind == MotionKind::stick_slip) {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k));
   }
