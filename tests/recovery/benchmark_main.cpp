@@ -1,4 +1,4 @@
-/// The benchmark of hidden effects: simulates, diagnoses, judges, and prints the tables of the README.
+/// The benchmark of hidden effects: simulates, diagnoses, judges, and prints the tables of data/validation.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

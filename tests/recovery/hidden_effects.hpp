@@ -207,7 +207,7 @@ tribofit::DiagnosedTraces diagnose_case(const Simulated& simulated);
 std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool experiments = false,
                                const std::function<void(const Outcome&, std::size_t)>& done = {});
 
-/// The tables that stand in the README, as Markdown.
+/// The tables of data/validation/hidden-effects.md, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
 /// False alarms, names and intervals of each kind of record, as Markdown.

@@ -10,7 +10,7 @@
 #include "tribofit/study/response.hpp"
 #include "tribofit/study/settled.hpp"
 
-// What of the studies of [U], [C] and [D] can be computed anew: the numbers that stand in the README, printed by
+// What of the studies of [U], [C] and [D] can be computed anew: the numbers that stand in data/validation, printed by
 // scripts/reproduce-studies and asserted by published_studies_test.cpp. SI throughout.
 
 namespace tribofit::studies {
