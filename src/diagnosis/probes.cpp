@@ -251,20 +251,23 @@ std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& tr
   if (o.angle.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
   if (*most - *least < 2 * (2 * std::numbers::pi)) return std::nullopt;
-  constexpr int kHarmonics = 6;
+  // Every record begins at an angle of its own: as many terms for each as keep their number.
+  const auto records = static_cast<Eigen::Index>(context.records.size());
+  const Eigen::Index harmonics = std::max<Eigen::Index>(1, limits::kHarmonicsOfAngle / records);
   Probe probe;
   probe.variable = "angle";
-  const auto functions = [&o](std::size_t k, std::size_t i) {
+  const auto functions = [&o, records, harmonics](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const double angle = o.angle[std::min(range.begin + i, range.end - 1)];
-    Eigen::RowVectorXd out(2 * kHarmonics);
-    for (int h = 0; h < kHarmonics; ++h) {
-      out(2 * h) = std::cos((h + 1) * angle);
-      out(2 * h + 1) = std::sin((h + 1) * angle);
+    Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(2 * harmonics * records);
+    const Eigen::Index first = 2 * harmonics * static_cast<Eigen::Index>(range.record);
+    for (Eigen::Index h = 0; h < harmonics; ++h) {
+      out(first + 2 * h) = std::cos(static_cast<double>(h + 1) * angle);
+      out(first + 2 * h + 1) = std::sin(static_cast<double>(h + 1) * angle);
     }
     return out;
   };
-  judge_probe(context, context.coarse, trial, scaling(inputs, 2 * kHarmonics, functions), 1, probe);
+  judge_probe(context, context.coarse, trial, scaling(inputs, 2 * harmonics * records, functions), 1, probe);
   return probe;
 }
 
