@@ -45,6 +45,7 @@ ExitStatus run(int argc, char** argv) {
     add_effects(identify);
     add_simulate(identify);
     add_study(identify);
+    add_help(identify);
   });
 }
 

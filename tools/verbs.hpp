@@ -14,3 +14,4 @@ void add_twin(const Command& app);
 void add_effects(const Command& app);
 void add_simulate(const Command& app);
 void add_study(const Command& app);
+void add_help(const Command& app);

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "command.hpp"
 #include "tribofit/report/page.hpp"
 #include "tribofit/report/pictures.hpp"
@@ -142,6 +144,21 @@ TEST(Usage, EffectsListsAndExplains) {
   const Outcome unknown = shop.identify("effects brisle");
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bristle'"));
+}
+
+TEST(Help, ListsAndPrintsEveryText) {
+  const Workshop shop;
+  const Outcome list = shop.identify("help");
+  EXPECT_EQ(list.status, 0);
+  std::size_t texts = 0;
+  for (const auto& file : std::filesystem::directory_iterator(TRIBOFIT_SOURCE_DIR "/tools/help")) {
+    const std::string topic = file.path().stem().string(), text = contents(file.path());
+    EXPECT_THAT(list.out, HasSubstr("  " + topic + " ")) << "not in tools/CMakeLists.txt";
+    EXPECT_THAT(list.out, HasSubstr(text.substr(0, text.find('\n'))));
+    EXPECT_EQ(shop.identify("help " + topic).out, text);
+    ++texts;
+  }
+  EXPECT_GE(texts, 5u);
 }
 
 }  // namespace
