@@ -306,6 +306,7 @@ void MotionStages::settle_signs_and_levels() {
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
   motion_.velocity_noise = std::max(search_.noise, steps_.velocity / std::sqrt(12.0));
+  motion_.velocity_noise = std::max(motion_.velocity_noise, kinematics::usual_error(motion_.velocity_std_error));
   if (search_.sticks) {
     const double level = search_.plateaus.level;
     motion_.plateau_velocity = is_block() ? motion_.constant_disc_velocity - level : level;

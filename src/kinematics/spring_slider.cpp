@@ -128,11 +128,15 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
   if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));
 }
 
+double usual_error(const std::vector<double>& errors) {
+  return errors.empty() ? 0 : median(errors);
+}
+
 std::vector<SampleSpan> unsure_velocities(const Trace& trace) {
   std::vector<SampleSpan> spans;
   const std::vector<double>& error = trace.velocity_std_error;
   if (error.empty()) return spans;
-  const double limit = kUnsure * median(error);
+  const double limit = kUnsure * usual_error(error);
   for (std::size_t i = 0; i < error.size(); ++i) {
     if (error[i] <= limit) continue;
     const std::size_t begin = i - std::min(i, kBesideUnsure), end = std::min(error.size(), i + kBesideUnsure + 1);
