@@ -1,5 +1,7 @@
 #include "analysis_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <sstream>
@@ -91,6 +93,31 @@ double speed_from(const std::string& text, const Condition& radius) {
                    "give --radius as well, as one value, or a rotational speed as in 4rpm");
 }
 
+std::optional<RecordKind> kind_from(const Settings& s) {
+  const auto refuse_beside = [&](const char* option, RecordKind kind) {
+    if (s.kind.empty() || s.kind == to_string(kind)) return;
+    throw UsageError(fmt::format("{} says --kind {}, and --kind {} another", option, to_string(kind), s.kind));
+  };
+  if (s.never_sticks) refuse_beside("--never-sticks", RecordKind::sliding);
+  if (!s.stiffness.empty()) refuse_beside("--stiffness", RecordKind::spring_slider);
+  if (s.never_sticks && !s.stiffness.empty())
+    throw UsageError("--never-sticks and --stiffness say two kinds of record");
+  if (s.mass.empty() != s.stiffness.empty() && s.stiffness.empty())
+    throw UsageError("--mass is that of a spring slider: give --stiffness, too");
+  if (!s.stiffness.empty()) return RecordKind::spring_slider;
+  return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
+}
+
+/// The drive of a spring slider: its speed is a linear one.
+SpringDrive spring_from(const Settings& s) {
+  const std::string source = "command line";
+  SpringDrive spring;
+  if (!s.speed.empty()) spring.velocity = {positive(s.speed, Quantity::velocity, "--speed"), source};
+  if (!s.stiffness.empty()) spring.stiffness = {positive(s.stiffness, Quantity::stiffness, "--stiffness"), source};
+  if (!s.mass.empty()) spring.mass = {positive(s.mass, Quantity::mass, "--mass"), source};
+  return spring;
+}
+
 void read_conditions(const Settings& s, Conditions& conditions, std::vector<double>& step_radii) {
   const std::string source = "command line";
   if (!s.radius.empty()) {
@@ -101,7 +128,8 @@ void read_conditions(const Settings& s, Conditions& conditions, std::vector<doub
       step_radii = radii;
     }
   }
-  if (!s.speed.empty()) conditions.speed = {speed_from(s.speed, conditions.radius), source};
+  const bool of_spring = kind_from(s) == RecordKind::spring_slider;
+  if (!s.speed.empty() && !of_spring) conditions.speed = {speed_from(s.speed, conditions.radius), source};
   if (!s.load.empty()) conditions.load = {positive(s.load, Quantity::force, "--load"), source};
 }
 
@@ -179,12 +207,6 @@ void refuse_extremes(const IdentifyOptions& options) {
   }
 }
 
-std::optional<RecordKind> kind_from(const Settings& s) {
-  if (s.never_sticks && !s.kind.empty() && s.kind != to_string(RecordKind::sliding))
-    throw UsageError("--never-sticks says --kind sliding, and --kind " + s.kind + " another");
-  return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
-}
-
 }  // namespace
 
 IdentifyOptions options_from(const Settings& s) {
@@ -193,6 +215,7 @@ IdentifyOptions options_from(const Settings& s) {
   read_reading(s, options.read);
   options.motion.trim = s.trim;
   options.read.kind = kind_from(s);
+  if (options.read.kind == RecordKind::spring_slider) options.read.spring = spring_from(s);
   if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
   if (options.read.kind && options.read.kind != RecordKind::stick_slip && !s.stick_below.empty())
     throw UsageError("--stick-below is for records that stick and slip, and excludes --never-sticks and other kinds");

@@ -172,6 +172,7 @@ void add_diagnose(const Command& app) {
   verb.footer(kDiagnoseFooter);
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
+  add_spring_options(verb, *settings);
   verb.add_option("--confirm", settings->confirm,
                   "A run held back from the diagnosis to confirm the finding (repeatable)")
       .one_value_each()

@@ -131,6 +131,7 @@ ExitStatus run_identify(const Settings& s, const std::vector<std::string>& argum
 void add_identify(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   add_input_options(app, *settings);
+  add_spring_options(app, *settings);
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
   add_report_option(app, *settings);

@@ -25,12 +25,22 @@ void add_input_options(const Command& app, Settings& s) {
   input("--with-units", s.second_units, "--units of the second file").one_value_each();
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
 
-  input("--kind", s.kind, "What was recorded: stick-slip, sliding (never sticks: every sample counts), points, ...")
+  input("--kind", s.kind,
+        "What was recorded: stick-slip, sliding (never sticks: every sample counts), points, spring-slider")
       .one_of(tribofit::record_kind_names());
   app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group("Reading");
   input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
   app.add_flag("--trim,!--no-trim", s.trim, "Exclude the run-up of the disc (default); --no-trim keeps it")
       .group("Reading");
+}
+
+void add_spring_options(const Command& app, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    app.add_option(name, value, help).group("Spring slider");
+  };
+  add("--stiffness", s.stiffness, "Of the spring whose pull is all that was recorded, 168N/m; --speed is its drive's");
+  add("--mass", s.mass,
+      "That the spring pulls, 30.7g: its inertia is taken off the pull (else sensor-inertia finds it)");
 }
 
 void add_model_options(const Command& app, Settings& s) {

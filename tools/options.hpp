@@ -9,6 +9,8 @@
 /// The options that the verbs share, so that each is spelt and explained once.
 
 void add_input_options(const Command& app, Settings& settings);
+/// What draws a slider of which only the pull was recorded.
+void add_spring_options(const Command& app, Settings& settings);
 /// Laws, effects and how they are fitted.
 void add_model_options(const Command& app, Settings& settings);
 /// Which cycles and stretches of time are fitted.

@@ -313,6 +313,11 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
       item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / (2 * std::numbers::pi));
     return item;
   }
+  if (motion.kind == RecordKind::spring_slider) {
+    compare(plateau, motion.constant_disc_velocity, "the drive");
+    if (item.status != Status::ok) item.message += "; stiffness, speed of the drive, load or creep of the contact";
+    return item;
+  }
   compare(plateau, motion.constant_disc_velocity, "omega r");
   if (item.status != Status::ok) item.message += "; radius, speed, laser angle or creep of the contact";
   return item;

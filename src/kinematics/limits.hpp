@@ -131,6 +131,21 @@ inline constexpr double kJumpSmooth = 0.3;
 inline constexpr std::size_t kFewestJumps = 5;
 inline constexpr double kJumpsPerPlateau = 0.1;
 
+// ---- derivatives of the pull of a spring
+
+/// Part of the natural period to either side of a sample: a polynomial of fourth degree follows a sixth of a sine to
+/// 1e-4 in its slope and 1e-3 in its bend; wider, slips are rounded; narrower, noise grows with the power -5/2.
+inline constexpr double kPartOfPeriod = 1.0 / 12;
+/// Samples to either side: fewer leave no degree of freedom that would show a kink; more cost time for nothing.
+inline constexpr std::size_t kShortestHalf = 4, kWidestHalf = 500;
+/// How nearly the steepest fall of the pull is that of stiffness and mass: friction that falls with speed makes it
+/// steeper by some per cent, noise by some more.
+inline constexpr double kFrequencyAgrees = 0.2;
+/// Standard error of a velocity over the median, from which it takes no part, and samples beside it: where a window
+/// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
+inline constexpr double kUnsure = 2.5;
+inline constexpr std::size_t kBesideUnsure = 2;
+
 // ---- faults of the recording
 
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a

@@ -21,6 +21,7 @@
 #include "ripple.hpp"
 #include "speed_steps.hpp"
 #include "spoilt_samples.hpp"
+#include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -61,7 +62,7 @@ class MotionStages {
   std::optional<LevelRange> plateau_as_recorded() const;
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;
-  Plateaus plateaus_in_motion() const;
+  Plateaus plateaus_in_motion() const { return kinematics::plateaus_within(search_, motion_.trimmed, motion_.size()); }
   HealthItem check_level() const;
   double taken_off() const { return zero_.kind == kinematics::BlockZero::Kind::zero ? zero_.mean.value : 0; }
 
@@ -104,6 +105,7 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
 /// What the recorder did: its range and its gaps.
 void MotionStages::look_at_recording() {
   spoilt_.emplace(trace_);
+  spoilt_->add_unsure(kinematics::unsure_velocities(trace_));
   range_ends_ = kinematics::range_ends(trace_, chunks_of(trace_.friction), chunks_of(trace_.velocity));
   steps_ = {kinematics::find_resolution(trace_.friction), kinematics::find_resolution(trace_.velocity),
             range_ends_.friction[1].at - range_ends_.friction[0].at, range_ends_.largest_velocity};
@@ -232,7 +234,8 @@ void MotionStages::check_clipping() {
   if (is_block() && search_.sticks && speed_is_constant()) spoilt_->add_standstill(search_, plateau_, trace_);
   clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
                                          {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
-  const bool can_jump = search_.sticks && clipping_.status == HealthItem::Status::ok;
+  const bool was_recorded = trace_.velocity_std_error.empty();  // else it was made from another channel
+  const bool can_jump = was_recorded && search_.sticks && clipping_.status == HealthItem::Status::ok;
   const auto lost = can_jump ? kinematics::find_lost_samples(trace_, std::max(search_.noise, steps_.velocity))
                              : kinematics::LostSamples{};
   drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size());
@@ -277,20 +280,23 @@ void MotionStages::make_relative_motion() {
   const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
   if (undoes_ripple_) kinematics::impose_ripple(trace_, disc_, ripple_, kinematics::steady_speed(trace_));
   if (is_block()) kinematics::make_relative(trace_.velocity, disc_);
-  for (auto* channel : {&trace_.time, &trace_.friction, &trace_.velocity, &trace_.load, &trace_.temperature,
-                        &trace_.disc_speed, &trace_.disc_angle, &disc_.varying}) {
-    kinematics::drop_ends(*channel, head, lost_.tail);
+  const std::pair<std::vector<double>*, std::vector<double>*> channels[] = {
+      {&trace_.time, &motion_.time},
+      {&trace_.friction, &motion_.friction},
+      {&trace_.velocity, &motion_.relative_velocity},
+      {&trace_.friction_std_error, &motion_.friction_std_error},
+      {&trace_.velocity_std_error, &motion_.velocity_std_error},
+      {&trace_.load, &motion_.load},
+      {&trace_.temperature, &motion_.temperature},
+      {&trace_.disc_speed, &motion_.disc_speed},
+      {&trace_.disc_angle, &motion_.disc_angle},
+      {&disc_.varying, &motion_.disc_velocity}};
+  for (const auto& [from, to] : channels) {
+    kinematics::drop_ends(*from, head, lost_.tail);
+    *to = std::move(*from);
   }
   kinematics::drop_ends(motion_.faults, head, lost_.tail);
   motion_.trimmed = head;
-  motion_.time = std::move(trace_.time);
-  motion_.friction = std::move(trace_.friction);
-  motion_.relative_velocity = std::move(trace_.velocity);
-  motion_.load = std::move(trace_.load);
-  motion_.temperature = std::move(trace_.temperature);
-  motion_.disc_speed = std::move(trace_.disc_speed);
-  motion_.disc_angle = std::move(trace_.disc_angle);
-  motion_.disc_velocity = std::move(disc_.varying);
   motion_.conditions = trace_.conditions;
   motion_.steps = kinematics::steps_within(trace_.steps, head, motion_.size());
 }
@@ -300,6 +306,7 @@ void MotionStages::settle_signs_and_levels() {
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
   motion_.velocity_noise = std::max(search_.noise, steps_.velocity / std::sqrt(12.0));
+  motion_.velocity_noise = std::max(motion_.velocity_noise, kinematics::usual_error(motion_.velocity_std_error));
   if (search_.sticks) {
     const double level = search_.plateaus.level;
     motion_.plateau_velocity = is_block() ? motion_.constant_disc_velocity - level : level;
@@ -309,22 +316,12 @@ void MotionStages::settle_signs_and_levels() {
   if (disc_.largest > 0 || !is_block()) kinematics::settle_friction_sign(motion_, scale);
 }
 
-/// The plateaus that the motion still holds, in its own blocks.
-Plateaus MotionStages::plateaus_in_motion() const {
-  Plateaus plateaus = search_.plateaus;
-  const std::size_t length = search_.blocks.length;
-  const std::size_t cut = (motion_.trimmed + length - 1) / length, kept = motion_.size() / length;
-  std::erase_if(plateaus.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
-  for (StickPlateau& run : plateaus.runs) run.begin -= cut, run.end -= cut;
-  return plateaus;
-}
-
 void MotionStages::check_health() {
   const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
   const std::span<const double> velocity =
       velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
   const auto restick =
-      motion_.sticks && velocity_was_measured
+      motion_.sticks && velocity_was_measured && motion_.velocity_std_error.empty()
           ? kinematics::find_low_pass(velocity, motion_.plateau_velocity, motion_.velocity_noise, motion_.step)
           : kinematics::LowPass{};
   motion_.health = {
@@ -370,9 +367,13 @@ void MotionStages::compare_plateau() {
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
-  if (trace.kind == RecordKind::spring_slider)
-    throw InputError("records of a spring slider are not analysed yet", "give the slider's velocity", {trace.path, 0, ""});
-  MotionStages stages(std::move(trace), instruments, options);
+  std::vector<std::string> notes;
+  MotionOptions own = options;
+  if (trace.kind == RecordKind::spring_slider) {
+    kinematics::make_block_of_spring(trace, notes);
+    own.undo_high_pass = own.undo_speed_ripple = false;  // nothing of either is between the pull and its slope
+  }
+  MotionStages stages(std::move(trace), instruments, own);
   stages.look_at_recording();
   stages.correct_declared();
   stages.find_disc();
@@ -389,7 +390,9 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   stages.settle_signs_and_levels();
   stages.check_health();
   stages.compare_plateau();
-  return stages.take();
+  Motion motion = stages.take();
+  motion.notes.insert(motion.notes.begin(), notes.begin(), notes.end());
+  return motion;
 }
 
 }  // namespace tribofit

@@ -41,6 +41,7 @@ inline bool is_useless(const Trace& trace) {
 inline void take_kinds(const Trace& trace, const StickRule& stick, Motion& motion) {
   motion.kind = trace.kind;
   motion.kind_source = trace.kind_source;
+  motion.spring = trace.spring;
   motion.friction_kind = trace.friction_kind;
   motion.velocity_kind = trace.velocity_kind;
   motion.stick = stick;

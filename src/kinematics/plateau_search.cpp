@@ -84,6 +84,12 @@ double largest_of(std::span<const double> values) {
 
 Disc disc_of(const Trace& trace) {
   Disc disc;
+  if (trace.kind ==
+      RecordKind::spring_slider) {  // seen from the driven end, what it slides on runs at the drive's speed
+    disc.known = trace.spring.velocity.known();
+    if (disc.known) disc.constant = disc.largest = trace.spring.velocity.value;
+    return disc;
+  }
   const std::size_t n = trace.size();
   const bool channel = trace.disc_speed.size() == n;
   std::vector<std::pair<const Step*, double>> parts;  // omega r, or r with a speed channel
@@ -219,6 +225,15 @@ double final_level(const Plateaus& plateaus) {
   for (std::size_t r = plateaus.runs.size() / 2; r < plateaus.runs.size(); ++r)
     levels.push_back(plateaus.runs[r].level);
   return median(std::move(levels));
+}
+
+Plateaus plateaus_within(const PlateauSearch& search, std::size_t trimmed, std::size_t size) {
+  Plateaus plateaus = search.plateaus;
+  const std::size_t length = search.blocks.length;
+  const std::size_t cut = (trimmed + length - 1) / length, kept = size / length;
+  std::erase_if(plateaus.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
+  for (StickPlateau& run : plateaus.runs) run.begin -= cut, run.end -= cut;
+  return plateaus;
 }
 
 std::size_t run_up_blocks(const PlateauSearch& s) {

@@ -60,6 +60,9 @@ std::vector<double> disc_slopes(const PlateauSearch& s);
 /// The level towards which the plateaus tend: median over the second half of the record [m/s].
 double final_level(const Plateaus& plateaus);
 
+/// The plateaus that samples [trimmed, trimmed + size) still hold, in blocks from there.
+Plateaus plateaus_within(const PlateauSearch& search, std::size_t trimmed, std::size_t size);
+
 /// Blocks before the plateau comes within 2 % of its final value and stays there.
 std::size_t run_up_blocks(const PlateauSearch& s);
 

@@ -21,6 +21,9 @@ class SpoiltSamples {
   /// Samples at a limit of the range of a channel (SampleFault::friction or velocity); they keep their values.
   void add_clipped(const std::vector<SampleSpan>& spans, std::uint8_t kind) { mark(spans, kind); }
 
+  /// Samples whose velocity is hardly known; they keep their values.
+  void add_unsure(const std::vector<SampleSpan>& spans) { mark(spans, SampleFault::velocity); }
+
   /// A machine that stands still before, after or while it stick-slips. `plateau`: where v_b rests in stick [m/s].
   void add_standstill(const PlateauSearch& search, double plateau, const Trace& trace);
 

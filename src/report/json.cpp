@@ -155,6 +155,10 @@ Json trace_json(const Identification& r) {
 
 Json conditions_of(const Motion& motion) {
   Json json = conditions_json(motion.conditions);
+  if (motion.kind == RecordKind::spring_slider) {
+    json["spring"] = object("drive_mm_s", motion.spring.velocity.value / kMillimetre, "stiffness_N_per_mm",
+                            motion.spring.stiffness.value * kMillimetre, "mass_kg", motion.spring.mass.value);
+  }
   if (motion.steps.size() < 2) return json;
   json["steps"] = list_of(motion.steps, [](const Step& step) {
     Json item = object("label", step.label, "begin", step.begin, "end", step.end);

@@ -84,7 +84,33 @@ Facts point_facts(const Motion& motion) {
                                                                 : "stated: points weigh against their squares"}};
 }
 
+/// Of a slider on a spring: it sticks, it swings about its drive, or it follows it.
+std::string regime_text(const Identification& r) {
+  constexpr double kSwings = 0.1;  // of the drive, from which friction follows the swing and not the drive
+  if (r.segmentation.kind == MotionKind::stick_slip) return "stick-slip";
+  const double drive = std::abs(r.motion.constant_disc_velocity);
+  if (r.segmentation.rms_velocity < kSwings * drive) return "steady: the slider follows its drive";
+  const std::string at =
+      r.spectral_peak.frequency > 0 ? fmt::format(" at {} Hz", significant(r.spectral_peak.frequency, 4)) : "";
+  return fmt::format("inertial: the slider swings{} without sticking", at);
+}
+
+/// "1.1 mm/s (command line)".
+std::string spring_text(const Condition& known, double unit, std::string_view name) {
+  if (!known.known()) return "not known";
+  return fmt::format("{} {} ({})", brief(known.value / unit), name, known.source);
+}
+
+Facts spring_facts(const Motion& motion) {
+  constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
+  return {{"drive", spring_text(motion.spring.velocity, kMillimetre, "mm/s")},
+          {"spring", spring_text(motion.spring.stiffness, kNewtonPerMillimetre, "N/mm")},
+          {"moving mass", spring_text(motion.spring.mass, kGram, "g")},
+          {"load", condition(motion, &Conditions::load, 1, "N")}};
+}
+
 Facts condition_facts(const Motion& motion) {
+  if (motion.kind == RecordKind::spring_slider) return spring_facts(motion);
   return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
           {"disc speed", speed_text(motion)},
           {"load", condition(motion, &Conditions::load, 1, "N")}};
@@ -143,6 +169,7 @@ Facts stick_slip_facts(const Identification& r) {
                     branches.value > 0 ? "higher" : "lower", with_error(std::abs(branches.value), branches.std_error),
                     unit_behind(friction_unit(r.motion))));
   }
+  if (r.motion.kind == RecordKind::spring_slider) facts.emplace_back("regime", regime_text(r));
   if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   return facts;
 }

@@ -22,6 +22,8 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
     return {fmt::format("there are only {} points: too few for any law", motion.size())};
   if (motion.is_points() && !must_slip)
     return {"these are points without time: a rig shows in the motion of a record only"};
+  if (motion.kind == RecordKind::spring_slider && !must_slip)
+    return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
   if (!motion.is_points() && motion.size() < kFewestSamples)
     return {fmt::format("there are only {} samples: too few for any analysis", motion.size())};
   std::vector<std::string> found;

@@ -114,6 +114,21 @@ Thresholds thresholds_without_stick(const Motion& motion) {
 
 namespace {
 
+/// Friction turns with the motion: a reversal in which it does not is noise of a slow velocity.
+std::vector<RawSlip> without_turns_of_noise(const Motion& motion, const std::vector<RawSlip>& slides) {
+  std::vector<RawSlip> real;
+  for (const RawSlip& slide : slides) {
+    double along = 0;
+    for (std::size_t i = slide.samples.begin; i < slide.samples.end; ++i) along += slide.direction * motion.friction[i];
+    if (!real.empty() && (along < 0 || slide.direction == real.back().direction)) {
+      real.back().samples.end = slide.samples.end;
+    } else {
+      real.push_back(slide);
+    }
+  }
+  return real;
+}
+
 /// Every sample, however slow, cut where v_r reverses by more than `band`.
 std::vector<RawSlip> all_slides(const std::vector<double>& v, double band) {
   std::vector<RawSlip> slides;
@@ -142,7 +157,7 @@ std::vector<RawSlip> find_slides(const Motion& motion) {
   std::vector<RawSlip> slides;
   const double band = thresholds_without_stick(motion).slip;
   const std::vector<double>& v = motion.relative_velocity;
-  if (motion.stick.never) return all_slides(v, band);
+  if (motion.stick.never) return without_turns_of_noise(motion, all_slides(v, band));
   std::size_t i = 0;
   while (i < v.size() && std::abs(v[i]) <= band) ++i;  // nobody knows in which direction
   while (i < v.size()) {

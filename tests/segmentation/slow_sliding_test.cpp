@@ -69,6 +69,30 @@ TEST(SlowSliding, ARestAtEitherEndMakesNoStickSlip) {
   EXPECT_NEAR(static_cast<double>(samples_in_slip(s)), 32 * 200, 40);
 }
 
+/// Where it is said that nothing sticks, no sample is too slow, and noise turns nothing round.
+TEST(SlowSliding, EverySampleCountsWhereTheUserSaysSo) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> error(0, 1);
+  for (const bool reverses : {false, true}) {
+    Trace trace;
+    trace.kind = RecordKind::sliding;
+    trace.velocity_kind = VelocityKind::relative;
+    for (double t = 0; t < 40; t += 5e-3) {
+      const double part = std::abs(std::fmod(t / 10, 2) - 1), sign = reverses && std::fmod(t, 20) < 10 ? -1 : 1;
+      const double v = sign * (5e-5 + 0.5 * std::pow(part, 4));
+      trace.time.push_back(t);
+      trace.velocity.push_back(v + 5e-4 * error(engine));
+      trace.friction.push_back(std::copysign(0.35 + 0.15 * std::exp(-60 * std::abs(v)), v) + 0.003 * error(engine));
+    }
+    const std::size_t n = trace.size();
+    const Segmentation s = find_cycles(compute_motion(std::move(trace)));
+    EXPECT_EQ(s.kind, MotionKind::always_slipping);
+    EXPECT_EQ(samples_in_slip(s), n);
+    EXPECT_EQ(s.slip_threshold, 0);
+    EXPECT_EQ(s.cycles.size(), reverses ? 4U : 1U);
+  }
+}
+
 TEST(SlowSliding, WhatSticksIsWhatTheUserSays) {
   std::vector<double> v;
   for (int i = 0; i < 4000; ++i) v.push_back(0.01 + 0.009 * std::cos(2 * std::numbers::pi * i / 1000.0));

@@ -45,7 +45,8 @@ struct Trace {
   std::vector<double> friction;  ///< [1] or [N], see friction_kind
   std::vector<double> velocity;  ///< [m/s], see velocity_kind; empty for a fixed block
 
-  std::vector<double> friction_std_error;  ///< of points [1] or [N]; empty: not stated
+  /// Of points as stated, of a spring slider as it follows from the pull [1] or [N], [m/s]; empty: not known.
+  std::vector<double> friction_std_error, velocity_std_error;
 
   std::vector<double> load;         ///< normal force [N]
   std::vector<double> temperature;  ///< [degC]

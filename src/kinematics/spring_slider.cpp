@@ -1,0 +1,152 @@
+#include "spring_slider.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "limits.hpp"
+#include "statistics/local_derivatives.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::kinematics {
+
+namespace {
+
+constexpr double kGravity = 9.80665;  // [m/s^2]
+
+/// Newtons of the pull per unit of the channel: the load where it is given over that. A slider that nothing presses
+/// weighs down by its mass alone.
+double newtons_per_unit(Trace& trace, std::vector<std::string>& notes) {
+  if (trace.friction_kind == FrictionKind::force) return 1;
+  if (!trace.load.empty()) {
+    throw InputError("the pull of a spring over a load that varies does not give a velocity",
+                     "leave the load out with --columns load=none, or state it with --load", {trace.path, 0, ""});
+  }
+  Condition& load = trace.conditions.load;
+  if (!load.known() && trace.spring.mass.known()) {
+    load = {trace.spring.mass.value * kGravity, "mass"};
+    notes.push_back(fmt::format("no load is known: the slider presses by its weight, {:.4g} N", load.value));
+  }
+  if (load.known()) return load.value;
+  throw InputError("the pull of the spring is given over the load, which is not known",
+                   "give --load 0.3N, or --mass 30.7g where the slider presses by its weight", {trace.path, 0, ""});
+}
+
+/// Half of the samples over which derivatives are taken where the pull has this natural frequency [rad/s].
+std::size_t half_window(double frequency, double step) {
+  const double samples = kPartOfPeriod * 2 * std::numbers::pi / (frequency * step);
+  return std::max(kShortestHalf, static_cast<std::size_t>(std::round(samples)));
+}
+
+/// The steepest fall of the pull as a half period of a sine [rad/s], which it is in a slip and in free oscillation: a
+/// pull that falls by 2 A falls at A omega at the most.
+double frequency_of_steepest_fall(std::span<const double> pull, double step, std::size_t half) {
+  const std::vector<double> slope = savitzky_golay_slope(pull, step, half);
+  const auto steepest = static_cast<std::size_t>(std::min_element(slope.begin(), slope.end()) - slope.begin());
+  std::size_t begin = steepest, end = steepest;
+  while (begin > 0 && slope[begin - 1] < 0) --begin;
+  while (end + 1 < slope.size() && slope[end + 1] < 0) ++end;
+  const double amplitude = 0.5 * (pull[begin] - pull[end]);
+  return amplitude > 0 ? std::max(0.0, -slope[steepest] / amplitude) : 0;
+}
+
+/// The natural frequency as the pull shows it [rad/s]: of windows that are not far wider than the frequency found over
+/// them calls for, that over which it changes least with the window. Narrower ones see noise, wider ones round the
+/// fall. 0 where nothing falls.
+double frequency_of_falls(std::span<const double> pull, double step) {
+  constexpr double kWider = 1.15;
+  constexpr std::size_t kTooWide = 2;
+  const std::size_t widest = std::min(kWidestHalf, pull.size() / 20);
+  std::vector<double> frequencies;
+  std::vector<std::size_t> halves;
+  for (std::size_t half = kShortestHalf; half <= widest;
+       half = std::max(half + 1, static_cast<std::size_t>(kWider * static_cast<double>(half)))) {
+    frequencies.push_back(frequency_of_steepest_fall(pull, step, half));
+    halves.push_back(half);
+    if (!(frequencies.back() > 0)) break;
+  }
+  double found = frequencies.empty() ? 0 : frequencies.front(), least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k + 1 < frequencies.size(); ++k) {
+    if (!(frequencies[k + 1] > 0) || halves[k] > kTooWide * half_window(frequencies[k], step)) continue;
+    const double change = std::abs(std::log(frequencies[k + 1] / frequencies[k])) +
+                          std::abs(std::log(frequencies[k] / frequencies[k - 1]));
+    if (change >= least) continue;
+    least = change;
+    found = frequencies[k];
+  }
+  return found;
+}
+
+/// What the falls of the pull say of the stated stiffness and mass; empty where they agree.
+std::string contradiction(const SpringDrive& spring, double frequency_found) {
+  const double stated = std::sqrt(spring.stiffness.value / spring.mass.value), turn = 2 * std::numbers::pi;
+  if (!(frequency_found > 0) || std::abs(frequency_found / stated - 1) < kFrequencyAgrees) return {};
+  return fmt::format(
+      "spring: the steepest fall of the pull is that of {:.3g} Hz, stiffness and mass say {:.3g} Hz: one of the two, "
+      "or "
+      "the load, is another",
+      frequency_found / turn, stated / turn);
+}
+
+}  // namespace
+
+void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
+  const SpringDrive& spring = trace.spring;
+  if (!spring.stiffness.known()) {
+    throw InputError("the velocity of the slider needs the stiffness of the spring, which is not known",
+                     "give it as --stiffness 168N/m", {trace.path, 0, ""});
+  }
+  const double unit = newtons_per_unit(trace, notes), step = trace.interval();
+  const std::size_t lone = remove_lone_samples(trace.friction);
+  if (lone > 0)
+    notes.push_back(fmt::format("spring: {} lone samples of the pull were replaced by their neighbours", lone));
+  const bool has_mass = spring.mass.known() && spring.mass.value > 0;
+  const double found = frequency_of_falls(trace.friction, step);
+  const double frequency = has_mass ? std::sqrt(spring.stiffness.value / spring.mass.value) : found;
+  const std::size_t half = frequency > 0 ? half_window(frequency, step) : kWidestHalf;
+  const LocalDerivatives pull = local_derivatives(trace.friction, step, half);
+  const double to_speed = unit / spring.stiffness.value;
+  const double inertia = has_mass ? spring.mass.value / spring.stiffness.value : 0;
+  trace.velocity_kind = VelocityKind::block;
+  trace.velocity.resize(trace.size());
+  trace.velocity_std_error.resize(trace.size());
+  trace.friction_std_error.resize(trace.size());
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    trace.velocity[i] = to_speed * pull.slope[i];
+    trace.velocity_std_error[i] = to_speed * pull.slope_std_error[i];
+    trace.friction[i] += inertia * pull.bend[i];
+    trace.friction_std_error[i] = std::hypot(pull.noise, inertia * pull.bend_std_error[i]);
+  }
+  notes.push_back(fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms)",
+                              2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
+  if (has_mass && !contradiction(spring, found).empty()) notes.push_back(contradiction(spring, found));
+  if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));
+}
+
+double usual_error(const std::vector<double>& errors) {
+  return errors.empty() ? 0 : median(errors);
+}
+
+std::vector<SampleSpan> unsure_velocities(const Trace& trace) {
+  std::vector<SampleSpan> spans;
+  const std::vector<double>& error = trace.velocity_std_error;
+  if (error.empty()) return spans;
+  const double limit = kUnsure * usual_error(error);
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    if (error[i] <= limit) continue;
+    const std::size_t begin = i - std::min(i, kBesideUnsure), end = std::min(error.size(), i + kBesideUnsure + 1);
+    if (!spans.empty() && spans.back().end >= begin) {
+      spans.back().end = end;
+    } else {
+      spans.push_back({begin, end});
+    }
+  }
+  return spans;
+}
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,157 @@
+#include "local_derivatives.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit {
+
+namespace {
+
+using Weights = std::vector<double>;
+
+constexpr int kDegreeAbout = 4, kDegreeBeside = 3;
+
+/// Polynomials over a window: an orthonormal basis of their values, and how it gives the derivatives.
+class PolynomialWindow {
+ public:
+  PolynomialWindow(std::size_t count, int degree) : count_(static_cast<Eigen::Index>(count)) {
+    Eigen::MatrixXd powers(count_, degree + 1);
+    for (Eigen::Index i = 0; i < count_; ++i) {
+      double power = 1;
+      for (Eigen::Index k = 0; k <= degree; ++k, power *= abscissa(static_cast<double>(i))) powers(i, k) = power;
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
+    basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(count_, degree + 1);
+    inverse_ = powers.completeOrthogonalDecomposition().pseudoInverse();
+  }
+
+  /// Squares that the polynomial leaves of samples, over its degrees of freedom.
+  double left(const double* samples) const {
+    const Eigen::Map<const Eigen::VectorXd> y(samples, count_);
+    const Eigen::VectorXd about = y.array() - y(count_ / 2);  // else rounding of a large offset remains
+    const double squares = about.squaredNorm() - (basis_.transpose() * about).squaredNorm();
+    return std::max(0.0, squares) / static_cast<double>(std::max<Eigen::Index>(1, count_ - basis_.cols()));
+  }
+
+  /// Weights of the samples that give the derivative of an order at sample `at`, per sample distance.
+  Weights weights(int order, std::size_t at) const {
+    const double x = abscissa(static_cast<double>(at)), scale = std::pow(2 / static_cast<double>(count_ - 1), order);
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(inverse_.rows());
+    for (Eigen::Index k = order; k < inverse_.rows(); ++k) {
+      double factor = scale;
+      for (Eigen::Index j = 0; j < order; ++j) factor *= static_cast<double>(k - j);
+      row(k) = factor * std::pow(x, static_cast<double>(k - order));
+    }
+    const Eigen::RowVectorXd out = row * inverse_;
+    return {out.data(), out.data() + out.size()};
+  }
+
+ private:
+  /// From -1 to 1.
+  double abscissa(double i) const { return 2 * i / static_cast<double>(count_ - 1) - 1; }
+
+  Eigen::Index count_;
+  Eigen::MatrixXd basis_, inverse_;
+};
+
+/// A position of a sample in its window, with what gives the signal and its derivatives there.
+struct Stencil {
+  std::size_t at = 0;
+  std::array<Weights, 3> weights;      ///< by the order of the derivative
+  std::array<double, 3> noise_gain{};  ///< norms of the weights
+
+  Stencil(const PolynomialWindow& window, std::size_t where) : at(where) {
+    for (int order = 0; order < 3; ++order) {
+      const auto k = static_cast<std::size_t>(order);
+      weights[k] = window.weights(order, where);
+      for (const double w : weights[k]) noise_gain[k] += w * w;
+      noise_gain[k] = std::sqrt(noise_gain[k]);
+    }
+  }
+};
+
+double weighed_sum(const Weights& weights, const double* samples) {
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * samples[i];
+  return sum;
+}
+
+/// What windows leave, by their first sample.
+std::vector<double> left_by_windows(std::span<const double> signal, const PolynomialWindow& window, std::size_t count) {
+  std::vector<double> left;
+  for (std::size_t begin = 0; begin + count <= signal.size(); ++begin) left.push_back(window.left(&signal[begin]));
+  return left;
+}
+
+}  // namespace
+
+LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half) {
+  constexpr std::size_t kFewest = 7;
+  // Of the usual squares, and of those of another window: by chance one window in a thousand.
+  constexpr double kKink = 3, kBetter = 2;
+  const std::size_t n = signal.size();
+  LocalDerivatives out;
+  out.value.assign(signal.begin(), signal.end());
+  for (auto* derivative : {&out.slope, &out.bend, &out.slope_std_error, &out.bend_std_error})
+    derivative->assign(n, 0.0);
+  if (n < kFewest) return out;
+  half = std::clamp<std::size_t>(half, kFewest / 2, (n - 1) / 2);
+  const std::size_t count = 2 * half + 1;
+  const PolynomialWindow about(count, kDegreeAbout), beside(count, kDegreeBeside);
+  const std::vector<double> left_about = left_by_windows(signal, about, count),
+                            left_beside = left_by_windows(signal, beside, count);
+  const Stencil middle(about, half);
+  std::vector<Stencil> places;  // of every position at the ends of the signal; five of them beside kinks
+  for (std::size_t at = 0; at < count; ++at) places.emplace_back(beside, at);
+  const double usual = median(left_about);
+  out.noise = std::sqrt(usual);
+  const std::array<std::size_t, 4> tried = {0, half / 2, count - 1 - half / 2, count - 1};
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool whole = i >= half && i + half < n;
+    const Stencil* best = whole ? &middle : &places[i < half ? i : i + count - n];
+    double least = whole ? left_about[i - half] : 0;
+    if (whole && least > kKink * usual) {
+      for (const std::size_t at : tried) {
+        if (i < at || i - at + count > n || kBetter * left_beside[i - at] > least) continue;
+        best = &places[at];
+        least = left_beside[i - at] / kBetter;
+      }
+    }
+    const double* samples = &signal[i - best->at];
+    out.value[i] = weighed_sum(best->weights[0], samples);
+    out.slope[i] = weighed_sum(best->weights[1], samples) / step;
+    out.bend[i] = weighed_sum(best->weights[2], samples) / (step * step);
+    out.slope_std_error[i] = out.noise * best->noise_gain[1] / step;
+    out.bend_std_error[i] = out.noise * best->noise_gain[2] / (step * step);
+  }
+  return out;
+}
+
+std::size_t remove_lone_samples(std::vector<double>& signal) {
+  constexpr double kFar = 6;      // standard deviations: noise alone never is
+  constexpr double kSteeper = 3;  // than what the signal does beside: at a turning point it is a third
+  const std::size_t n = signal.size();
+  if (n < 5) return 0;
+  const std::vector<double> x = signal;
+  const auto off = [&](std::size_t i) { return std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1])); };
+  std::vector<double> distances;
+  for (std::size_t i = 1; i + 1 < n; ++i) distances.push_back(off(i));
+  constexpr double kUpperQuarter = 1.1503;  // of a normal distribution, in standard deviations
+  const double limit = kFar * quantile(std::move(distances), 0.75) / kUpperQuarter;
+  std::size_t found = 0;
+  for (std::size_t i = 2; i + 2 < n; ++i) {
+    const double beside =
+        std::max({std::abs(x[i + 1] - x[i - 1]), std::abs(x[i + 2] - x[i + 1]), std::abs(x[i - 1] - x[i - 2])});
+    if (!(limit > 0) || off(i) <= limit || off(i) <= kSteeper * beside) continue;
+    signal[i] = 0.5 * (x[i - 1] + x[i + 1]);
+    ++found;
+  }
+  return found;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tribofit {
+
+/// A sampled signal with its first two derivatives and their standard errors.
+struct LocalDerivatives {
+  double noise = 0;                        ///< standard deviation of a sample
+  std::vector<double> value, slope, bend;  ///< of the signal, d/dt, d^2/dt^2
+  std::vector<double> slope_std_error, bend_std_error;
+};
+
+/// Derivatives by local polynomials of least squares over 2 half + 1 samples at a distance of `step` (A. Savitzky, M.
+/// J. E. Golay, Anal. Chem. 36 (1964) 1627, doi:10.1021/ac60214a047), of fourth degree about a sample. Where the signal
+/// has a kink nearby, of third degree over a window that ends before it or begins behind it: of several windows that
+/// hold the sample the one that leaves least (I. Gijbels, A. Lambert, P. Qiu, J. Nonparametric Statistics 19 (2007)
+/// 77, doi:10.1080/10485250601097312). Errors are those of independent noise, as large as most windows show it.
+/// A signal shorter than a window: shorter windows; fewer than 7 samples: all derivatives are 0.
+/// Cost: proportional to samples times window.
+LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half);
+
+/// Puts the mean of its two neighbours in the place of a lone sample that is far from it, in units of what samples
+/// usually are, and farther than the signal goes from sample to sample there; returns their number. A signal that
+/// repeats its values in three samples of four has none.
+std::size_t remove_lone_samples(std::vector<double>& signal);
+
+}  // namespace tribofit
