@@ -261,6 +261,7 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
         allowed_beside_declared(instruments, info.declared_by, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
+      if (is_kinematic(other)) continue;
       EffectInfo other_info = describe(other);
       std::string why_not = obstacle(other_info, records, observations, seen);
       out.push_back({other, std::move(other_info), std::move(why_not), allowed});
