@@ -89,11 +89,25 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
   return out;
 }
 
+/// What velocity and friction of a spring slider cannot show, both made from one channel; empty for other records.
+std::string obstacle_of_spring(const EffectInfo& info, std::span<const Record> records) {
+  const bool spring = std::any_of(records.begin(), records.end(), [](const Record& record) {
+    return record.motion->kind == RecordKind::spring_slider;
+  });
+  if (!spring) return {};
+  if (info.declared_by == InstrumentValue::force_bandwidth)
+    return "mass and spring of the slider filter friction in the same way, by their natural frequency";
+  if (info.declared_by == InstrumentValue::vibrometer_delay)
+    return "the velocity was made from the pull: nothing comes later than the other";
+  return {};
+}
+
 /// Why the data cannot show an effect; empty where they can.
 std::string obstacle(const EffectInfo& info, std::span<const Record> records, const Observations& observations,
                      const Excitation& seen) {
   const Channels& needs = info.needs;
   if (needs.time && are_points(records)) return "points have no order in time: nothing shows what came before";
+  if (std::string of_spring = obstacle_of_spring(info, records); !of_spring.empty()) return of_spring;
   if (needs.temperature && observations.temperature.empty()) return "there is no temperature channel";
   if (needs.load && observations.load.empty()) return "there is no load channel";
   if (needs.angle && observations.angle.empty()) return "the disc angle is not known (give --speed)";
@@ -247,6 +261,7 @@ std::vector<Candidate> candidates(std::span<const Record> records, const Observa
         allowed_beside_declared(instruments, info.declared_by, motion.friction_kind, motion.conditions.load);
     for (const EffectForm& form : info.forms) {
       const Effect other = make_effect(info.key + ":" + form.name);
+      if (is_kinematic(other)) continue;
       EffectInfo other_info = describe(other);
       std::string why_not = obstacle(other_info, records, observations, seen);
       out.push_back({other, std::move(other_info), std::move(why_not), allowed});

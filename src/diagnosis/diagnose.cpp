@@ -280,9 +280,13 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   const Floor floor = floor_of(records);
   const Observations fine = observe_all(
       records, channels, std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine), floor.noise);
-  const Observations coarse =
-      observe_all(records, channels,
-                  std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse), floor.noise);
+  // A filter is not seen in means over more than its time.
+  const bool filtered = std::any_of(records.begin(), records.end(),
+                                    [](const Record& record) { return record.motion->friction_low_pass.any(); });
+  const std::size_t enough =
+      filtered ? limits::kFewestFine
+               : std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse);
+  const Observations coarse = observe_all(records, channels, enough, floor.noise);
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
   context.threads = options.threads;
   context.cancelled = options.cancelled;

@@ -89,11 +89,13 @@ bool undo_needless_corrections(const IdentifyOptions& options, const Diagnosed& 
 std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOptions options, Law law,
                                    const EffectRoles& effects) {
   const Motion& motion = prepared.trace.motion;
-  const bool corrected =
-      motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 || motion.plateau_correction != PlateauCorrection::none;
+  const bool distorted = motion.velocity_zero.any() || motion.velocity_low_pass.any() ||
+                         motion.friction_low_pass.any() || motion.compression.any() || motion.clock_drift.any();
+  const bool corrected = distorted || motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 ||
+                         motion.plateau_correction != PlateauCorrection::none;
   if (!corrected) return std::nullopt;
   MotionOptions raw = options.motion;
-  raw.undo_high_pass = raw.undo_speed_ripple = false;
+  raw.undo_high_pass = raw.undo_speed_ripple = raw.undo_distortions = false;
   Identification trace = prepared.prepare(raw);
   if (!trace.analysed) return std::nullopt;
   options.laws = {law};

@@ -77,12 +77,23 @@ void share_plateau(const Motion& motion, const Instruments& instruments, const E
       known ? "the instruments file leaves no room for it" : "with these data not distinguishable from " + corrected;
 }
 
+/// The catalogue, each effect with its forms.
+std::vector<Effect> effects_and_forms() {
+  std::vector<Effect> out;
+  for (const Effect& effect : effect_catalogue()) {
+    out.push_back(effect);
+    const EffectInfo info = describe(effect);
+    for (const EffectForm& form : info.forms) out.push_back(make_effect(info.key + ":" + form.name));
+  }
+  return out;
+}
+
 /// What was found in the motion and in the load channel, and undone, as effects: those of the motion first.
 std::vector<EffectFinding> motion_findings(const Motion& motion, const FoundValue& load_coupling,
                                            const Instruments& instruments) {
   std::vector<EffectFinding> out;
   for (const bool kinematic : {true, false}) {
-    for (const Effect& effect : effect_catalogue()) {
+    for (const Effect& effect : effects_and_forms()) {
       if (is_kinematic(effect) != kinematic) continue;
       const FoundBeforeFit found = found_before_fit(effect, motion, load_coupling);
       if (found.values.empty()) continue;
@@ -121,7 +132,7 @@ EffectFinding not_found(const EffectInfo& info, std::span<const Record> records)
   finding.key = info.key;
   finding.held_out_rmse = finding.error_reduction = finding.p_value = kNotFitted;
   finding.status = EffectStatus::unsupported;
-  finding.reason = "the plateau of stick does not show it";
+  finding.reason = info.needs.plateau ? "the plateau of stick does not show it" : "re-stick does not show it";
   if (const std::string why = obstacle(info, records); !why.empty()) {
     finding.status = EffectStatus::untestable;
     finding.reason = why;

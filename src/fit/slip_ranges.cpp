@@ -112,6 +112,7 @@ Observations::SlipObservation slip_range(const Motion& motion, const Segmentatio
   range.break_away_friction = range.stick_time = kNaN;
   range.tail_friction = friction_after(motion, segmentation, range.segment);
   range.restick_time = cycle.restick_time;
+  range.friction_low_pass = motion.friction_low_pass.value;
   if (!from_stick) return range;
   range.break_away_time = std::min(cycle.break_away_time, range.break_away_time);
   range.stick_time = cycle.stick_time;

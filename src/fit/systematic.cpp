@@ -182,6 +182,22 @@ void add_vibrometer_shifts(const Sources& s, std::vector<Shift>& shifts) {
   }
 }
 
+/// What those of distortions do that were found in a record and undone.
+void add_undone_shifts(const Sources& s, std::vector<Shift>& shifts) {
+  for (std::size_t r = 0; r < s.records.size(); ++r) {
+    const Motion& motion = *s.records[r].motion;
+    if (const double u = motion.velocity_zero.std_error; u > 0) {
+      shifts.push_back({s.values([&](const Place& at, std::size_t) { return at.record == r ? u : 0.0; })});
+    }
+    if (const double u = motion.compression.std_error; u > 0) {
+      shifts.push_back({s.values([&](const Place& at, std::size_t i) {
+        const double v = motion.disc_velocity_at(at.sample) - s.observations.velocity[i];
+        return at.record == r ? -u * v * std::pow(v / motion.fastest_velocity, 2) : 0.0;
+      })});
+    }
+  }
+}
+
 /// What delays between the channels do. Low-passes are corrected as the delay they make at low frequency.
 void add_delay_shifts(const Sources& s, std::vector<Shift>& shifts) {
   constexpr double kSensorDamping = 0.7;
@@ -194,12 +210,16 @@ void add_delay_shifts(const Sources& s, std::vector<Shift>& shifts) {
                          low_pass_delay(instruments.force_sensor.bandwidth, 2 * kSensorDamping)}) {
     if (u > 0) shifts.push_back({slopes(s.observations, std::vector<double>(s.records.size(), u))});
   }
-  for (std::size_t r = 0; r < s.records.size(); ++r) {  // the clocks were compared in each record by itself
-    const double u = s.records[r].motion->clock_offset_std_error;
-    if (u == 0) continue;
-    std::vector<double> delay(s.records.size(), 0.0);
-    delay[r] = u;
-    shifts.push_back({slopes(s.observations, delay)});
+  for (std::size_t r = 0; r < s.records.size(); ++r) {  // clocks and filters were compared in each record by itself
+    const Motion& motion = *s.records[r].motion;
+    for (const double u :
+         {motion.clock_offset_std_error, motion.velocity_low_pass.std_error, motion.friction_low_pass.std_error,
+          0.5 * motion.duration() * motion.clock_drift.std_error}) {
+      if (u == 0) continue;
+      std::vector<double> delay(s.records.size(), 0.0);
+      delay[r] = u;
+      shifts.push_back({slopes(s.observations, delay)});
+    }
   }
 }
 
@@ -268,6 +288,7 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   const Sources sources(records, observations, instruments);
   add_disc_shifts(sources, shifts);
   add_vibrometer_shifts(sources, shifts);
+  add_undone_shifts(sources, shifts);
   add_delay_shifts(sources, shifts);
   add_friction_shifts(sources, shifts);
   if (shifts.empty()) return squares;

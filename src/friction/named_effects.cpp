@@ -32,7 +32,7 @@ void refuse_same(std::span<const Effect> effects) {
 }
 
 Effect make_effect(std::string_view name) {
-  const Effect healing(std::in_place_type<RateStateHealing>);
+  const Effect forms[] = {Effect(std::in_place_type<RateStateHealing>), Effect(std::in_place_type<ForceLowPass>)};
   const std::size_t colon = name.find(':');
   std::vector<std::string> known;
   for (const Effect& effect : effect_catalogue()) known.push_back(describe(effect).key);
@@ -44,7 +44,9 @@ Effect make_effect(std::string_view name) {
   }
   const Effect& effect = effect_catalogue()[static_cast<std::size_t>(key - known.begin())];
   if (colon == std::string_view::npos) return effect;
-  if (describe(healing).spelled() == name) return healing;
+  for (const Effect& form : forms) {
+    if (describe(form).spelled() == name) return form;
+  }
   if (name.find('=') != std::string_view::npos) {
     throw InputError("values of parameters ('" + std::string(name) + "') are for `identify simulate`; a fit finds them",
                      "write it as " + *key);

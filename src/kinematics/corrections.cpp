@@ -11,11 +11,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-// Four-point Lagrange interpolation between b (u = 0) and c (u = 1).
-double cubic(double a, double b, double c, double d, double u) {
-  return b + u * (c - b) + u * (1 - u) / 6 * ((u - 2) * (a - 2 * b + c) - (u + 1) * (b - 2 * c + d));
-}
-
 void scale(std::span<double> signal, double factor, double offset) {
   if (factor == 1 && offset == 0) return;
   for (double& x : signal) x = (x - offset) * factor;
@@ -62,6 +57,10 @@ void correct_crosstalk(Trace& trace, double part) {
 
 }  // namespace
 
+double interpolated(double a, double b, double c, double d, double u) {
+  return b + u * (c - b) + u * (1 - u) / 6 * ((u - 2) * (a - 2 * b + c) - (u + 1) * (b - 2 * c + d));
+}
+
 void shift_earlier(std::span<double> signal, double delay, double step) {
   const std::size_t n = signal.size();
   if (n < 2 || delay == 0) return;
@@ -77,7 +76,7 @@ void shift_earlier(std::span<double> signal, double delay, double step) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = [&](std::size_t k) { return k < n ? signal[k] : last; };
     const double here = at(i + whole);
-    const double shifted = cubic(before, here, at(i + whole + 1), at(i + whole + 2), part);
+    const double shifted = interpolated(before, here, at(i + whole + 1), at(i + whole + 2), part);
     before = here;
     signal[i] = i + whole < n ? shifted : last;
   }

@@ -16,6 +16,9 @@ struct Ends {
   std::size_t head = 0, tail = 0;
 };
 
+/// Four-point Lagrange interpolation between b (u = 0) and c (u = 1).
+double interpolated(double a, double b, double c, double d, double u);
+
 /// Shifts a signal in place so that it reads `delay` seconds earlier (cubic interpolation); both ends are held.
 void shift_earlier(std::span<double> signal, double delay, double step);
 

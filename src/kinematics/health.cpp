@@ -147,21 +147,49 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
   return item;
 }
 
-HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step,
-                           const LowPass& restick) {
-  const Band a = band_of(friction, step);
+namespace {
+
+double corner_of(const UndoneDistortion& low_pass) {
+  return 1 / (2 * std::numbers::pi * low_pass.value);
+}
+
+/// What was found at re-stick and undone, as the end of a sentence.
+std::string undone_low_passes(const Motion& motion, std::size_t slips) {
+  std::string text;
+  if (motion.velocity_low_pass.any()) {
+    text += fmt::format("; v_r trails off at re-stick as behind a first-order low-pass of {:.3g} Hz ({} slips): undone",
+                        corner_of(motion.velocity_low_pass), slips);
+  }
+  if (motion.friction_low_pass.any()) {
+    text += fmt::format(
+        "; friction trails off at re-stick as behind a first-order low-pass of {:.3g} Hz: every law is filtered like "
+        "it",
+        corner_of(motion.friction_low_pass));
+  }
+  return text;
+}
+
+}  // namespace
+
+HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocity, const LowPass& restick) {
+  const double step = motion.step;
+  const Band a = band_of(motion.friction, step);
   HealthItem item{health_check::kBandwidth, Status::ok, describe("friction", a)};
   Band b = velocity.empty() ? Band{} : band_of(velocity, step);
   // A smooth motion has a steep spectrum: where v_r comes to rest at once, there is no filter.
   if (restick.slips > 0 && !restick.is_filter) b.corner = 0;
   if (!velocity.empty()) item.message += "; " + describe("velocity", b);
   item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
-  if (restick.is_filter) {
+  if (const std::string undone = undone_low_passes(motion, restick.slips); !undone.empty()) {
+    item.status = Status::warning;
+    item.message += undone;
+  }
+  if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
         "; v_r trails off at re-stick as behind a low-pass of {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not those "
         "of the contact, a bandwidth of {:.2g} Hz is needed",
-        restick.corner(), restick.slips, restick.corner() * restick.at_restick / kKinkHarmless);
+        restick.corner(), restick.slips, restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless);
     return item;
   }
   const double low = lowest_pass(a), other = lowest_pass(b);

@@ -56,9 +56,8 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks);
 
 /// Frequency up to which friction and velocity rise above their floor, and whether they are filtered above it.
-/// restick: what v_r shows where it comes to rest.
-HealthItem check_bandwidth(std::span<const double> friction, std::span<const double> velocity, double step,
-                           const LowPass& restick);
+/// velocity: where it was measured; restick: what it showed where it comes to rest.
+HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocity, const LowPass& restick);
 
 /// Time between re-stick in the velocity and the jump of friction there, averaged over slips. `plateaus` are in blocks
 /// of `factor` samples of `relative_velocity`.

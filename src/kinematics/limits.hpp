@@ -63,12 +63,23 @@ inline constexpr double kErrorOfCreep = 0.5;
 
 /// Samples by which one may fall behind the other over a record: re-stick is not seen more closely in a slip.
 inline constexpr double kDriftSamples = 3;
+/// Part of the period within which friction jumps beside re-stick, and the scatter of that [samples]: more is no jump.
+inline constexpr double kDriftReach = 0.1, kDriftScatter = 3;
+/// Of the change of friction over five samples, what one of them must have for a jump.
+inline constexpr double kSharpJump = 0.8;
 
 // ---- low-pass of the velocity
 
-/// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the
-/// second (a cubic follows it), of slips that reach the third.
-inline constexpr double kKinkFrom = 0.2, kKinkDown = 0.02, kKinkSlip = 0.5;
+/// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the third
+/// (a cubic follows it), of slips that reach the last. Behind a slow filter from the second on, where from the first
+/// there is neither a filter nor a kink that leaves less than kKinkUnexplained of the fastest.
+inline constexpr double kKinkFrom = 0.2, kKinkFromSlow = 0.45, kKinkDown = 0.02, kKinkSlip = 0.5;
+inline constexpr double kKinkUnexplained = 2e-3;
+/// Slope of v_r when it comes to rest, over its mean one in the look: a spring brakes it most at the end, a mean over
+/// more than the look makes a parabola of it.
+inline constexpr double kKinkSteep = 0.6;
+/// Squares that a decay from where the look begins leaves over those a filter leaves: fewer, and re-stick was before.
+inline constexpr double kKinkInside = 30;
 /// Samples over which it falls: fewer show no kink, of more every other will do. Slips looked at.
 inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
 /// Time constants tried [samples], each so many times the one before.
@@ -80,6 +91,29 @@ inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;
 inline constexpr double kKinkExplained = 2.5, kKinkLeft = 0.08;
 /// How far v_r may go beyond rest, over the reading and over the noise: a filter does not, a contact that yields does.
 inline constexpr double kKinkBeyond = 0.1, kKinkNoise = 4;
+
+/// Samples by which a restored velocity may be early or late for what its filter does to a sample.
+inline constexpr double kHeldInput = 0.75;
+/// What a restored velocity may have of noise, over the fastest: the law averages over it. The derivative is taken over
+/// so much of the time constant at most: more is a filter again.
+inline constexpr double kRestoredNoise = 2e-3, kRestoredSmear = 0.25;
+
+// ---- low-pass of friction
+
+/// Of the time from re-stick to re-stick over which friction is looked at after it, and the fewest samples of that;
+/// samples before, through which a line says where the slip came to.
+inline constexpr double kTailPart = 0.25;
+inline constexpr std::size_t kTailSamples = 24, kTailBefore = 3;
+/// Time constants tried: from so many samples to so much of these; the first, as good as none, does not count.
+inline constexpr double kTailFirst = 0.4, kTailDecay = 0.1;
+/// What decays after re-stick over the jump: without a filter friction jumps between two samples. Where it begins to
+/// [samples, time constants]: a filter that holds its input for a sample begins half of one early.
+inline constexpr double kTailSize = 0.3, kTailOnset = 1.2, kTailOnsetPart = 0.2;
+/// Samples beside re-stick that are not looked at, for not knowing its place better.
+inline constexpr double kTailGap = 0.4;
+/// Variance left while it decays over that afterwards, and beside it over the size of the decay, squared: filters of
+/// second order and contacts that ring leave more.
+inline constexpr double kTailLeft = 1.6, kTailModel = 0.01;
 
 // ---- v_r as measured
 
@@ -96,9 +130,19 @@ inline constexpr double kGainWarned = 0.03;
 /// Mean v_b of a block that goes nowhere, over the plateau: a smaller one moves alpha by less than its error; a larger
 /// one belongs to a block that nothing holds.
 inline constexpr double kLeastZero = 0.002, kLargestZero = 0.5;
-/// How nearly the plateau is off omega r by as much, over the mean, where it is the zero: a compressed slip leaves the
-/// plateau where it is.
-inline constexpr double kZeroAgrees = 0.1;
+/// How nearly the plateau is off omega r by as much, over the mean and over its standard error, where it is the zero: a
+/// compressed slip leaves the plateau where it is.
+inline constexpr double kZeroAgrees = 0.1, kZeroErrors = 3;
+/// The same for either half of the record, where slips are read wrongly: they are in both.
+inline constexpr double kHalvesAgree = 0.3;
+
+// ---- compression of the velocity
+
+/// Part of the gain that may be lost at the fastest, and how nearly the plateau is omega r where slips alone are read
+/// wrongly, over what the block would move on average.
+inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
+/// Of the part, its standard error for not knowing the characteristic: of third order it may be or of any other.
+inline constexpr double kOtherCharacteristic = 0.1;
 
 // ---- steps of the disc's speed
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -17,12 +18,14 @@ namespace {
 /// v_r about one re-stick, every `stride`-th sample.
 struct Restick {
   std::vector<double> velocity;
-  double fall = 0;  ///< samples in which it falls from the highest to nothing
-  double at = 0;    ///< where it does, roughly [samples]
+  double fall = 0;                    ///< samples in which it falls from the highest to nothing
+  double at = 0;                      ///< where it does, roughly [samples]
+  std::size_t begin = 0, stride = 1;  ///< of these samples in the record
 };
 
 struct Smallest {
   double squares = std::numeric_limits<double>::infinity(), slope = 0;
+  double at = 0;  ///< [samples]
 };
 
 /// A filter of one parameter: time constant of an exponential, or width of a mean.
@@ -59,27 +62,27 @@ Smallest fit_at(const Restick& restick, double at, const Filter& filter) {
     squares += y * y;
   }
   const Eigen::Vector3d c = normal.ldlt().solve(right);
-  return {std::max(0.0, squares - c.dot(right)), c[0] * scale};
+  return {std::max(0.0, squares - c.dot(right)), c[0] * scale, at};
 }
 
 /// The best place.
 Smallest fit(const Restick& restick, const Filter& filter) {
   Smallest best;
-  double place = restick.at;
+  best.at = restick.at;
   const double from = restick.at - 3 * std::max(filter.width, 1.0) - 2, to = restick.at + 0.3 * restick.fall + 1.5;
   for (const double by : {0.5, 0.1, 0.02}) {
     const bool is_first = by == 0.5;
-    const double low = is_first ? from : place - 5 * by, high = is_first ? to : place + 5 * by;
+    const double low = is_first ? from : best.at - 5 * by, high = is_first ? to : best.at + 5 * by;
     for (double at = std::max(low, 3.0); at <= high; at += by) {
       const Smallest here = fit_at(restick, at, filter);
-      if (here.squares < best.squares) best = here, place = at;
+      if (here.squares < best.squares) best = here;
     }
   }
   return best;
 }
 
-std::vector<Restick> resticks(std::span<const double> v, double rest, double fastest) {
-  const double high = kKinkFrom * fastest, low = kKinkDown * fastest;
+std::vector<Restick> resticks(std::span<const double> v, double rest, double fastest, double from) {
+  const double high = from * fastest, low = kKinkDown * fastest;
   std::vector<Restick> all;
   for (std::size_t i = 0; i < v.size();) {
     while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
@@ -95,6 +98,7 @@ std::vector<Restick> resticks(std::span<const double> v, double rest, double fas
     if (fall < kKinkSamples || end >= v.size()) continue;
     const std::size_t stride = std::max<std::size_t>(1, fall / kKinkMost);
     Restick restick;
+    restick.begin = begin, restick.stride = stride;
     std::vector<double> after;
     for (std::size_t k = end - fall / 2; k < end; ++k) after.push_back(reads(k));
     const double level = median(std::move(after));
@@ -106,11 +110,39 @@ std::vector<Restick> resticks(std::span<const double> v, double rest, double fas
   return all;
 }
 
+/// Cuts of a search for a time constant between its neighbours in the list of those tried: to a thousandth.
+constexpr int kCuts = 16;
+
+/// What a decay from the first sample on leaves.
+double left_by_decay(const std::vector<Restick>& some, double t) {
+  std::vector<double> squares;
+  for (const Restick& restick : some) {
+    double products = 0, norm = 0, sum = 0;
+    for (std::size_t i = 0; i < restick.velocity.size(); ++i) {
+      const double e = std::exp(-static_cast<double>(i) / t), y = restick.velocity[i];
+      products += e * y, norm += e * e, sum += y * y;
+    }
+    squares.push_back((sum - products * products / norm) / static_cast<double>(restick.velocity.size()));
+  }
+  return median(std::move(squares));
+}
+
+/// The same at the time constant that fits most: re-stick is before.
+double left_by_decay(const std::vector<Restick>& some) {
+  const double longest = 2 * static_cast<double>(some.front().velocity.size());
+  double best = 1, least = std::numeric_limits<double>::infinity();
+  for (double t = 1; t < longest; t *= kKinkNext) {
+    if (const double left = left_by_decay(some, t); left < least) least = left, best = t;
+  }
+  const auto left = [&](double t) { return left_by_decay(some, t); };
+  return golden_section(left, best / kKinkNext, best * kKinkNext, kCuts).value;
+}
+
 /// Every one of which a few dozen are left.
-std::vector<Restick> some_of(std::vector<Restick> all) {
+std::vector<Restick> some_of(const std::vector<Restick>& all) {
   std::vector<Restick> some;
   const std::size_t stride = std::max<std::size_t>(1, all.size() / kKinkSlips);
-  for (std::size_t k = 0; k < all.size(); k += stride) some.push_back(std::move(all[k]));
+  for (std::size_t k = 0; k < all.size(); k += stride) some.push_back(all[k]);
   return some;
 }
 
@@ -125,13 +157,27 @@ double beyond_rest(const std::vector<Restick>& some) {
 
 /// Over re-sticks.
 Smallest usual(const std::vector<Restick>& some, const Filter& filter) {
-  std::vector<double> squares, slopes;
+  std::vector<double> squares, slopes, places;
   for (const Restick& restick : some) {
     const Smallest best = fit(restick, filter);
+    places.push_back(best.at);
     squares.push_back(best.squares / static_cast<double>(restick.velocity.size()));
     slopes.push_back(best.slope);
   }
-  return {median(std::move(squares)), median(std::move(slopes))};
+  return {median(std::move(squares)), median(std::move(slopes)), median(std::move(places))};
+}
+
+/// The time constant that fits each re-stick best; about: of the usual one [samples].
+void refine(const std::vector<Restick>& some, double about, double step, LowPass& found) {
+  std::vector<double> taus;
+  for (const Restick& restick : some) {
+    const auto left = [&](double t) { return fit(restick, {false, t}).squares; };
+    taus.push_back(static_cast<double>(restick.stride) * step *
+                   golden_section(left, about / kKinkNext, about * kKinkNext, kCuts).at);
+  }
+  found.tau = median(taus);
+  found.std_error =
+      kSigmaPerMad * median_absolute_deviation(taus, found.tau) / std::sqrt(static_cast<double>(taus.size()));
 }
 
 }  // namespace
@@ -140,15 +186,20 @@ double LowPass::corner() const {
   return tau > 0 ? 1 / (2 * std::numbers::pi * tau) : 0;
 }
 
-LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step) {
+namespace {
+
+/// What re-sticks show from a part of the fastest on. is_explained: there is a filter, or a kink leaves next to
+/// nothing.
+struct Look {
   LowPass found;
-  std::vector<double> size = thinned(velocity, std::size_t{1} << 15);
-  for (double& v : size) v = std::abs(v - rest);
-  if (size.empty()) return found;
-  const double fastest = quantile(std::move(size), 0.999);
-  if (!(fastest > 0)) return found;
-  const std::vector<Restick> some = some_of(resticks(velocity, rest, fastest));
-  if (some.size() < kFewestPeriods) return found;
+  bool is_explained = false;
+};
+
+Look look_at(std::span<const double> velocity, double rest, double noise, double step, double fastest, double from) {
+  Look look;
+  LowPass& found = look.found;
+  const std::vector<Restick> all = resticks(velocity, rest, fastest, from), some = some_of(all);
+  if (some.size() < kFewestPeriods) return look;
   found.slips = some.size();
   std::vector<double> falls;
   for (const Restick& restick : some) falls.push_back(restick.fall);
@@ -162,13 +213,46 @@ LowPass find_low_pass(std::span<const double> velocity, double rest, double nois
       if (here.squares < best.squares) best = here, filter = {is_mean, t};
     }
   }
+  if (sharp.squares > kKinkExplained * best.squares) {
+    const auto left = [&](double width) { return usual(some, {filter.is_mean, width}).squares; };
+    filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
+    best = usual(some, filter);
+  }
   const double tau = filter.spread(), stride = std::max(1.0, std::floor(most / static_cast<double>(kKinkMost)));
   found.tau = tau * stride * step;
   found.at_restick = tau * std::abs(best.slope) / fastest;
+  const double decay = left_by_decay(some);
+  const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
+  if (!is_inside) found.at_restick = std::max(found.at_restick, from);
   found.is_filter = tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
-                    best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) &&
+                    best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) &&
                     beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
-  return found;
+  found.is_first_order = found.is_filter && !filter.is_mean && is_inside;
+  if (found.is_first_order) refine(some, filter.width, step, found);
+  for (const Restick& restick : all) {
+    const double width = found.is_first_order ? found.tau / (step * static_cast<double>(restick.stride)) : 0;
+    found.resticks.push_back(static_cast<double>(restick.begin) +
+                             static_cast<double>(restick.stride) * fit(restick, {false, width}).at);
+  }
+  const double left = std::max(kKinkNoise * noise, kKinkUnexplained * fastest);
+  const bool is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;
+  look.is_explained = found.is_filter ? is_inside : is_sharp;
+  return look;
+}
+
+}  // namespace
+
+LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step) {
+  std::vector<double> size = thinned(velocity, std::size_t{1} << 15);
+  for (double& v : size) v = std::abs(v - rest);
+  if (size.empty()) return {};
+  const double fastest = quantile(std::move(size), 0.999);
+  if (!(fastest > 0)) return {};
+  Look look = look_at(velocity, rest, noise, step, fastest, kKinkFrom);
+  if (look.is_explained) return look.found;
+  // Behind a slow filter the kink is higher up.
+  Look higher = look_at(velocity, rest, noise, step, fastest, kKinkFromSlow);
+  return higher.found.is_filter ? higher.found : look.found;
 }
 
 }  // namespace tribofit::kinematics

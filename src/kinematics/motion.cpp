@@ -7,91 +7,15 @@
 #include <limits>
 #include <utility>
 
-#include "corrections.hpp"
 #include "disc_ripple.hpp"
-#include "health_checks.hpp"
-#include "high_pass.hpp"
 #include "motion_channels.hpp"
-#include "net_displacement.hpp"
-#include "plateau.hpp"
+#include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
-#include "plateau_search.hpp"
 #include "points.hpp"
-#include "resolution.hpp"
-#include "ripple.hpp"
-#include "speed_steps.hpp"
-#include "spoilt_samples.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
-namespace tribofit {
-namespace {
-
-using kinematics::Disc;
-using kinematics::LevelRange;
-using kinematics::Plateaus;
-using kinematics::PlateauSearch;
-using kinematics::StickPlateau;
-
-/// A trace on its way to a motion. Each stage reads what the stages before it have settled.
-class MotionStages {
- public:
-  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options);
-
-  void look_at_recording();
-  void correct_declared();
-  void find_disc();
-  void find_plateau();
-  void find_direction();
-  void undo_high_pass();
-  void find_zero();
-  void find_speed_steps();
-  void take_speed_from_plateau();
-  void undo_ripple();
-  void check_clipping();
-  void add_sensor_mass();
-  void make_relative_motion();
-  void settle_signs_and_levels();
-  void check_health();
-  void compare_plateau();
-  Motion take() { return std::move(motion_); }
-
- private:
-  bool is_block() const { return trace_.velocity_kind == VelocityKind::block; }
-  bool speed_is_constant() const { return disc_.varying.empty(); }
-  std::optional<LevelRange> plateau_as_recorded() const;
-  void undo_ripple_in_high_pass();
-  std::size_t run_up() const;
-  Plateaus plateaus_in_motion() const { return kinematics::plateaus_within(search_, motion_.trimmed, motion_.size()); }
-  HealthItem check_level() const;
-  double taken_off() const { return zero_.kind == kinematics::BlockZero::Kind::zero ? zero_.mean.value : 0; }
-
-  Trace trace_;
-  const Instruments& instruments_;
-  const MotionOptions& options_;
-  Motion motion_;
-
-  // Of the channels as recorded.
-  std::optional<kinematics::SpoiltSamples> spoilt_;
-  kinematics::RangeEnds range_ends_;
-  kinematics::RecordedSteps steps_;  ///< of a coarse converter
-  HealthItem clipping_, drop_outs_;
-  kinematics::Ends lost_;  ///< to corrections
-  Disc disc_;
-  bool speed_was_stated_ = false;
-  PlateauSearch search_;
-  bool is_reversed_ = false;
-  std::optional<double> declared_high_pass_;
-  kinematics::HighPassEstimate sag_;
-  double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
-  std::optional<kinematics::RecordedPlateau> recorded_;
-  kinematics::BlockZero zero_;
-  std::vector<kinematics::SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
-  kinematics::RippleEstimate ripple_;
-  bool undoes_ripple_ = false;
-  std::size_t run_up_ = 0;
-};
-
+namespace tribofit::kinematics {
 MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
     : trace_(std::move(trace)), instruments_(instruments), options_(options) {
   kinematics::require_channels(trace_);
@@ -157,18 +81,6 @@ void MotionStages::undo_high_pass() {
   find_plateau();
 }
 
-/// A block on a spring goes nowhere: what v_b is on average is an error of the reading.
-void MotionStages::find_zero() {
-  if (!speed_is_constant() || motion_.high_pass > 0 || spoilt_->any()) return;
-  if (is_block() && search_.sticks) zero_ = kinematics::find_zero(trace_, search_, disc_, steps_.velocity);
-  if (trace_.velocity_kind == VelocityKind::relative && !search_.sticks)
-    zero_ = kinematics::find_zero_of_relative(trace_, search_, disc_);
-  if (zero_.kind != kinematics::BlockZero::Kind::zero) return;
-  for (double& v : trace_.velocity) v -= zero_.mean.value;
-  motion_.notes.push_back(fmt::format("velocity: its zero was off by {:.4g} mm/s, taken off", 1e3 * zero_.mean.value));
-  find_plateau();
-}
-
 /// A disc that changes its speed at once, which no channel and no condition says.
 void MotionStages::find_speed_steps() {
   if (!is_block() || !search_.sticks || !speed_is_constant() || trace_.disc_speed.size() == trace_.size()) return;
@@ -229,38 +141,6 @@ void MotionStages::undo_ripple_in_high_pass() {
   find_plateau();
 }
 
-void MotionStages::check_clipping() {
-  recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
-  if (is_block() && search_.sticks && speed_is_constant()) spoilt_->add_standstill(search_, plateau_, trace_);
-  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
-                                         {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
-  const bool was_recorded = trace_.velocity_std_error.empty();  // else it was made from another channel
-  const bool can_jump = was_recorded && search_.sticks && clipping_.status == HealthItem::Status::ok;
-  const auto lost = can_jump ? kinematics::find_lost_samples(trace_, std::max(search_.noise, steps_.velocity))
-                             : kinematics::LostSamples{};
-  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size());
-  motion_.faults = spoilt_->take();
-}
-
-/// Where the velocity as recorded repeats in stick when there is no noise, and crowds when there is.
-std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
-  LevelRange levels;  // of v_r
-  if (is_block()) {
-    const bool unknown =
-        speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
-    if (unknown) return std::nullopt;
-    // Where radius, speed or gain are not as stated the block rests beside omega r.
-    const Extremes rest = speed_is_constant()
-                              ? Extremes{std::min(disc_.constant, plateau_), std::max(disc_.constant, plateau_)}
-                              : extremes(disc_.varying);
-    levels = {rest.low + taken_off(), rest.high + taken_off()};
-  }
-  const auto& vibrometer = instruments_.vibrometer;
-  const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
-  return reading > 0 ? LevelRange{reading * levels.low, reading * levels.high}
-                     : LevelRange{reading * levels.high, reading * levels.low};
-}
-
 void MotionStages::add_sensor_mass() {
   const auto& mass = instruments_.force_sensor.mass_below;
   if (is_block() && mass)
@@ -316,54 +196,9 @@ void MotionStages::settle_signs_and_levels() {
   if (disc_.largest > 0 || !is_block()) kinematics::settle_friction_sign(motion_, scale);
 }
 
-void MotionStages::check_health() {
-  const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
-  const std::span<const double> velocity =
-      velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
-  const auto restick =
-      motion_.sticks && velocity_was_measured && motion_.velocity_std_error.empty()
-          ? kinematics::find_low_pass(velocity, motion_.plateau_velocity, motion_.velocity_noise, motion_.step)
-          : kinematics::LowPass{};
-  motion_.health = {
-      std::move(clipping_),
-      std::move(drop_outs_),
-      kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
-      kinematics::check_bandwidth(motion_.friction, velocity, motion_.step, restick),
-      kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length),
-      kinematics::check_revolutions(motion_),
-      kinematics::check_speed_ripple(motion_, ripple_),
-      kinematics::check_run_up(motion_, options_.trim, run_up_),
-      check_level(),
-      kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
-  };
-}
+}  // namespace tribofit::kinematics
 
-HealthItem MotionStages::check_level() const {
-  const bool can_be_held = motion_.sticks || motion_.constant_disc_velocity != 0;
-  if (motion_.velocity_kind == VelocityKind::relative && can_be_held) {
-    HealthItem item = kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
-    kinematics::add_zero(zero_, true, item);
-    return item;
-  }
-  const double stated = speed_was_stated_ ? disc_.constant : 0;
-  if (!speed_levels_.empty()) return kinematics::check_speed_steps(motion_, speed_levels_, search_.blocks, stated);
-  HealthItem item = kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_,
-                                                    motion_.conditions.radius.known(), recorded_);
-  kinematics::add_zero(zero_, speed_was_stated_, item);
-  return item;
-}
-
-void MotionStages::compare_plateau() {
-  if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
-  kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
-  const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
-  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
-  motion_.plateau_ratio = ratio.value;
-  motion_.plateau_ratio_std_error = ratio.std_error;
-  correct_plateau(motion_, ratio, options_.plateau);
-}
-
-}  // namespace
+namespace tribofit {
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
@@ -371,16 +206,17 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   MotionOptions own = options;
   if (trace.kind == RecordKind::spring_slider) {
     kinematics::make_block_of_spring(trace, notes);
-    own.undo_high_pass = own.undo_speed_ripple = false;  // nothing of either is between the pull and its slope
+    // Nothing of these is between the pull and its slope.
+    own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;
   }
-  MotionStages stages(std::move(trace), instruments, own);
+  kinematics::MotionStages stages(std::move(trace), instruments, own);
   stages.look_at_recording();
   stages.correct_declared();
   stages.find_disc();
   stages.find_plateau();
   stages.find_direction();
   stages.undo_high_pass();
-  stages.find_zero();
+  stages.undo_distortions();
   stages.find_speed_steps();
   stages.take_speed_from_plateau();
   stages.undo_ripple();

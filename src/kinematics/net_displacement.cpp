@@ -13,19 +13,26 @@
 namespace tribofit::kinematics {
 namespace {
 
-/// Slope of the positions at the middles of the plateaus over time. Break-away scatters, and the positions with it.
-Estimate mean_velocity(const Trace& trace, const PlateauSearch& search) {
-  std::vector<double> time, position;
+/// Where the block is in the middles of the plateaus.
+struct Positions {
+  std::vector<double> time, position;  // [s], [m]
+};
+
+Positions positions_of(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search) {
+  Positions out;
   double displacement = 0;
   std::size_t i = 1;
   for (const StickPlateau& run : search.plateaus.runs) {
-    const std::size_t middle = std::min((run.begin + run.end) / 2 * search.blocks.length, trace.size() - 1);
-    for (; i <= middle; ++i) {
-      displacement += 0.5 * (trace.velocity[i] + trace.velocity[i - 1]) * (trace.time[i] - trace.time[i - 1]);
-    }
-    time.push_back(trace.time[middle]);
-    position.push_back(displacement);
+    const std::size_t middle = std::min((run.begin + run.end) / 2 * search.blocks.length, velocity.size() - 1);
+    for (; i <= middle; ++i) displacement += 0.5 * (velocity[i] + velocity[i - 1]) * (time[i] - time[i - 1]);
+    out.time.push_back(time[middle]);
+    out.position.push_back(displacement);
   }
+  return out;
+}
+
+/// Break-away scatters, and the positions with it.
+Estimate slope_of(std::span<const double> time, std::span<const double> position) {
   const StraightLine line = fit_line(time, position);
   double squares = 0;
   for (std::size_t k = 0; k < time.size(); ++k) squares += std::pow(position[k] - line.at(time[k]), 2);
@@ -33,18 +40,42 @@ Estimate mean_velocity(const Trace& trace, const PlateauSearch& search) {
   return {line.slope, line.squares > 0 ? std::sqrt(squares / free / line.squares) : 0, free};
 }
 
+/// Both halves of the record say the same: a standstill or a gap moves the block once.
+bool is_steady(const Positions& positions, double mean) {
+  const std::span<const double> time(positions.time), position(positions.position);
+  const std::size_t half = time.size() / 2;
+  const Estimate first = slope_of(time.first(half), position.first(half)),
+                 second = slope_of(time.subspan(half), position.subspan(half));
+  const auto agrees = [&](const Estimate& part) {
+    return std::abs(part.value - mean) < kHalvesAgree * std::abs(mean) + kZeroErrors * part.std_error &&
+           part.value * mean > 0;
+  };
+  return agrees(first) && agrees(second);
+}
+
 }  // namespace
+
+Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search) {
+  const Positions positions = positions_of(time, velocity, search);
+  return slope_of(positions.time, positions.position);
+}
 
 BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step) {
   BlockZero zero;
   if (search.plateaus.runs.size() < kFewestPeriods) return zero;
-  zero.mean = mean_velocity(trace, search);
+  const Positions positions = positions_of(trace.time, trace.velocity, search);
+  zero.mean = slope_of(positions.time, positions.position);
+  const bool varies = !disc.varying.empty();
+  // Where the disc's speed varies plateaus are relative to it.
   const double mean = zero.mean.value, plateau = final_level(search.plateaus);
-  const double least = std::max({kSignificance * zero.mean.std_error, kLeastZero * std::abs(plateau), 0.5 * step});
+  const double scale = varies ? disc.largest : std::abs(plateau), gap = varies ? plateau : plateau - disc.constant;
+  const double least = std::max({kSignificance * zero.mean.std_error, kLeastZero * scale, 0.5 * step});
   // What follows the disc as a whole is not held by a spring.
-  if (std::abs(mean) < least || std::abs(mean) > kLargestZero * std::abs(plateau)) return zero;
-  const bool shifts = disc.known && std::abs(plateau - disc.constant - mean) < kZeroAgrees * std::abs(mean);
-  zero.kind = shifts ? BlockZero::Kind::zero : BlockZero::Kind::uneven;
+  if (std::abs(mean) < least || std::abs(mean) > kLargestZero * scale) return zero;
+  const bool shifts =
+      disc.known && std::abs(gap - mean) < kZeroAgrees * std::abs(mean) + kZeroErrors * zero.mean.std_error;
+  if (shifts) zero.kind = BlockZero::Kind::zero;
+  if (!shifts && !varies && is_steady(positions, mean)) zero.kind = BlockZero::Kind::uneven;
   return zero;
 }
 
@@ -68,17 +99,24 @@ BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search,
   if (plateaus.runs.size() < kFewestPeriods) return zero;
   zero.kind = BlockZero::Kind::zero;
   zero.mean.value = plateaus.level;
+  std::vector<double> levels;
+  for (const StickPlateau& run : plateaus.runs) levels.push_back(run.level);
+  zero.mean.std_error =
+      kSigmaPerMad * median_absolute_deviation(levels, median(levels)) / std::sqrt(static_cast<double>(levels.size()));
   return zero;
 }
 
-void add_zero(const BlockZero& zero, bool speed_was_stated, HealthItem& item) {
+void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, HealthItem& item) {
   if (zero.kind == BlockZero::Kind::none) return;
   const bool is_zero = zero.kind == BlockZero::Kind::zero;
-  item.status = is_zero ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
+  item.status =
+      is_zero || compression != 0 ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
   item.message += fmt::format("; the block goes nowhere, yet its velocity is off by {:.3g} mm/s on average: ",
                               1e3 * zero.mean.value);
   item.message +=
-      is_zero ? "its zero was off by as much, taken off"
+      is_zero            ? "its zero was off by as much, taken off"
+      : compression != 0 ? fmt::format("slips are not read like sticks, the gain is {:.3g} % {} at the fastest; undone",
+                                       100 * std::abs(compression), compression > 0 ? "less" : "more")
       : speed_was_stated
           ? "slips are not read like sticks (a compressed velocity), or samples are missing; mu_k and alpha are at "
             "stake"

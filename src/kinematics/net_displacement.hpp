@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "plateau_search.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/health.hpp"
@@ -19,13 +21,16 @@ struct BlockZero {
   Estimate mean;  ///< [m/s]
 };
 
+/// Slope of the positions at the middles of the plateaus over time [m/s]. Cost: one pass.
+Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search);
+
 /// step: of the converter [m/s]; 0: fine. Cost: one pass.
 BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step);
 
 /// The same of a v_r that was measured and rests nowhere: a plateau is off zero by as much as the mean is off omega r.
 BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search, const Disc& disc);
 
-/// Adds what was found to the check of the plateau.
-void add_zero(const BlockZero& zero, bool speed_was_stated, HealthItem& item);
+/// Adds what was found to the check of the plateau. compression: what was undone of the velocity's gain [1].
+void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, HealthItem& item);
 
 }  // namespace tribofit::kinematics

@@ -30,6 +30,9 @@ class SpoiltSamples {
   /// A stretch in which the motion is not known for another reason.
   void add_unknown(const SampleSpan& span) { mark({span}, SampleFault::any); }
 
+  /// Samples over which a correction smears the velocity.
+  void add_smeared(const SampleSpan& span) { mark({span}, SampleFault::velocity); }
+
   bool any() const { return !faults_.empty(); }
   /// Longest stretch in which neither channel changed.
   const SampleSpan& longest_still() const { return still_; }

@@ -25,6 +25,8 @@ void check(const Sensors& sensors) {
   not_negative(sensors.mass_below, "mass below the force sensor");
   not_negative(sensors.force_bandwidth, "bandwidth of the force sensor");
   not_negative(sensors.velocity_high_pass, "high-pass of the vibrometer");
+  not_negative(sensors.velocity_low_pass, "low-pass of the vibrometer");
+  not_negative(sensors.friction_low_pass, "low-pass of the friction channel");
   not_negative(sensors.friction_noise, "noise on mu");
   not_negative(sensors.velocity_noise, "noise on the velocity");
   not_negative(sensors.friction_resolution, "resolution of mu");
@@ -74,6 +76,37 @@ void high_pass(std::vector<double>& v, double rate, double corner, double drift)
     y = e * y + mean * (v[i] - before);
     before = v[i];
     v[i] = y;
+  }
+}
+
+/// First-order low-pass, exact for straight lines between samples.
+void low_pass(std::vector<double>& x, double rate, double corner) {
+  if (x.empty() || !(corner > 0)) return;
+  const double a = 2 * std::numbers::pi * corner / rate;
+  const double e = std::exp(-a), mean = -std::expm1(-a) / a;
+  double before = x[0], y = x[0];
+  for (double& value : x) {
+    y = e * y + (1 - e) * before + (1 - mean) * (value - before);
+    before = value;
+    value = y;
+  }
+}
+
+/// The gain falls by `part` at the fastest.
+void compress(std::vector<double>& v, double part) {
+  double fastest = 0;
+  for (const double value : v) fastest = std::max(fastest, std::abs(value));
+  for (double& value : v) value *= 1 - part * std::pow(value / fastest, 2);
+}
+
+/// A channel that runs ahead by `drift` of the time, on straight lines between samples.
+void run_ahead(std::vector<double>& x, double drift) {
+  if (drift == 0 || x.size() < 2) return;
+  const std::vector<double> read = x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double at = std::min(static_cast<double>(i) * (1 + drift), static_cast<double>(x.size() - 1));
+    const std::size_t k = std::min(static_cast<std::size_t>(at), x.size() - 2);
+    x[i] = read[k] + (at - static_cast<double>(k)) * (read[k + 1] - read[k]);
   }
 }
 
@@ -142,6 +175,7 @@ std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::ve
     const double filter[] = {sensors.force_bandwidth, sensors.force_damping};
     sense_record(ForceBandwidth{}, filter, motion, whole, mu);
   }
+  low_pass(mu, motion.rate, sensors.friction_low_pass);
   if (sensors.friction_delay != 0) sense_record(ChannelDelay{}, &sensors.friction_delay, motion, whole, mu);
   return mu;
 }
@@ -161,6 +195,10 @@ std::vector<double> sensed_velocity(const SimulatedMotion& motion, const Sensors
     const double corner = sensors.velocity_high_pass;
     high_pass(v, motion.rate, corner, 2 * std::numbers::pi * corner * sensors.velocity_gain * away);
   }
+  if (sensors.velocity_compression != 0) compress(v, sensors.velocity_compression);
+  low_pass(v, motion.rate, sensors.velocity_low_pass);
+  for (double& value : v) value += sensors.velocity_zero;
+  run_ahead(v, sensors.clock_drift);
   return v;
 }
 

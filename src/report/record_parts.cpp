@@ -137,6 +137,27 @@ std::string kind_text(const Identification& r) {
   return text;
 }
 
+namespace {
+
+/// Level and fall of the pull over the cycles, which need no velocity.
+void add_levels_of_pull(const Identification& r, Facts& facts) {
+  std::vector<double> levels, drops;
+  for (const Cycle& c : r.segmentation.cycles) {
+    if (!std::isfinite(c.break_away_friction)) continue;
+    levels.push_back(c.break_away_friction);
+    if (c.slip_complete) drops.push_back(c.break_away_friction - c.slip_minimum);
+  }
+  const auto add = [&](const char* name, std::vector<double> values) {
+    const Estimate mean = mean_with_error(std::move(values));
+    if (std::isfinite(mean.value))
+      facts.emplace_back(name, with_error(mean.value, mean.std_error) + unit_behind(friction_unit(r.motion)));
+  };
+  add("break-away", std::move(levels));
+  add("drop", std::move(drops));
+}
+
+}  // namespace
+
 std::string record_sentence(const Identification& r) {
   if (r.motion.is_points()) return points_sentence(r.motion);
   return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
@@ -169,7 +190,10 @@ Facts stick_slip_facts(const Identification& r) {
                     branches.value > 0 ? "higher" : "lower", with_error(std::abs(branches.value), branches.std_error),
                     unit_behind(friction_unit(r.motion))));
   }
-  if (r.motion.kind == RecordKind::spring_slider) facts.emplace_back("regime", regime_text(r));
+  if (r.motion.kind == RecordKind::spring_slider) {
+    add_levels_of_pull(r, facts);
+    facts.emplace_back("regime", regime_text(r));
+  }
   if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   return facts;
 }

@@ -113,9 +113,12 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
   Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
-  const Motion twin =
-      compute_motion(std::move(trace), {},
-                     {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false, .stick = motion.stick});
+  const Motion twin = compute_motion(std::move(trace), {},
+                                     {.trim = false,
+                                      .undo_high_pass = false,
+                                      .undo_speed_ripple = false,
+                                      .undo_distortions = false,
+                                      .stick = motion.stick});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   if (shown != nullptr) *shown = block_motion(twin, cycles, compliance(machine));

@@ -37,7 +37,8 @@ Json catalogue_json(const Motion& motion) {
     list.push_back(effect_json(info, info.key, motion));
     for (const EffectForm& form : info.forms) {
       const std::string name = info.key + ":" + form.name;
-      list.push_back(effect_json(describe(make_effect(name)), name, motion));
+      const EffectInfo of_form = describe(make_effect(name));
+      if (!of_form.kinematic_effect) list.push_back(effect_json(of_form, name, motion));
     }
   }
   return list;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
@@ -160,6 +161,14 @@ TEST(SpringSlider, TheMovingMassIsTheInertiaInThePull) {
       EXPECT_NEAR(mass.value, slider.mass, 0.05 * slider.mass) << stiffness << " N/m, " << 1e3 * drive << " mm/s";
     }
   }
+}
+
+/// Mass and spring filter friction like a slow sensor: what is named is the mass.
+TEST(SpringSlider, TheDiagnosisNamesTheInertia) {
+  const DiagnosedTraces found = diagnose({{"simulated", {}, Simulation({.duration = 10}).run().trace}}, {});
+  ASSERT_GT(found.diagnosis.ladder.size(), 1U);
+  EXPECT_EQ(found.diagnosis.ladder[1].added, SensorInertia::key);
+  EXPECT_EQ(found.diagnosis.law, Law(ExponentialLaw{}));
 }
 
 TEST(SpringSlider, StickIsWhereTheSpringStretchesAtTheSpeedOfItsDrive) {

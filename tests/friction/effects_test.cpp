@@ -161,6 +161,10 @@ TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
       {"radius-offset", {1.05}, {}, mu},
       {"velocity-gain", {0.95}, {}, mu},
       {"velocity-highpass", {0.1}, {}, mu},
+      {"velocity-offset", {1e-3}, {}, mu},
+      {"velocity-bandwidth", {500}, {}, mu},
+      {"velocity-compression", {0.1}, {}, mu},
+      {"clock-drift", {1e-4}, {}, mu},
   };
   for (const Point& point : points) {
     const FrictionModel model(CoulombLaw{}, {make_effect(point.key)});
@@ -285,6 +289,25 @@ TEST(ForceBandwidth, FollowsARampLateAndAnswersAStepInClosedForm) {
     EXPECT_NEAR(step[i], 0.5 - 0.2 * (1 - rest), 2e-5);
   }
   EXPECT_NEAR(ramp[1999], 0.5 + 2 * (1999e-5 - 2 * zeta / w), 1e-6);
+}
+
+/// A channel of first order, which kinematics/ has found, reads every law late.
+TEST(FrictionLowPass, FollowsARampLateAndAStepWithinItsTime) {
+  const double tau = 2e-3, step = 1e-4;
+  const FrictionModel model(CoulombLaw{}, {});
+  Steady at(0.05, step, 200);
+  at.slip.from_stick = true;
+  at.slip.stick_slope = 3;
+  at.slip.friction_low_pass = tau;
+  const double p[] = {0.5, 0.3};
+  EXPECT_NEAR(break_away_level(model, p, at.slip), 0.5 - 3 * tau, 1e-12);
+  // From mu_s at break-away the steady value falls to mu_k at the first sample, on a straight line.
+  const std::vector<double> mu = run(model, {0.5, 0.3}, at.slip);
+  const double e = std::exp(-(at.time[0] - at.slip.break_away_time) / tau);
+  const double lag = 0.2 / (at.time[0] - at.slip.break_away_time) * tau;
+  EXPECT_NEAR(mu[0], 0.3 + lag - (3 * tau + lag) * e, 1e-9);
+  for (std::size_t i = 0; i + 1 < 100; i += 9)
+    EXPECT_NEAR((mu[i + 1] - 0.3) / (mu[i] - 0.3), std::exp(-step / tau), 1e-9);
 }
 
 /// Mean of f(|v|) v_t/|v| over a pad of radius R_c by quadrature on rings.

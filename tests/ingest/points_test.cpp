@@ -117,5 +117,21 @@ TEST_F(Points, FilesOfPointsAddUpButCannotBeJoined) {
   }
 }
 
+/// The pull of a spring alone is a record of a slider on it.
+TEST_F(Points, ThePullOfASpringIsAnotherKind) {
+  const std::string file = write("time_s,spring [mN]\n0,100\n1,200\n2,300\n");
+  const Trace trace = read_trace(file);
+  EXPECT_EQ(trace.kind, RecordKind::spring_slider);
+  EXPECT_EQ(trace.friction_kind, FrictionKind::force);
+  EXPECT_THAT(trace.friction, ElementsAre(0.1, 0.2, 0.3));
+  ReadOptions over_load;
+  over_load.kind = RecordKind::spring_slider;
+  over_load.columns = {{"spring", "spring:1"}};
+  EXPECT_EQ(read_trace(file, over_load).friction_kind, FrictionKind::coefficient);
+  ReadOptions loaded;
+  loaded.conditions.load = {2, "command line"};
+  EXPECT_THAT(read_trace(file, loaded).friction, ElementsAre(0.05, 0.1, 0.15));
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -119,10 +119,10 @@ TEST(Health, BandwidthOfAFilteredChannel) {
     }
   }
   const HealthItem found = item(compute_motion(std::move(trace)), "bandwidth");
-  EXPECT_EQ(found.status, Status::warning);
+  EXPECT_EQ(found.status, Status::problem);  // of no first order: it is not undone
   EXPECT_THAT(found.message, ::testing::HasSubstr("velocity falls"));
   EXPECT_THAT(found.message, ::testing::HasSubstr("friction stands"));
-  EXPECT_THAT(found.message, ::testing::HasSubstr("the channels have different filters"));
+  EXPECT_THAT(found.message, ::testing::HasSubstr("is needed"));
 }
 
 TEST(Health, BandwidthOfTheDrillStringsChannels) {

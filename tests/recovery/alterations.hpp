@@ -231,6 +231,22 @@ inline const std::vector<Alteration>& alterations() {
       {"one in five samples lost", lost(0.2, 1), "drop-outs", "samples were lost"},
       {"disc from 4 to 8 rpm", then_at(8), "plateau-speed", "the speed of the disc steps"},
       {"disc from 4 to 5 rpm", then_at(5), "plateau-speed", "the speed of the disc steps"},
+      {"both: low-pass of 100 Hz", low_passed({kFriction, kVelocity}, 100), "bandwidth", "first-order low-pass"},
+      {"both: low-pass of 200 Hz", low_passed({kFriction, kVelocity}, 200), "bandwidth", "first-order low-pass"},
+      {"both: low-pass of 500 Hz", low_passed({kFriction, kVelocity}, 500), "bandwidth", "first-order low-pass"},
+      {"both: low-pass of 1 kHz", low_passed({kFriction, kVelocity}, 1000), "bandwidth", "first-order low-pass"},
+      {"both: low-pass of 2 kHz", low_passed({kFriction, kVelocity}, 2000), "bandwidth", "first-order low-pass"},
+      {"velocity: low-pass of 500 Hz", low_passed({kVelocity}, 500), "bandwidth", "first-order low-pass"},
+      {"velocity: low-pass of 1 kHz", low_passed({kVelocity}, 1000), "bandwidth", "first-order low-pass"},
+      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", "slips are not read like sticks"},
+      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", "slips are not read like sticks"},
+      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", "slips are not read like sticks"},
+      {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", "their clocks run apart"},
+      {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", "their clocks run apart"},
+      {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", "their clocks run apart"},
+      {"velocity: low-pass of 200 Hz", low_passed({kVelocity}, 200), "bandwidth", "first-order low-pass"},
+      {"friction: low-pass of 200 Hz", low_passed({kFriction}, 200), "bandwidth", "first-order low-pass"},
+      {"friction: low-pass of 1 kHz", low_passed({kFriction}, 1000), "bandwidth", "first-order low-pass"},
   };
   return list;
 }
@@ -238,24 +254,12 @@ inline const std::vector<Alteration>& alterations() {
 /// Where no honest number is left: the check reports a problem.
 inline const std::vector<Alteration>& beyond_rescue() {
   static const std::vector<Alteration> list = {
-      {"both: low-pass of 200 Hz", low_passed({kFriction, kVelocity}, 200), "bandwidth", "low-pass"},
-      {"both: low-pass of 500 Hz", low_passed({kFriction, kVelocity}, 500), "bandwidth", "low-pass"},
-      {"both: low-pass of 1 kHz", low_passed({kFriction, kVelocity}, 1000), "bandwidth", "low-pass"},
-      {"both: low-pass of 2 kHz", low_passed({kFriction, kVelocity}, 2000), "bandwidth", "low-pass"},
-      {"velocity: low-pass of 500 Hz", low_passed({kVelocity}, 500), "bandwidth", "low-pass"},
-      {"velocity: low-pass of 1 kHz", low_passed({kVelocity}, 1000), "bandwidth", "low-pass"},
       {"both: means of 0.25 ms", averaged({kFriction, kVelocity}, 0.25e-3), "bandwidth", "low-pass"},
       {"both: means of 0.5 ms", averaged({kFriction, kVelocity}, 0.5e-3), "bandwidth", "low-pass"},
       {"both: means of 1 ms", averaged({kFriction, kVelocity}, 1e-3), "bandwidth", "low-pass"},
       {"velocity: means of 2 ms", averaged({kVelocity}, 2e-3), "bandwidth", "low-pass"},
-      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", "slips are not read like sticks"},
-      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", "slips are not read like sticks"},
-      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", "slips are not read like sticks"},
       {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "alpha is at stake"},
       {"friction: twenty levels", rounded(kFriction, 0.02), "resolution", "alpha are at stake"},
-      {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", "their clocks run apart"},
-      {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", "their clocks run apart"},
-      {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", "their clocks run apart"},
       {"one in five samples lost, 20 ms each", lost(0.2, 400), "drop-outs", "samples were lost"},
   };
   return list;

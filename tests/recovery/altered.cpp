@@ -126,11 +126,7 @@ TEST(NotAltered, ARoundedPlateauIsNotOff) {
 }
 
 TEST(Diagnosed, NamesNoEffectWhileAProblemStands) {
-  const auto problems = {rounded(kVelocity, 3.2e-3),
-                         clipped_velocity(0.6, 5e-6),
-                         clipped_friction(0.45, 1e-3),
-                         compressed(0.1),
-                         low_passed({kFriction, kVelocity}, 1000),
+  const auto problems = {rounded(kVelocity, 3.2e-3), clipped_velocity(0.6, 5e-6), clipped_friction(0.45, 1e-3),
                          averaged({kFriction, kVelocity}, 1e-3)};
   for (const auto& alter : problems) {
     Trace trace = truth::simulate(rig_of(11)).trace;
@@ -144,6 +140,36 @@ TEST(Diagnosed, NamesNoEffectWhileAProblemStands) {
       EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
       EXPECT_NE(effect.status, EffectStatus::equivalent) << effect.key;
     }
+  }
+}
+
+/// What was found in the readings and undone is named, and nothing else.
+TEST(Diagnosed, NamesWhatWasDoneToTheReadings) {
+  struct Done {
+    std::function<void(Trace&, Random&)> alter;
+    std::vector<std::string> names;
+  };
+  const std::vector<Done> all = {
+      {shifted(2e-4), {"velocity-offset"}},
+      {shifted(-1e-3), {"velocity-offset"}},
+      {low_passed({kVelocity}, 500), {"velocity-bandwidth"}},
+      {low_passed({kFriction, kVelocity}, 300), {"force-bandwidth", "velocity-bandwidth"}},
+      {low_passed({kFriction}, 500), {"force-bandwidth"}},
+      {compressed(0.1), {"velocity-compression"}},
+      {clocks_apart(100), {"clock-drift"}},
+  };
+  for (const Done& done : all) {
+    Trace trace = truth::simulate(rig_of(11)).trace;
+    Random random;
+    done.alter(trace, random);
+    const DiagnosedTraces found = diagnose({{"altered", {}, std::make_shared<const Trace>(std::move(trace))}});
+    EXPECT_EQ(found.diagnosis.verdict, Verdict::effect_found) << done.names[0];
+    std::vector<std::string> names;
+    for (const EffectFinding& effect : found.diagnosis.effects) {
+      if (effect.status == EffectStatus::found || effect.status == EffectStatus::equivalent)
+        names.push_back(effect.key);
+    }
+    EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(done.names));
   }
 }
 

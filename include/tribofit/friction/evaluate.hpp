@@ -257,6 +257,37 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
+/// What a first-order low-pass of the friction channel reads of a slip, in place: tau dy/dt = mu - y, exact for
+/// straight lines between values. From those a bent curve is off by a twelfth of the second difference on average,
+/// which is put on before. level: signed friction at break-away, up to which it rose at slip.stick_slope.
+template <class T>
+void read_through_low_pass(const Slip& slip, const T& level, std::span<T> mu) {
+  const double tau = slip.friction_low_pass;
+  if (!(tau > 0) || mu.empty()) return;
+  T y = mu[0], before = mu[0];
+  double previous = slip.time[0];
+  if (slip.from_stick) {
+    y = level - tau * slip.stick_slope;
+    before = level;
+    previous = slip.break_away_time;
+  }
+  T left = mu[0];  // of the value, before it was filtered
+  for (std::size_t i = 0; i < mu.size(); ++i) {
+    const T here = mu[i];
+    T now = here;
+    if (i > 0 && i + 1 < mu.size()) now = here - (1.0 / 12) * (left - 2.0 * here + mu[i + 1]);
+    left = here;
+    const double a = (slip.time[i] - previous) / tau;
+    if (a > 0) {
+      const double e = std::exp(-a), mean = -std::expm1(-a) / a;
+      y = e * y + (1 - e) * before + (1 - mean) * (now - before);
+      previous = slip.time[i];
+      before = now;
+    }
+    mu[i] = y;
+  }
+}
+
 /// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
 template <class T>
 T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
@@ -284,7 +315,8 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
       mu = effect.add_to_reading(q, at, mu);
     }
   });
-  return mu;
+  // A ramp comes out late by the time constant.
+  return sensed ? T(mu - slip.friction_low_pass * slip.stick_slope) : mu;
 }
 
 }  // namespace detail
@@ -339,6 +371,9 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
       effect.filter_reading(q, slip, slip.from_stick ? detail::break_away(model, p, slip, false) : T(0.0 * p[0]), mu);
     }
   });
+  if (slip.friction_low_pass > 0)
+    detail::read_through_low_pass(slip, slip.from_stick ? detail::break_away(model, p, slip, false) : T(0.0 * p[0]),
+                                  mu);
 }
 
 // Compiled once, in evaluate.cpp.

@@ -49,6 +49,7 @@ struct SlipFacts {
   double tail_friction = std::numeric_limits<double>::quiet_NaN();  ///< friction read in the stick right after the
                                                                     ///< slip; NaN where there is none
   double restick_time = std::numeric_limits<double>::quiet_NaN();   ///< [s]; NaN where there is none
+  double friction_low_pass = 0;     ///< time constant of a first-order low-pass that friction was read through [s]
   double earlier_restick_time = 0;  ///< when the slip before this one's stick came to rest [s]
 };
 

@@ -30,6 +30,12 @@ enum class PlateauCorrection {
   gain,    ///< the vibrometer reads too much or too little: v_b over the ratio
 };
 
+/// What a channel did to its reading, found in the record and put right: its size with its standard error, SI. 0: none.
+struct UndoneDistortion {
+  double value = 0, std_error = 0;
+  bool any() const { return value != 0; }
+};
+
 /// Bits of Motion::faults. The motion is not known in a stretch: the cycles that reach into it take no part.
 struct SampleFault {
   static constexpr std::uint8_t friction = 1, velocity = 2, stretch = 4, any = 7;
@@ -75,7 +81,14 @@ struct Motion {
   double velocity_noise = 0;    ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
   double plateau_velocity = 0;  ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
   double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
-  double high_pass_std_error = 0;     ///< [Hz]
+  double high_pass_std_error = 0;      ///< [Hz]
+  UndoneDistortion velocity_zero;      ///< that was taken off v_b [m/s]
+  UndoneDistortion velocity_low_pass;  ///< time constant of a first-order low-pass that was undone [s]
+  /// The same of friction [s], which stays as it was read: a law is evaluated and then filtered.
+  UndoneDistortion friction_low_pass;
+  UndoneDistortion compression;       ///< c of v_meas = v_b (1 - c (v_b/fastest_velocity)^2), undone [1]
+  double fastest_velocity = 0;        ///< largest |v_b|, where that was undone [m/s]
+  UndoneDistortion clock_drift;       ///< by which friction fell behind the velocity, over time [1]
   bool sticks = false;                ///< the trace has a plateau of stick
   StickRule stick;                    ///< as the user said
   double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
@@ -110,6 +123,7 @@ struct MotionOptions {
   bool trim = true;               ///< cut the run-up where the plateau is not within 2 % of its final value
   bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
   bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
+  bool undo_distortions = true;   ///< zero, low-pass and compression of the velocity, clocks that run apart
   PlateauCorrection plateau = PlateauCorrection::none;
   StickRule stick = {};
 };

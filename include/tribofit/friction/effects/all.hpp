@@ -14,6 +14,7 @@
 #include "tribofit/friction/effects/disc_pattern.hpp"
 #include "tribofit/friction/effects/drift.hpp"
 #include "tribofit/friction/effects/force_bandwidth.hpp"
+#include "tribofit/friction/effects/force_low_pass.hpp"
 #include "tribofit/friction/effects/frictional_lag.hpp"
 #include "tribofit/friction/effects/heating.hpp"
 #include "tribofit/friction/effects/interference.hpp"
@@ -22,6 +23,7 @@
 #include "tribofit/friction/effects/motion_effects.hpp"
 #include "tribofit/friction/effects/rate_state.hpp"
 #include "tribofit/friction/effects/rate_state_healing.hpp"
+#include "tribofit/friction/effects/reading_effects.hpp"
 #include "tribofit/friction/effects/ringing.hpp"
 #include "tribofit/friction/effects/run_in.hpp"
 #include "tribofit/friction/effects/runout.hpp"
@@ -36,12 +38,13 @@
 namespace tribofit {
 
 /// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
-/// memories. The last two are not part of the catalogue: a form of rate-state, and the user's own (see formula.hpp).
+/// memories. The last three are not part of the catalogue: forms of others, and the user's own (see formula.hpp).
 using EffectAlternatives =
     std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry, Heating,
                  RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout, DiscPattern, SpeedRipple,
                  LoadCoupling, Ringing, SensorInertia, SensorOffset, Crosstalk, ForceBandwidth, ChannelDelay,
-                 RadiusOffset, VelocityGain, VelocityHighPass, Interference, RateStateHealing, Formula>;
+                 RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset, VelocityBandwidth, VelocityCompression,
+                 ClockDrift, Interference, ForceLowPass, RateStateHealing, Formula>;
 
 /// One effect of the list. What it takes to copy, move and destroy thirty types is compiled once, in catalogue.cpp.
 class Effect : public EffectAlternatives {

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <numbers>
+
+#include "tribofit/friction/effect.hpp"
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit {
+
+/// What channels do to their readings. Each shows where a block that sticks and slips is held by its spring: it goes
+/// nowhere, and comes to rest at once. There kinematics/ finds them and undoes them before any law is fitted. In a
+/// friction model they have no term.
+
+/// The vibrometer reads v0 at rest.
+struct VelocityOffset {
+  static constexpr std::string_view key = "velocity-offset";
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    return {.key = std::string(key),
+            .statement = "the zero of the vibrometer is off, so that every velocity is read too high or too low",
+            .equation = "v_meas = v_b + v0",
+            .source = "a block on a spring goes nowhere: the mean of v_meas is v0",
+            .experiment = "record with the disc at rest: what the vibrometer then reads is its zero",
+            .parameters = {{.name = "v0",
+                            .description = "reading of the vibrometer at rest",
+                            .unit = "mm/s",
+                            .si = 1e-3,
+                            .lower = -100,
+                            .upper = 100,
+                            .neutral = 0}},
+            .needs = {.plateau = true},
+            .excitation = {.stated_plateau = true},
+            .group = EffectGroup::measurement,
+            .sketch = {.view = SketchView::plateau, .values = {0.5}},
+            .hidden = {.sizes = {0.3, 1}, .either_sign = true}};
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+    if (!motion.velocity_zero.any()) return {};
+    return {.values = {{motion.velocity_zero.value, motion.velocity_zero.std_error}},
+            .reason =
+                "the block goes nowhere, yet its velocity is off on average, and on the plateau of stick by as "
+                "much; it was taken off before the law was fitted"};
+  }
+
+  static double velocity_zero(const double* p) { return p[0]; }
+};
+
+/// The velocity channel is a first-order low-pass.
+struct VelocityBandwidth {
+  static constexpr std::string_view key = "velocity-bandwidth";
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    return {.key = std::string(key),
+            .statement = "the vibrometer or its amplifier follows the velocity late, as an RC filter does",
+            .equation = "tau dv_meas/dt + v_meas = v_b, tau = 1/(2 pi f_c)",
+            .source = "first-order low-pass, textbook; undone by v_b = v_meas + tau dv_meas/dt",
+            .experiment = "tap the block with the filter of the amplifier open and closed: the edges show what it does",
+            .parameters = {{.name = "f_c",
+                            .description = "corner frequency of the low-pass",
+                            .unit = "Hz",
+                            .lower = 20,
+                            .upper = 5000,
+                            .start = 500,
+                            .neutral = 5000,
+                            .bound_scaling = BoundScaling::against_slip_time}},
+            .group = EffectGroup::measurement,
+            .sketch = {.view = SketchView::loop, .values = {200}},
+            .hidden = {.sizes = {800, 400, 200}}};
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+    const UndoneDistortion& tau = motion.velocity_low_pass;
+    if (!tau.any()) return {};
+    const double corner = 1 / (2 * std::numbers::pi * tau.value);
+    return {.values = {{corner, corner * tau.std_error / tau.value}},
+            .reason = "v_r trails off at re-stick; it was undone before the law was fitted"};
+  }
+
+  static double velocity_low_pass(const double* p) { return p[0]; }
+};
+
+/// The gain of the vibrometer falls towards the end of its range.
+struct VelocityCompression {
+  static constexpr std::string_view key = "velocity-compression";
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    return {.key = std::string(key),
+            .statement = "the gain of the vibrometer falls (or rises) towards its limit, so slips are read too slow",
+            .equation = "v_meas = v_b (1 - c (v_b/v_max)^2), v_max the largest |v_b|",
+            .source = "third-order term of an odd characteristic, textbook; c from no net displacement of the block",
+            .experiment = "record the same slips in the next larger range of the vibrometer",
+            .parameters = {{.name = "c",
+                            .description = "part of the gain that is lost at the fastest",
+                            .lower = -0.3,
+                            .upper = 0.3,
+                            .neutral = 0}},
+            .needs = {.plateau = true},
+            .excitation = {.stated_plateau = true},
+            .group = EffectGroup::measurement,
+            .sketch = {.view = SketchView::curve, .values = {0.2}},
+            .hidden = {.sizes = {0.05, 0.1}, .either_sign = true}};
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+    if (!motion.compression.any()) return {};
+    return {.values = {{motion.compression.value, motion.compression.std_error}},
+            .reason =
+                "the plateau of stick is omega r, yet the block would go somewhere; it was undone before the law "
+                "was fitted"};
+  }
+
+  static double velocity_compression(const double* p) { return p[0]; }
+};
+
+/// The channels have clocks of their own, and the velocity runs ahead of friction (positive) or falls behind.
+struct ClockDrift {
+  static constexpr std::string_view key = "clock-drift";
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    return {.key = std::string(key),
+            .statement = "the two channels were sampled by clocks that run apart, so one falls behind the other",
+            .equation = "v_meas(t) = v_b(t + d t), t from the first sample of friction's clock",
+            .source = "quartz clocks differ by up to 100 in a million",
+            .experiment = "put one signal on both instruments: the delay between them then grows with time",
+            .parameters = {{.name = "d",
+                            .description = "time by which the velocity runs ahead of friction, over time",
+                            .lower = -0.01,
+                            .upper = 0.01,
+                            .neutral = 0}},
+            .group = EffectGroup::measurement,
+            .sketch = {.view = SketchView::time, .values = {2e-4}},
+            .hidden = {.sizes = {1e-4, 2e-4}, .either_sign = true}};
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+    if (!motion.clock_drift.any()) return {};
+    return {.values = {{motion.clock_drift.value, motion.clock_drift.std_error}},
+            .reason =
+                "friction jumps ever later (or earlier) than the velocity comes to rest; it was undone before "
+                "the law was fitted"};
+  }
+
+  static double clock_drift(const double* p) { return p[0]; }
+};
+
+}  // namespace tribofit

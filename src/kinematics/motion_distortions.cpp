@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "compression.hpp"
+#include "limits.hpp"
+#include "motion_stages.hpp"
+#include "undo_low_pass.hpp"
+
+// The stages of a motion that undo what its channels did to their readings.
+
+namespace tribofit::kinematics {
+
+void MotionStages::undo_distortions() {
+  if (is_block() && search_.sticks && speed_is_constant()) {
+    spoilt_->add_standstill(search_, final_level(search_.plateaus), trace_);
+  }
+  if (!trace_.velocity_std_error.empty()) return;  // the velocity was made from another channel
+  find_zero();
+  undo_zero();
+  undo_compression();
+  if (search_.sticks) jumps_ = find_lost_samples(trace_, std::max(search_.noise, steps_.velocity));
+  undo_low_pass();
+  undo_clock_drift();
+  find_friction_filter();
+}
+
+/// A block on a spring goes nowhere: what v_b is on average is an error of the reading.
+void MotionStages::find_zero() {
+  if (motion_.high_pass > 0 || spoilt_->any()) return;
+  if (is_block() && search_.sticks) zero_ = kinematics::find_zero(trace_, search_, disc_, steps_.velocity);
+  const bool rests_nowhere = trace_.velocity_kind == VelocityKind::relative && !search_.sticks;
+  if (rests_nowhere && speed_is_constant()) zero_ = find_zero_of_relative(trace_, search_, disc_);
+}
+
+void MotionStages::undo_zero() {
+  if (zero_.kind != BlockZero::Kind::zero || !options_.undo_distortions) return;
+  motion_.velocity_zero = {zero_.mean.value, zero_.mean.std_error};
+  for (double& v : trace_.velocity) v -= zero_.mean.value;
+  motion_.notes.push_back(fmt::format("velocity: its zero was off by {:.4g} mm/s, taken off", 1e3 * zero_.mean.value));
+  find_plateau();
+}
+
+/// An end of the velocity's range at which slips crowd: they are cut off there, not compressed.
+bool MotionStages::clips_slips() const {
+  const auto is_cut = [&](const EndRuns& end) {
+    const double level = end.pile.count > 0 ? end.pile.level : end.at;
+    const bool crowds = end.count >= 6 || end.pile.count > 0;
+    return crowds && std::abs(level - search_.plateaus.level) > 0.5 * search_.plateaus.depth;
+  };
+  return is_cut(range_ends_.velocity[0]) || is_cut(range_ends_.velocity[1]);
+}
+
+void MotionStages::undo_compression() {
+  if (zero_.kind != BlockZero::Kind::uneven || !disc_.known || !speed_is_constant() || clips_slips()) return;
+  if (std::abs(final_level(search_.plateaus) - disc_.constant) > kPlateauHolds * std::abs(zero_.mean.value)) return;
+  const Compression found = find_compression(trace_, search_, zero_.mean);
+  if (found.part.value == 0 || std::abs(found.part.value) > kMostCompressed || !options_.undo_distortions) return;
+  motion_.compression = found.part;
+  motion_.fastest_velocity = found.fastest;
+  for (double& v : trace_.velocity) v = decompressed(v, found.part.value, found.fastest);
+  motion_.notes.push_back(fmt::format("velocity: its gain is {:.3g} % {} at the fastest, undone",
+                                      100 * std::abs(found.part.value), found.part.value > 0 ? "less" : "more"));
+  find_plateau();
+}
+
+void MotionStages::undo_low_pass() {
+  if (!search_.sticks || trace_.velocity_kind == VelocityKind::fixed_block) return;
+  std::vector<double> relative;  // to a disc whose speed varies
+  if (!speed_is_constant() && is_block()) {
+    relative = trace_.velocity;
+    for (std::size_t i = 0; i < relative.size(); ++i) relative[i] -= disc_.varying[i];
+  }
+  low_pass_ = find_low_pass(relative.empty() ? trace_.velocity : relative, search_.plateaus.level,
+                            std::max(search_.noise, steps_.velocity / std::sqrt(12.0)), motion_.step);
+  const bool asked = options_.undo_distortions && !instruments_.vibrometer.low_pass;
+  if (!low_pass_.is_first_order || !asked) return;
+  motion_.velocity_low_pass = {low_pass_.tau, low_pass_.std_error};
+  const std::size_t smeared = 1 + kinematics::undo_low_pass(trace_.velocity, low_pass_.tau, motion_.step, search_.noise,
+                                                            search_.plateaus.depth);
+  for (const double at : low_pass_.resticks) {
+    const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(at - static_cast<double>(smeared))));
+    const auto end = static_cast<std::size_t>(std::max(0.0, std::floor(at + static_cast<double>(smeared)) + 1));
+    spoilt_->add_smeared({std::min(first, trace_.size()), std::min(end, trace_.size())});
+  }
+  motion_.notes.push_back(
+      fmt::format("velocity: a low-pass of {:.4g} Hz undone", 1 / (2 * std::numbers::pi * low_pass_.tau)));
+  find_plateau();
+}
+
+void MotionStages::undo_clock_drift() {
+  if (trace_.velocity_kind == VelocityKind::fixed_block) return;
+  clocks_ = find_clock_drift(trace_.friction, low_pass_.resticks);
+  // A filter that holds its input for a sample is half of one early or late: friction, where it jumps, shows it.
+  const bool holds = motion_.velocity_low_pass.any() && !clocks_.drift.any() && clocks_.slips > 0;
+  if (holds && std::abs(clocks_.at_start) < kHeldInput && clocks_.is_sharp) {
+    follow_clock(trace_.velocity, 0, clocks_.at_start, low_pass_.resticks);
+  }
+  if (!clocks_.drift.any() || !options_.undo_distortions) return;
+  motion_.clock_drift = clocks_.drift;
+  // Where the offset of two files was estimated it is that of the middle of the record; else both begin together.
+  const bool joined = motion_.clock_offset_std_error != 0;
+  const Ends ends =
+      follow_clock(trace_.velocity, clocks_.drift.value, joined ? clocks_.at_start : 0, low_pass_.resticks);
+  if (joined) motion_.clock_offset_std_error = 0.5 * trace_.duration() * clocks_.drift.std_error;
+  lost_ = {std::max(lost_.head, ends.head), std::max(lost_.tail, ends.tail)};
+  motion_.notes.push_back(
+      fmt::format("velocity: moved by {:.3g} ppm of the time, to the clock of friction", 1e6 * clocks_.drift.value));
+  find_plateau();
+}
+
+void MotionStages::find_friction_filter() {
+  // Behind a filter of the velocity that is not undone re-stick is somewhere else.
+  const bool is_known = !low_pass_.is_filter || motion_.velocity_low_pass.any();
+  if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
+  const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step);
+  motion_.friction_low_pass = found.tau;
+  // A filter that holds its input for a sample is half of one early.
+  const bool holds = found.tau.any() && std::abs(found.early) < kHeldInput;
+  if (holds) follow_clock(trace_.velocity, 0, -found.early, low_pass_.resticks);
+}
+
+}  // namespace tribofit::kinematics

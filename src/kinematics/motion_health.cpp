@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "motion_stages.hpp"
+#include "plateau_ratio.hpp"
+
+// The stages of a motion that say what its channels are worth.
+
+namespace tribofit::kinematics {
+
+void MotionStages::check_clipping() {
+  recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
+  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
+                                         {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
+  const auto lost = clipping_.status == HealthItem::Status::ok ? jumps_ : LostSamples{};
+  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size());
+  motion_.faults = spoilt_->take();
+}
+
+/// Where the velocity as recorded repeats in stick when there is no noise, and crowds when there is.
+std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
+  LevelRange levels;  // of v_r
+  if (is_block()) {
+    const bool unknown =
+        speed_is_constant() ? !search_.sticks || (is_reversed_ && !speed_was_stated_) : !recorded_.has_value();
+    if (unknown) return std::nullopt;
+    // Where radius, speed or gain are not as stated the block rests beside omega r.
+    const Extremes rest = speed_is_constant()
+                              ? Extremes{std::min(disc_.constant, plateau_), std::max(disc_.constant, plateau_)}
+                              : extremes(disc_.varying);
+    levels = {rest.low + motion_.velocity_zero.value, rest.high + motion_.velocity_zero.value};
+  }
+  const auto& vibrometer = instruments_.vibrometer;
+  const double reading = vibrometer.sign * (vibrometer.gain ? vibrometer.gain->value : 1) * (is_reversed_ ? -1 : 1);
+  return reading > 0 ? LevelRange{reading * levels.low, reading * levels.high}
+                     : LevelRange{reading * levels.high, reading * levels.low};
+}
+
+void MotionStages::check_health() {
+  const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
+  const std::span<const double> velocity =
+      velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
+  motion_.health = {
+      std::move(clipping_),
+      std::move(drop_outs_),
+      kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
+      kinematics::check_bandwidth(motion_, velocity, low_pass_),
+      check_delay(),
+      kinematics::check_revolutions(motion_),
+      kinematics::check_speed_ripple(motion_, ripple_),
+      kinematics::check_run_up(motion_, options_.trim, run_up_),
+      check_level(),
+      kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
+  };
+}
+
+HealthItem MotionStages::check_delay() const {
+  HealthItem item = kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length);
+  const UndoneDistortion& drift = motion_.clock_drift;
+  if (!drift.any()) return item;
+  item.status = std::max(item.status, HealthItem::Status::warning);
+  item.message += fmt::format(
+      "; friction fell behind the velocity by {:.2f} +- {:.2f} ppm of the time ({} slips), "
+      "their clocks run apart: undone",
+      1e6 * drift.value, 1e6 * drift.std_error, clocks_.slips);
+  return item;
+}
+
+HealthItem MotionStages::check_level() const {
+  const bool can_be_held = motion_.sticks || motion_.constant_disc_velocity != 0;
+  if (motion_.velocity_kind == VelocityKind::relative && can_be_held) {
+    HealthItem item = kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
+    kinematics::add_zero(zero_, true, 0, item);
+    return item;
+  }
+  const double stated = speed_was_stated_ ? disc_.constant : 0;
+  if (!speed_levels_.empty()) return kinematics::check_speed_steps(motion_, speed_levels_, search_.blocks, stated);
+  HealthItem item = kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_,
+                                                    motion_.conditions.radius.known(), recorded_);
+  kinematics::add_zero(zero_, speed_was_stated_, motion_.compression.value, item);
+  return item;
+}
+
+void MotionStages::compare_plateau() {
+  if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
+  kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
+  const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
+  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
+  motion_.plateau_ratio = ratio.value;
+  motion_.plateau_ratio_std_error = ratio.std_error;
+  correct_plateau(motion_, ratio, options_.plateau);
+}
+
+}  // namespace tribofit::kinematics

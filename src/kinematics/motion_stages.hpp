@@ -1,0 +1,92 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "clock_drift.hpp"
+#include "corrections.hpp"
+#include "health_checks.hpp"
+#include "high_pass.hpp"
+#include "lost_samples.hpp"
+#include "low_pass.hpp"
+#include "net_displacement.hpp"
+#include "plateau.hpp"
+#include "plateau_search.hpp"
+#include "resolution.hpp"
+#include "ripple.hpp"
+#include "speed_steps.hpp"
+#include "spoilt_samples.hpp"
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit::kinematics {
+
+/// A trace on its way to a motion. Each stage reads what the stages before it have settled.
+class MotionStages {
+ public:
+  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options);
+
+  void look_at_recording();
+  void correct_declared();
+  void find_disc();
+  void find_plateau();
+  void find_direction();
+  void undo_high_pass();
+  void undo_distortions();
+  void find_speed_steps();
+  void take_speed_from_plateau();
+  void undo_ripple();
+  void check_clipping();
+  void add_sensor_mass();
+  void make_relative_motion();
+  void settle_signs_and_levels();
+  void check_health();
+  void compare_plateau();
+  Motion take() { return std::move(motion_); }
+
+ private:
+  bool is_block() const { return trace_.velocity_kind == VelocityKind::block; }
+  bool speed_is_constant() const { return disc_.varying.empty(); }
+  std::optional<LevelRange> plateau_as_recorded() const;
+  void find_zero();
+  void undo_zero();
+  void undo_compression();
+  void undo_low_pass();
+  void undo_clock_drift();
+  void find_friction_filter();
+  bool clips_slips() const;
+  void undo_ripple_in_high_pass();
+  std::size_t run_up() const;
+  Plateaus plateaus_in_motion() const { return plateaus_within(search_, motion_.trimmed, motion_.size()); }
+  HealthItem check_delay() const;
+  HealthItem check_level() const;
+
+  Trace trace_;
+  const Instruments& instruments_;
+  const MotionOptions& options_;
+  Motion motion_;
+
+  // Of the channels as recorded.
+  std::optional<SpoiltSamples> spoilt_;
+  RangeEnds range_ends_;
+  RecordedSteps steps_;  ///< of a coarse converter
+  HealthItem clipping_, drop_outs_;
+  Ends lost_;  ///< to corrections
+  Disc disc_;
+  bool speed_was_stated_ = false;
+  PlateauSearch search_;
+  bool is_reversed_ = false;
+  std::optional<double> declared_high_pass_;
+  HighPassEstimate sag_;
+  double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
+  std::optional<RecordedPlateau> recorded_;
+  LostSamples jumps_;  ///< of the velocity as recorded
+  BlockZero zero_;
+  LowPass low_pass_;  ///< of the velocity as recorded
+  ClockDriftEstimate clocks_;
+  std::vector<SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
+  RippleEstimate ripple_;
+  bool undoes_ripple_ = false;
+  std::size_t run_up_ = 0;
+};
+
+}  // namespace tribofit::kinematics

@@ -1,0 +1,151 @@
+#include "undo_low_pass.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "limits.hpp"
+#include "statistics/golden_section.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+/// Friction in a stick from re-stick on.
+struct Tail {
+  std::span<const double> friction;
+  double first = 0;   ///< time of its first sample after re-stick [samples]
+  double before = 0;  ///< friction at re-stick, as the slip before went on
+};
+
+/// The straight line of the spring and what decays on it.
+struct Decay {
+  double squares = 0;  ///< that are left
+  double early = 0;    ///< of these, those within the decay
+  double line = 0, size = 0;
+};
+
+/// Samples in which a decay is gone: a thousandth is left.
+double gone_after(double tau) {
+  return 7 * tau;
+}
+
+Decay fit_decay(const Tail& tail, double tau) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const double scale = 1 / static_cast<double>(tail.friction.size());
+  const auto row = [&](std::size_t i) {
+    const double t = tail.first + static_cast<double>(i);
+    return Eigen::Vector3d(1, t * scale, std::exp(-t / tau));
+  };
+  for (std::size_t i = 0; i < tail.friction.size(); ++i) {
+    const Eigen::Vector3d x = row(i);
+    normal += x * x.transpose();
+    right += x * tail.friction[i];
+  }
+  const Eigen::Vector3d c = normal.ldlt().solve(right);
+  Decay decay{0, 0, c[0], c[2]};
+  for (std::size_t i = 0; i < tail.friction.size(); ++i) {
+    const double square = std::pow(tail.friction[i] - row(i).dot(c), 2);
+    decay.squares += square;
+    if (tail.first + static_cast<double>(i) < gone_after(tau)) decay.early += square;
+  }
+  return decay;
+}
+
+/// The tails of some slips: a part of the time to the next re-stick, the same for all.
+std::vector<Tail> tails_of(std::span<const double> friction, const std::vector<double>& resticks) {
+  std::vector<double> periods;
+  for (std::size_t k = 1; k < resticks.size(); ++k) periods.push_back(resticks[k] - resticks[k - 1]);
+  std::vector<Tail> tails;
+  if (periods.size() < kFewestPeriods) return tails;
+  const auto length = static_cast<std::size_t>(kTailPart * median(std::move(periods)));
+  if (length < kTailSamples) return tails;
+  const std::size_t every = std::max<std::size_t>(1, resticks.size() / kKinkSlips);
+  for (std::size_t k = 0; k < resticks.size(); k += every) {
+    const double place = std::max(resticks[k], 0.0);
+    const auto first = static_cast<std::size_t>(std::ceil(place + kTailGap));
+    const auto last = static_cast<std::size_t>(std::floor(std::max(place - kTailGap, 0.0)));  // of the slip
+    if (last + 1 < kTailBefore || first + length >= friction.size()) continue;
+    const std::size_t begin = last + 1 - kTailBefore;
+    const double before = fit_line(friction.subspan(begin, kTailBefore)).at(place - static_cast<double>(begin));
+    tails.push_back({friction.subspan(first, length), static_cast<double>(first) - place, before});
+  }
+  return tails;
+}
+
+double squares_left(const std::vector<Tail>& tails, double tau) {
+  double squares = 0;
+  for (const Tail& tail : tails) squares += fit_decay(tail, tau).squares;
+  return squares;
+}
+
+/// What decays at a time constant: where it begins before re-stick [samples]; whether the reading goes on from where it
+/// was, falls by most of the jump, and nothing but noise is left beside it.
+struct Evidence {
+  double early = 0;
+  bool is_first_order = false;
+};
+
+Evidence evidence_of(const std::vector<Tail>& tails, double tau) {
+  double early = 0, late = 0, samples_early = 0, samples_late = 0, decays = 0;
+  std::vector<double> sizes, onsets;
+  for (const Tail& tail : tails) {
+    const Decay decay = fit_decay(tail, tau);
+    const double jump = tail.before - decay.line,
+                 samples = std::min(gone_after(tau), static_cast<double>(tail.friction.size()));
+    sizes.push_back(decay.size / jump);
+    onsets.push_back(tau * std::log(std::max(1e-6, jump / decay.size)));
+    early += decay.early, late += decay.squares - decay.early;
+    decays += decay.size * decay.size / static_cast<double>(tails.size());
+    samples_early += samples, samples_late += static_cast<double>(tail.friction.size()) - samples;
+  }
+  const double size = median(std::move(sizes)), onset = median(std::move(onsets));
+  const double noise = late / std::max(1.0, samples_late);
+  const bool holds = size > kTailSize && std::abs(onset) < kTailOnset + kTailOnsetPart * tau &&
+                     early / samples_early < kTailLeft * noise + kTailModel * kTailModel * decays;
+  return {onset, holds};
+}
+
+}  // namespace
+
+std::size_t undo_low_pass(std::span<double> velocity, double tau, double step, double noise, double fastest) {
+  const auto noise_of = [&](std::size_t half) {
+    const auto h = static_cast<double>(half);
+    return noise * tau / step * std::sqrt(3 / (h * (h + 1) * (2 * h + 1)));
+  };
+  const double allowed = std::max(noise, kRestoredNoise * fastest);
+  std::size_t half = 1;
+  while (noise_of(half) > allowed && static_cast<double>(half + 1) * step < kRestoredSmear * tau) ++half;
+  const std::vector<double> slope = savitzky_golay_slope(velocity, step, half);
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] += tau * slope[i];
+  return half;
+}
+
+FrictionLowPass find_friction_low_pass(std::span<const double> friction, const std::vector<double>& resticks,
+                                       double step) {
+  const std::vector<Tail> tails = tails_of(friction, resticks);
+  if (tails.size() < kFewestPeriods) return {};
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  const double longest = kTailDecay * static_cast<double>(tails.front().friction.size());
+  for (double tau = kTailFirst; tau < longest; tau *= kKinkNext) {
+    if (const double left = squares_left(tails, tau); left < least) least = left, best = tau;
+  }
+  constexpr int kCuts = 16;  // to a thousandth
+  const auto refined = [&](const auto& left) {
+    return golden_section(left, best / kKinkNext, best * kKinkNext, kCuts).at;
+  };
+  const double tau = refined([&](double t) { return squares_left(tails, t); });
+  const Evidence evidence = evidence_of(tails, tau);
+  if (best == kTailFirst || !evidence.is_first_order) return {};
+  std::vector<double> taus;
+  for (const Tail& tail : tails) taus.push_back(refined([&](double t) { return fit_decay(tail, t).squares; }));
+  const double scatter = kSigmaPerMad * median_absolute_deviation(taus, median(taus));
+  return {{tau * step, scatter / std::sqrt(static_cast<double>(taus.size())) * step}, evidence.early};
+}
+
+}  // namespace tribofit::kinematics
