@@ -147,8 +147,8 @@ struct MotionOptions {
 ///
 /// `trace` is consumed so that no channel is held twice. Throws InputError when v_r cannot be made: channels missing,
 /// or neither speed and radius nor a plateau. Of points only v_r and the declared zero, gain and crosstalk of the force
-/// sensor are settled. A spring slider is a block on its spring, seen from the driven end (kinematics/spring_slider.hpp).
-/// Cost: about six passes over the samples.
+/// sensor are settled. A spring slider is a block on its spring, seen from the driven end
+/// (kinematics/spring_slider.hpp). Cost: about six passes over the samples.
 Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});
 
 /// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1
