@@ -12,8 +12,8 @@ struct Settings {
   std::vector<std::string> second_columns, second_units;
   std::vector<std::string> continued_in;
   std::vector<std::string> confirm;  // diagnose: runs held back
-  std::string kind;             // of the record; empty: found
-  std::string stiffness, mass;  // of a spring slider
+  std::string kind;                  // of the record; empty: found
+  std::string stiffness, mass;       // of a spring slider
   bool trim = true;
   bool never_sticks = false;
   std::string stick_below;

@@ -257,6 +257,12 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
+/// By how much a low-pass of the friction channel reads a ramp too low: it comes out late by the time constant. Nothing
+/// where the slope in stick is not known.
+inline double lag_of_ramp(const Slip& slip) {
+  return std::isfinite(slip.stick_slope) ? slip.friction_low_pass * slip.stick_slope : 0;
+}
+
 /// What a first-order low-pass of the friction channel reads of a slip, in place: tau dy/dt = mu - y, exact for
 /// straight lines between values. From those a bent curve is off by a twelfth of the second difference on average,
 /// which is put on before. level: signed friction at break-away, up to which it rose at slip.stick_slope.
@@ -267,7 +273,7 @@ void read_through_low_pass(const Slip& slip, const T& level, std::span<T> mu) {
   T y = mu[0], before = mu[0];
   double previous = slip.time[0];
   if (slip.from_stick) {
-    y = level - tau * slip.stick_slope;
+    y = level - lag_of_ramp(slip);
     before = level;
     previous = slip.break_away_time;
   }
@@ -315,8 +321,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
       mu = effect.add_to_reading(q, at, mu);
     }
   });
-  // A ramp comes out late by the time constant.
-  return sensed ? T(mu - slip.friction_low_pass * slip.stick_slope) : mu;
+  return sensed ? T(mu - lag_of_ramp(slip)) : mu;
 }
 
 }  // namespace detail

@@ -40,7 +40,8 @@ Chart law_chart(const DrawnTrace& drawn);
 /// The same of steady points, each a symbol with its standard error; over the logarithm of the speed where they reach
 /// over two decades.
 Chart points_chart(const DrawnTrace& drawn);
-/// Relative errors ([D] Eq 5) over speed and time (points have none), and the map of residuals over cycle and phase of the slip.
+/// Relative errors ([D] Eq 5) over speed and time (points have none), and the map of residuals over cycle and phase of
+/// the slip.
 std::vector<Chart> error_charts(const DrawnTrace& drawn);
 /// Profile likelihoods of the parameters of a fit, where they were asked for.
 std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const std::string& id);
