@@ -122,8 +122,11 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
     trace.friction[i] += inertia * pull.bend[i];
     trace.friction_std_error[i] = std::hypot(pull.noise, inertia * pull.bend_std_error[i]);
   }
-  notes.push_back(fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms)",
-                              2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
+  notes.push_back(
+      fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms), "
+                  "which rounds break-away and re-stick; intervals do not hold that (1 % of a mass, 6 % "
+                  "of a decay factor in simulated sliders)",
+                  2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
   if (has_mass && !contradiction(spring, found).empty()) notes.push_back(contradiction(spring, found));
   if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));
 }
