@@ -302,11 +302,11 @@ TEST(FrictionLowPass, FollowsARampLateAndAStepWithinItsTime) {
   at.slip.friction_low_pass = tau;
   const double p[] = {0.5, 0.3};
   EXPECT_NEAR(break_away_level(model, p, at.slip), 0.5 - 3 * tau, 1e-12);
-  Steady unknown = at;
-  unknown.slip.stick_slope = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(break_away_level(model, p, unknown.slip), 0.5);
-  unknown.slip.friction_low_pass = 0;
-  EXPECT_EQ(break_away_level(model, p, unknown.slip), 0.5);
+  Slip unknown = at.slip;
+  unknown.stick_slope = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(break_away_level(model, p, unknown), 0.5);
+  unknown.friction_low_pass = 0;
+  EXPECT_EQ(break_away_level(model, p, unknown), 0.5);
   // From mu_s at break-away the steady value falls to mu_k at the first sample, on a straight line.
   const std::vector<double> mu = run(model, {0.5, 0.3}, at.slip);
   const double e = std::exp(-(at.time[0] - at.slip.break_away_time) / tau);
