@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "statistics/low_pass.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -81,17 +82,6 @@ std::size_t hop_of(std::size_t h) {
   return std::max<std::size_t>(1, h / 2);
 }
 
-/// A first-order low-pass, in place, from steady state. tau: [samples].
-void low_pass(std::vector<double>& signal, double tau) {
-  const double e = std::exp(-1 / tau), mean = tau * (1 - e);
-  double y = signal[0], before = signal[0];
-  for (double& x : signal) {
-    y = e * y + (1 - e) * before + (1 - mean) * (x - before);
-    before = x;
-    x = y;
-  }
-}
-
 Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const SampleRange& span, std::size_t h) {
   std::vector<double> velocity(span.size()), force(span.size());
   for (std::size_t k = 0; k < span.size(); ++k) {
@@ -100,8 +90,7 @@ Eigen::MatrixXd rows_of(const Motion& motion, const NormalForce& load, const Sam
     force[k] = load.at(i) * motion.friction[i];
   }
   // The balance is linear: behind a filter of friction it holds for the motion behind the same filter.
-  if (motion.friction_low_pass.any() && !velocity.empty())
-    low_pass(velocity, motion.friction_low_pass.value / motion.step);
+  if (motion.friction_low_pass.any()) low_pass(velocity, motion.step / motion.friction_low_pass.value);
   take_off_mean(velocity);  // a constant more in v_b is a straight line more in the balance
   take_off_mean(force);
   const double step = motion.step;

@@ -88,8 +88,7 @@ std::string contradiction(const SpringDrive& spring, double frequency_found) {
   if (!(frequency_found > 0) || std::abs(frequency_found / stated - 1) < kFrequencyAgrees) return {};
   return fmt::format(
       "spring: the steepest fall of the pull is that of {:.3g} Hz, stiffness and mass say {:.3g} Hz: one of the two, "
-      "or "
-      "the load, is another",
+      "or the load, is another",
       frequency_found / turn, stated / turn);
 }
 
@@ -124,8 +123,7 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
   }
   notes.push_back(
       fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms), "
-                  "which rounds break-away and re-stick; intervals do not hold that (1 % of a mass, 6 % "
-                  "of a decay factor in simulated sliders)",
+                  "which rounds break-away and re-stick: intervals do not hold that",
                   2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
   if (has_mass && !contradiction(spring, found).empty()) notes.push_back(contradiction(spring, found));
   if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));

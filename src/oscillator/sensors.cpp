@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "normal_stream.hpp"
+#include "statistics/low_pass.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
@@ -76,19 +77,6 @@ void high_pass(std::vector<double>& v, double rate, double corner, double drift)
     y = e * y + mean * (v[i] - before);
     before = v[i];
     v[i] = y;
-  }
-}
-
-/// First-order low-pass, exact for straight lines between samples.
-void low_pass(std::vector<double>& x, double rate, double corner) {
-  if (x.empty() || !(corner > 0)) return;
-  const double a = 2 * std::numbers::pi * corner / rate;
-  const double e = std::exp(-a), mean = -std::expm1(-a) / a;
-  double before = x[0], y = x[0];
-  for (double& value : x) {
-    y = e * y + (1 - e) * before + (1 - mean) * (value - before);
-    before = value;
-    value = y;
   }
 }
 
@@ -175,7 +163,7 @@ std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::ve
     const double filter[] = {sensors.force_bandwidth, sensors.force_damping};
     sense_record(ForceBandwidth{}, filter, motion, whole, mu);
   }
-  low_pass(mu, motion.rate, sensors.friction_low_pass);
+  if (sensors.friction_low_pass > 0) low_pass(mu, 2 * std::numbers::pi * sensors.friction_low_pass / motion.rate);
   if (sensors.friction_delay != 0) sense_record(ChannelDelay{}, &sensors.friction_delay, motion, whole, mu);
   return mu;
 }
@@ -196,7 +184,7 @@ std::vector<double> sensed_velocity(const SimulatedMotion& motion, const Sensors
     high_pass(v, motion.rate, corner, 2 * std::numbers::pi * corner * sensors.velocity_gain * away);
   }
   if (sensors.velocity_compression != 0) compress(v, sensors.velocity_compression);
-  low_pass(v, motion.rate, sensors.velocity_low_pass);
+  if (sensors.velocity_low_pass > 0) low_pass(v, 2 * std::numbers::pi * sensors.velocity_low_pass / motion.rate);
   for (double& value : v) value += sensors.velocity_zero;
   run_ahead(v, sensors.clock_drift);
   return v;
