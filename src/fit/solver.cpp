@@ -158,6 +158,9 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
   solver.function_tolerance = options.relative_cost;
   solver.parameter_tolerance = options.relative_step;
   solver.gradient_tolerance = 0;  // residuals have no common scale; steps and cost decide
+  // Where there are bounds Ceres would try every step by a line search first, which takes the Jacobian once more each
+  // time: half of all evaluations. A step that a bound cuts off and that does not lower the cost is taken back anyway.
+  solver.max_num_line_search_step_size_iterations = 0;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

@@ -1,11 +1,11 @@
 #include "local_derivatives.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
+#include "linear_algebra.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -25,9 +25,9 @@ class PolynomialWindow {
       double power = 1;
       for (Eigen::Index k = 0; k <= degree; ++k, power *= abscissa(static_cast<double>(i))) powers(i, k) = power;
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
-    basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(count_, degree + 1);
-    inverse_ = powers.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd factor = inverse_triangular_factor(powers);
+    basis_ = powers * factor;
+    inverse_ = factor * basis_.transpose();
   }
 
   /// Squares that the polynomial leaves of samples, over its degrees of freedom.
