@@ -91,18 +91,24 @@ double slow_design(const Level& level, const Trial& trial) {
   return largest;
 }
 
-/// The second predicts held-out cycles better, or as well with fewer parameters.
+/// The second predicts held-out cycles better, or as well with fewer effects, or with as many and fewer parameters.
 bool is_better(const DiagnosisContext& context, const Level& level, const Trial& first, const Trial& second) {
   if (!second.usable || !first.usable) return second.usable;
   const double difference = first.held_out_squares - second.held_out_squares;
-  const double noise = std::min(noise_of(level, first), noise_of(level, second)) *
-                       slow_design(level, first.p.size() > second.p.size() ? first : second);
+  const std::size_t effects = first.model.effects().size(), other_effects = second.model.effects().size();
+  const double slow = slow_design(level, first.p.size() > second.p.size() ? first : second);
+  // An effect that another law does without has to be clearer than a law.
+  const double sure = effects == other_effects
+                          ? std::max(limits::kDistinguishable, limits::kDistinguishableInSlowNoise * slow)
+                          : limits::kDistinguishable * slow;
   // A longer ladder must earn every rung that the other does without.
   const std::size_t more = std::max(first.p.size(), second.p.size()) - std::min(first.p.size(), second.p.size());
   const double least = std::max(limits::kDistinguishableSize, limits::kSizeOfParameter * static_cast<double>(more)) *
                        context.noise_squares();
-  const bool apart = std::abs(difference) > std::max(limits::kDistinguishable * noise, least);
-  return apart || more == 0 ? difference > 0 : second.p.size() < first.p.size();
+  const double noise = std::min(noise_of(level, first), noise_of(level, second));
+  if (std::abs(difference) > std::max(sure * noise, least)) return difference > 0;
+  if (effects != other_effects) return other_effects < effects;
+  return more == 0 ? difference > 0 : second.p.size() < first.p.size();
 }
 
 /// A finished ladder leaves nothing, is no longer and does as well.
