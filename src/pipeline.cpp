@@ -37,7 +37,10 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   out.segmentation = find_cycles(out.motion);
   exclude(options.selection, out.motion, out.segmentation);
-  if (!out.motion.is_points()) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
+  if (out.motion.kind == RecordKind::force_only) out.force_statistics = force_statistics(out.motion);
+  if (out.motion.kind == RecordKind::motion_only) out.friction_levels = friction_levels(out.motion, out.segmentation);
+  if (!out.motion.is_points() && !out.force_statistics)
+    out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 

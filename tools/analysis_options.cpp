@@ -93,12 +93,27 @@ double speed_from(const std::string& text, const Condition& radius) {
                    "give --radius as well, as one value, or a rotational speed as in 4rpm");
 }
 
+/// Whether --columns, of either file, names the displacement of a block.
+bool names_position(const Settings& s) {
+  const auto names = [](const std::vector<std::string>& columns) {
+    return std::any_of(columns.begin(), columns.end(), [](const std::string& text) {
+      return text.starts_with("x_b=") || text.find(",x_b=") != std::string::npos;
+    });
+  };
+  return names(s.columns) || names(s.second_columns);
+}
+
 std::optional<RecordKind> kind_from(const Settings& s) {
   const auto refuse_beside = [&](const char* option, RecordKind kind) {
     if (s.kind.empty() || s.kind == to_string(kind)) return;
     throw UsageError(fmt::format("{} says --kind {}, and --kind {} another", option, to_string(kind), s.kind));
   };
   if (s.never_sticks) refuse_beside("--never-sticks", RecordKind::sliding);
+  const bool of_motion = !s.damping.empty() || !s.rubs_on.empty();
+  if (of_motion) refuse_beside("--damping or --rubs-on", RecordKind::motion_only);
+  if (of_motion || s.kind == to_string(RecordKind::motion_only)) return RecordKind::motion_only;
+  // With a displacement the other columns show whether it is the motion alone.
+  if (names_position(s)) return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
   if (!s.stiffness.empty()) refuse_beside("--stiffness", RecordKind::spring_slider);
   if (s.never_sticks && !s.stiffness.empty())
     throw UsageError("--never-sticks and --stiffness say two kinds of record");
@@ -108,13 +123,16 @@ std::optional<RecordKind> kind_from(const Settings& s) {
   return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
 }
 
-/// The drive of a spring slider: its speed is a linear one.
+/// The spring and what hangs on it; the speed of the drive of a spring slider is a linear one.
 SpringDrive spring_from(const Settings& s) {
   const std::string source = "command line";
   SpringDrive spring;
-  if (!s.speed.empty()) spring.velocity = {positive(s.speed, Quantity::velocity, "--speed"), source};
+  if (!s.speed.empty() && kind_from(s) == RecordKind::spring_slider)
+    spring.velocity = {positive(s.speed, Quantity::velocity, "--speed"), source};
   if (!s.stiffness.empty()) spring.stiffness = {positive(s.stiffness, Quantity::stiffness, "--stiffness"), source};
   if (!s.mass.empty()) spring.mass = {positive(s.mass, Quantity::mass, "--mass"), source};
+  if (!s.damping.empty()) spring.damping = {positive(s.damping, Quantity::damping, "--damping"), source};
+  if (!s.rubs_on.empty()) spring.counterface = s.rubs_on == "base" ? Counterface::base : Counterface::ground;
   return spring;
 }
 
@@ -215,7 +233,7 @@ IdentifyOptions options_from(const Settings& s) {
   read_reading(s, options.read);
   options.motion.trim = s.trim;
   options.read.kind = kind_from(s);
-  if (options.read.kind == RecordKind::spring_slider) options.read.spring = spring_from(s);
+  options.read.spring = spring_from(s);
   if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
   if (options.read.kind && options.read.kind != RecordKind::stick_slip && !s.stick_below.empty())
     throw UsageError("--stick-below is for records that stick and slip, and excludes --never-sticks and other kinds");

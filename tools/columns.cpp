@@ -109,7 +109,7 @@ Trial try_columns(const ColumnListing& listing, const std::string& path, double 
 std::string missing_columns(const ColumnListing& listing) {
   const std::map<std::string, std::string> needs = {{"time", "time (or the rate of sampling: --rate 20kHz)"},
                                                     {"friction", "friction (mu, force or torque)"},
-                                                    {"velocity", "velocity (v_b, v_r or speed)"}};
+                                                    {"velocity", "velocity (v_b, v_r, x_b or speed)"}};
   std::vector<std::string> missing;
   for (const std::string& what : listing.missing) missing.push_back(needs.at(what));
   std::string text = "\nA law needs time, friction and velocity. Not recognised here: " + listed(missing) + "\n";

@@ -58,7 +58,7 @@ ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions&
               [&](const std::string& folder) { write_csv_folder(folder, result); }});
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  if (result.analysed && fitted) return ExitStatus::done;
+  if ((result.analysed && fitted) || result.force_statistics) return ExitStatus::done;
   std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
   print_error(input.trace.path + ": the analysis could not be done: " + reason);
   return ExitStatus::failed;

@@ -25,8 +25,9 @@ void add_input_options(const Command& app, Settings& s) {
   input("--with-units", s.second_units, "--units of the second file").one_value_each();
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
 
-  input("--kind", s.kind,
-        "What was recorded: stick-slip, sliding (never sticks: every sample counts), points, spring-slider")
+  input(
+      "--kind", s.kind,
+      "What was recorded, stick-slip, sliding, points, spring-slider, motion-only or force-only (identify help kinds)")
       .one_of(tribofit::record_kind_names());
   app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group("Reading");
   input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
@@ -36,11 +37,15 @@ void add_input_options(const Command& app, Settings& s) {
 
 void add_spring_options(const Command& app, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* help) {
-    app.add_option(name, value, help).group("Spring slider");
+    return app.add_option(name, value, help).group("Mass on a spring");
   };
-  add("--stiffness", s.stiffness, "Of the spring whose pull is all that was recorded, 168N/m; --speed is its drive's");
+  add("--stiffness", s.stiffness,
+      "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
   add("--mass", s.mass,
       "That the spring pulls, 30.7g: its inertia is taken off the pull (else sensor-inertia finds it)");
+  add("--damping", s.damping, "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
+  add("--rubs-on", s.rubs_on, "What the mass rubs on there: ground or base (else as the motion shows it)")
+      .one_of({"ground", "base"});
 }
 
 void add_model_options(const Command& app, Settings& s) {

@@ -11,9 +11,9 @@ struct Settings {
   std::string second_file;
   std::vector<std::string> second_columns, second_units;
   std::vector<std::string> continued_in;
-  std::vector<std::string> confirm;  // diagnose: runs held back
-  std::string kind;                  // of the record; empty: found
-  std::string stiffness, mass;       // of a spring slider
+  std::vector<std::string> confirm;               // diagnose: runs held back
+  std::string kind;                               // of the record; empty: found
+  std::string stiffness, mass, damping, rubs_on;  // of a mass on a spring
   bool trim = true;
   bool never_sticks = false;
   std::string stick_below;

@@ -54,11 +54,28 @@ class Assembler {
       run_.kind = RecordKind::spring_slider;
       run_.kind_source = "the pull of a spring was recorded";
     }
+    settle_kind_without_friction();
     trace_.kind = run_.kind;
     trace_.kind_source = run_.kind_source;
     trace_.spring = options_.spring;
     if (run_.has(Channel::std_error) && !run_.is_points()) {
       trace_.notes.emplace_back("standard errors of friction are used for points only");
+    }
+  }
+
+  /// The motion alone, or friction alone, where nothing else of the file could be the other.
+  void settle_kind_without_friction() {
+    const bool stiffness_alone = run_.kind == RecordKind::spring_slider;  // which --stiffness says of both
+    if (run_.has(Channel::x_b) && !run_.has_friction() && (!run_.kind || stiffness_alone)) {
+      run_.kind = RecordKind::motion_only;
+      run_.kind_source = "no friction was recorded";
+    }
+    if (!run_.has(Channel::x_b) && run_.has(Channel::speed)) run_[Channel::x_d].clear();  // a stage is not the disc
+    const bool moves = run_.has_velocity() || run_.has_position() || run_.has(Channel::speed);
+    const bool all_used = run_.second_path.empty() && run_.columns.used.size() == run_.column_names.size();
+    if (!run_.kind && run_.has_friction() && !moves && all_used && !options_.conditions.speed.known()) {
+      run_.kind = RecordKind::force_only;
+      run_.kind_source = "no motion was recorded";
     }
   }
 
@@ -184,6 +201,10 @@ class Assembler {
 
   void set_friction() {
     if (run_.is_points()) set_std_error();
+    if (run_.kind == RecordKind::motion_only) {  // follows from the motion, kinematics/ makes it
+      if (!run_.has(Channel::x_b)) refuse_columns(run_, "no displacement column (x_b)");
+      return;
+    }
     const bool spring = run_.has(Channel::spring) && run_.kind == RecordKind::spring_slider;
     if (spring) {
       trace_.friction = std::move(run_[Channel::spring]);
@@ -270,11 +291,16 @@ class Assembler {
   }
 
   void set_velocity() {
-    if (run_.kind == RecordKind::spring_slider) {  // follows from the pull, kinematics/ makes it
-      trace_.velocity_kind = VelocityKind::relative;
+    const bool block = run_.has(Channel::v_b), relative = run_.has(Channel::v_r);
+    const bool of_spring = run_.kind == RecordKind::spring_slider, of_motion = run_.kind == RecordKind::motion_only;
+    trace_.velocity_kind = VelocityKind::relative;
+    if (of_spring || run_.kind == RecordKind::force_only) return;     // follows from the pull, or not at all
+    if (of_motion || (run_.has_position() && !block && !relative)) {  // kinematics/ makes it of the displacement
+      if (!of_motion && !run_.has(Channel::x_d)) trace_.velocity_kind = VelocityKind::block;
+      trace_.block_position = std::move(run_[Channel::x_b]);
+      trace_.drive_position = std::move(run_[Channel::x_d]);
       return;
     }
-    const bool block = run_.has(Channel::v_b), relative = run_.has(Channel::v_r);
     if (!block && !relative) {
       set_fixed_block();
       return;
@@ -320,7 +346,7 @@ class Assembler {
     };
     const bool constant_speed = said("v_b") && options_.conditions.speed.known();
     if (!run_.has(Channel::speed) && !constant_speed) {
-      refuse_columns(run_, "no velocity column (v_b, v_r, or the disc's speed for a fixed block)");
+      refuse_columns(run_, "no velocity column (v_b, v_r, x_b, or the disc's speed for a fixed block)");
     }
     trace_.velocity_kind = VelocityKind::fixed_block;
     for (const Step& step : trace_.steps) radius_of(step, "the sliding velocity of a fixed block");

@@ -51,6 +51,11 @@ const std::vector<Names>& names_of_the_field() {
        {"stderror", "standarderror", "stderr", "muerror", "mustderror", "frictionstderror", "uncertainty", "sem",
         "se"}},
       {Channel::spring, {"spring", "springforce", "springpull", "pull", "fspring", "federkraft"}},
+      {Channel::x_b,
+       {"xb", "blockdisplacement", "blockposition", "sliderdisplacement", "sliderposition", "massdisplacement"}},
+      {Channel::x_d,
+       {"xd", "drivedisplacement", "driveposition", "basedisplacement", "baseposition", "stagedisplacement",
+        "stageposition", "carriagedisplacement", "carriageposition"}},
       {Channel::step, {kStepColumn, "recipestep", "stepnumber", "segment"}},
   };
   return table;
@@ -145,7 +150,7 @@ std::span<const Quantity> quantities(Channel channel) {
   static constexpr std::array<Quantity, 1> time = {Quantity::time}, mu = {Quantity::dimensionless},
                                            force = {Quantity::force}, torque = {Quantity::torque},
                                            speed = {Quantity::angular_velocity}, angle = {Quantity::angle},
-                                           temperature = {Quantity::temperature};
+                                           temperature = {Quantity::temperature}, length = {Quantity::length};
   static constexpr std::array friction = {Quantity::dimensionless, Quantity::force, Quantity::torque};
   static constexpr std::array pull = {Quantity::force, Quantity::dimensionless};
   switch (channel) {
@@ -171,6 +176,9 @@ std::span<const Quantity> quantities(Channel channel) {
       return friction;
     case Channel::spring:
       return pull;
+    case Channel::x_b:
+    case Channel::x_d:
+      return length;
     case Channel::step:
       break;
   }
@@ -178,14 +186,14 @@ std::span<const Quantity> quantities(Channel channel) {
 }
 
 std::string_view usual_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {"s",   "1",   "mm/s", "mm/s", "N", "Nm", "N",
-                                                                        "rpm", "deg", "degC", "1",    "N", ""};
+  static constexpr std::array<std::string_view, channel_count> units = {
+      "s", "1", "mm/s", "mm/s", "N", "Nm", "N", "rpm", "deg", "degC", "1", "N", "mm", "mm", ""};
   return units[index_of(channel)];
 }
 
 std::string_view si_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {"s",     "1",   "m/s",  "m/s", "N", "N m", "N",
-                                                                        "rad/s", "rad", "degC", "1",   "N", ""};
+  static constexpr std::array<std::string_view, channel_count> units = {
+      "s", "1", "m/s", "m/s", "N", "N m", "N", "rad/s", "rad", "degC", "1", "N", "m", "m", ""};
   return units[index_of(channel)];
 }
 

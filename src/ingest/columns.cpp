@@ -48,12 +48,9 @@ class Finder {
     }
     refuse_two_roles();
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
-    if (is_spring_slider_) {
-      choose_one({Channel::spring, Channel::force, Channel::mu, Channel::torque});
-    } else {
-      choose_one({Channel::mu, Channel::force, Channel::torque, Channel::spring});
-    }
-    choose_one({Channel::v_b, Channel::v_r});
+    if (is_spring_slider_) choose_one({Channel::spring, Channel::force, Channel::mu, Channel::torque});
+    choose_one({Channel::mu, Channel::force, Channel::torque, Channel::spring});
+    choose_one({Channel::v_b, Channel::v_r, Channel::x_b});
     settle_clocks();
     for (std::size_t i = 0; i < channel_count; ++i) {
       if (taken_[i]) convert(static_cast<Channel>(i), *taken_[i]);
@@ -339,6 +336,8 @@ class Finder {
         return true;
       case Channel::v_b:
       case Channel::v_r:
+      case Channel::x_b:
+      case Channel::x_d:
       case Channel::speed:
       case Channel::angle:
         break;

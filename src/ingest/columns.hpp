@@ -12,8 +12,24 @@
 
 namespace tribofit {
 
-enum class Channel { time, mu, v_b, v_r, force, torque, load, speed, angle, temperature, std_error, spring, step };
-constexpr std::size_t channel_count = 13;
+enum class Channel {
+  time,
+  mu,
+  v_b,
+  v_r,
+  force,
+  torque,
+  load,
+  speed,
+  angle,
+  temperature,
+  std_error,
+  spring,
+  x_b,
+  x_d,
+  step
+};
+constexpr std::size_t channel_count = 15;
 constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);
 }

@@ -73,6 +73,11 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
     found = find(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
     found.offset = -found.offset;
   }
+  if (!run.has_friction() && !other.has_friction()) {
+    run.notes.push_back(overlap ? "the times of the two files were taken as written"
+                                : "the two files were taken to start together");
+    return overlap ? as_written : 0;
+  }
   if (found.events < 3) {
     run.warnings.push_back(std::string(find ? "the two files show too few break-aways to compare their clocks; "
                                             : "the clocks of the two files were not compared; ") +
@@ -131,7 +136,8 @@ void join(FileRecord& run, FileRecord other, const ClockOffsetFinder& find) {
     std::swap(run, other);
     run.notes.push_back("the friction is in the second file, whose time was kept");
   }
-  for (const Channel channel : {Channel::mu, Channel::force, Channel::torque, Channel::v_b, Channel::v_r}) {
+  for (const Channel channel :
+       {Channel::mu, Channel::force, Channel::torque, Channel::v_b, Channel::v_r, Channel::x_b, Channel::x_d}) {
     if (!run.has(channel) || !other.has(channel)) continue;
     throw InputError(fmt::format("holds {} like {}", to_string(channel), run.path),
                      "two instruments must record different channels; files of one run are continued, not joined",

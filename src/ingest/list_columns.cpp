@@ -72,6 +72,10 @@ std::string likely_channel(const RawColumn& column) {
   if (has_unit && find_unit(text, Quantity::angular_velocity)) return "speed";
   if (has_unit && unit->quantity == Quantity::torque) return "torque";
   if (has_unit && unit->quantity == Quantity::temperature) return "temperature";
+  if (has_unit && unit->quantity == Quantity::length) {
+    if (contains_any(name.base, {"base", "drive", "stage", "carriage"})) return "x_d";
+    if (contains_any(name.base, {"displ", "block", "slider", "mass", "vib", "laser"})) return "x_b";
+  }
   if (has_unit && unit->quantity == Quantity::velocity)
     return contains_any(name.base, {"block", "vib", "laser"}) ? "v_b" : "v_r";
   if (has_unit && unit->quantity == Quantity::force) {
@@ -137,9 +141,9 @@ bool select(std::initializer_list<const char*> channels, ColumnListing& listing)
         return c.channel == channel && c.is_likely == likely;
       });
       if (column == listing.columns.end()) continue;
-      const bool needs_unit = channel == "v_b" || channel == "v_r" || channel == "speed";
+      const bool needs_unit = channel == "v_b" || channel == "v_r" || channel == "speed" || channel == "x_b";
       const bool bare = needs_unit && column->unit.empty() && !names_rpm(parse_column_name(column->name).base);
-      const std::string unit = !bare ? "" : channel == "speed" ? "rpm" : "mm/s";
+      const std::string unit = !bare ? "" : channel == "speed" ? "rpm" : channel == "x_b" ? "mm" : "mm/s";
       const std::string request = column->request + (bare ? ":" + unit : "");
       if (bare) listing.assumed.push_back(unit + " of " + channel);
       listing.selected.emplace(channel, request);
@@ -153,7 +157,8 @@ bool select(std::initializer_list<const char*> channels, ColumnListing& listing)
 void select_trace(ColumnListing& listing) {
   if (!select({"time"}, listing) && listing.intervals.empty()) listing.missing.emplace_back("time");
   if (!select({"mu", "force", "torque"}, listing)) listing.missing.emplace_back("friction");
-  if (!select({"v_b", "v_r", "speed"}, listing)) listing.missing.emplace_back("velocity");
+  if (!select({"v_b", "v_r", "x_b", "speed"}, listing)) listing.missing.emplace_back("velocity");
+  select({"x_d"}, listing);
   select({"load"}, listing);
   const bool tabulated = std::all_of(listing.columns.begin(), listing.columns.end(),
                                      [](const ListedColumn& column) { return column.count <= kMostTabulated; });

@@ -8,7 +8,8 @@ namespace tribofit {
 namespace {
 
 // In the order of RecordKind.
-constexpr std::array<std::string_view, 4> kNames = {"stick-slip", "sliding", "points", "spring-slider"};
+constexpr std::array<std::string_view, 6> kNames = {"stick-slip",    "sliding",     "points",
+                                                    "spring-slider", "motion-only", "force-only"};
 
 }  // namespace
 

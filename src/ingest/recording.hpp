@@ -51,6 +51,7 @@ struct FileRecord {
     return has(Channel::mu) || has(Channel::force) || has(Channel::torque) || has(Channel::spring);
   }
   bool has_velocity() const { return has(Channel::v_b) || has(Channel::v_r); }
+  bool has_position() const { return has(Channel::x_b) || has(Channel::x_d); }
   std::size_t size() const { return channels[index_of(Channel::time)].size(); }
   /// Where a row came from, for messages.
   InputLocation location(std::size_t row, Channel channel) const;

@@ -189,6 +189,14 @@ inline constexpr double kFrequencyAgrees = 0.2;
 /// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
 inline constexpr double kUnsure = 2.5;
 inline constexpr std::size_t kBesideUnsure = 2;
+/// Of the largest velocity, from which a swing counts for the level of friction in its direction: slower, friction is
+/// that of the turning point.
+inline constexpr double kSlidesFreely = 0.3;
+/// Of the largest velocity, beyond which a mass that turns round within two windows has not rested between.
+inline constexpr double kTurnsRound = 0.1;
+/// Power that friction takes in the wrong direction from one motion over that from another, up to which the first is
+/// the sliding: of the true one only the noise at its reversals is left.
+inline constexpr double kAlikePowers = 0.5;
 
 // ---- faults of the recording
 

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "disc_ripple.hpp"
+#include "displacement.hpp"
+#include "force_alone.hpp"
 #include "motion_channels.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
@@ -16,6 +18,25 @@
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit::kinematics {
+
+namespace {
+
+/// Makes velocity, or friction, or both, of the channels from which they follow. False where they were recorded.
+bool make_missing_channels(Trace& trace, std::vector<std::string>& notes) {
+  if (trace.kind == RecordKind::spring_slider) {
+    make_block_of_spring(trace, notes);
+  } else if (trace.kind == RecordKind::motion_only) {
+    make_friction_of_motion(trace, notes);
+  } else if (trace.velocity.empty() && !(trace.block_position.empty() && trace.drive_position.empty())) {
+    make_velocity_of_displacement(trace, notes);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
     : trace_(std::move(trace)), instruments_(instruments), options_(options) {
   kinematics::require_channels(trace_);
@@ -29,7 +50,7 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
 /// What the recorder did: its range and its gaps.
 void MotionStages::look_at_recording() {
   spoilt_.emplace(trace_);
-  spoilt_->add_unsure(kinematics::unsure_velocities(trace_));
+  spoilt_->add_unsure(kinematics::unsure_samples(trace_));
   range_ends_ = kinematics::range_ends(trace_, chunks_of(trace_.friction), chunks_of(trace_.velocity));
   steps_ = {kinematics::find_resolution(trace_.friction), kinematics::find_resolution(trace_.velocity),
             range_ends_.friction[1].at - range_ends_.friction[0].at, range_ends_.largest_velocity};
@@ -202,13 +223,11 @@ namespace tribofit {
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
+  if (trace.kind == RecordKind::force_only) return kinematics::motion_of_force(std::move(trace));
   std::vector<std::string> notes;
   MotionOptions own = options;
-  if (trace.kind == RecordKind::spring_slider) {
-    kinematics::make_block_of_spring(trace, notes);
-    // Nothing of these is between the pull and its slope.
-    own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;
-  }
+  const bool was_made = kinematics::make_missing_channels(trace, notes);
+  if (was_made) own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;  // of a vibrometer
   kinematics::MotionStages stages(std::move(trace), instruments, own);
   stages.look_at_recording();
   stages.correct_declared();

@@ -6,6 +6,7 @@
 
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 
 // The stages of a motion that say what its channels are worth.
 
@@ -40,14 +41,17 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
 }
 
 void MotionStages::check_health() {
-  const bool velocity_was_measured = motion_.velocity_kind != VelocityKind::fixed_block;
+  const bool velocity_was_measured =
+      motion_.velocity_kind != VelocityKind::fixed_block && motion_.velocity_std_error.empty();
   const std::span<const double> velocity =
       velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
   motion_.health = {
       std::move(clipping_),
       std::move(drop_outs_),
       kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
-      kinematics::check_bandwidth(motion_, velocity, low_pass_),
+      motion_.kind == RecordKind::motion_only
+          ? HealthItem{health_check::kBandwidth, HealthItem::Status::ok, "friction and velocity were smoothed alike"}
+          : kinematics::check_bandwidth(motion_, velocity, low_pass_),
       check_delay(),
       kinematics::check_revolutions(motion_),
       kinematics::check_speed_ripple(motion_, ripple_),

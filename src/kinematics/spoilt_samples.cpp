@@ -39,8 +39,9 @@ SampleSpan longest_still_of(std::span<const double> friction, std::span<const do
 SpoiltSamples::SpoiltSamples(Trace& trace) : size_(trace.size()) {
   still_ = longest_still_of(trace.friction, trace.velocity);
   // Both as recorded: what one shows says what the other is.
-  const ChannelFaults friction = find_channel_faults(trace.friction, trace.velocity);
-  const ChannelFaults velocity = find_channel_faults(trace.velocity, trace.friction);
+  const bool made = trace.kind == RecordKind::motion_only, made_velocity = !trace.velocity_std_error.empty();
+  const ChannelFaults friction = made ? ChannelFaults{} : find_channel_faults(trace.friction, trace.velocity);
+  const ChannelFaults velocity = made_velocity ? ChannelFaults{} : find_channel_faults(trace.velocity, trace.friction);
   clean(trace.friction, friction, "friction", SampleFault::friction);
   clean(trace.velocity, velocity, "velocity", SampleFault::velocity);
   const auto clean_markers = [&](std::vector<double>& channel, const char* name) {

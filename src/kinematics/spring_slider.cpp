@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "limits.hpp"
+#include "smoothing.hpp"
 #include "statistics/local_derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -35,51 +34,6 @@ double newtons_per_unit(Trace& trace, std::vector<std::string>& notes) {
   if (load.known()) return load.value;
   throw InputError("the pull of the spring is given over the load, which is not known",
                    "give --load 0.3N, or --mass 30.7g where the slider presses by its weight", {trace.path, 0, ""});
-}
-
-/// Half of the samples over which derivatives are taken where the pull has this natural frequency [rad/s].
-std::size_t half_window(double frequency, double step) {
-  const double samples = kPartOfPeriod * 2 * std::numbers::pi / (frequency * step);
-  return std::max(kShortestHalf, static_cast<std::size_t>(std::round(samples)));
-}
-
-/// The steepest fall of the pull as a half period of a sine [rad/s], which it is in a slip and in free oscillation: a
-/// pull that falls by 2 A falls at A omega at the most.
-double frequency_of_steepest_fall(std::span<const double> pull, double step, std::size_t half) {
-  const std::vector<double> slope = savitzky_golay_slope(pull, step, half);
-  const auto steepest = static_cast<std::size_t>(std::min_element(slope.begin(), slope.end()) - slope.begin());
-  std::size_t begin = steepest, end = steepest;
-  while (begin > 0 && slope[begin - 1] < 0) --begin;
-  while (end + 1 < slope.size() && slope[end + 1] < 0) ++end;
-  const double amplitude = 0.5 * (pull[begin] - pull[end]);
-  return amplitude > 0 ? std::max(0.0, -slope[steepest] / amplitude) : 0;
-}
-
-/// The natural frequency as the pull shows it [rad/s]: of windows that are not far wider than the frequency found over
-/// them calls for, that over which it changes least with the window. Narrower ones see noise, wider ones round the
-/// fall. 0 where nothing falls.
-double frequency_of_falls(std::span<const double> pull, double step) {
-  constexpr double kWider = 1.15;
-  constexpr std::size_t kTooWide = 2;
-  const std::size_t widest = std::min(kWidestHalf, pull.size() / 20);
-  std::vector<double> frequencies;
-  std::vector<std::size_t> halves;
-  for (std::size_t half = kShortestHalf; half <= widest;
-       half = std::max(half + 1, static_cast<std::size_t>(kWider * static_cast<double>(half)))) {
-    frequencies.push_back(frequency_of_steepest_fall(pull, step, half));
-    halves.push_back(half);
-    if (!(frequencies.back() > 0)) break;
-  }
-  double found = frequencies.empty() ? 0 : frequencies.front(), least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k + 1 < frequencies.size(); ++k) {
-    if (!(frequencies[k + 1] > 0) || halves[k] > kTooWide * half_window(frequencies[k], step)) continue;
-    const double change = std::abs(std::log(frequencies[k + 1] / frequencies[k])) +
-                          std::abs(std::log(frequencies[k] / frequencies[k - 1]));
-    if (change >= least) continue;
-    least = change;
-    found = frequencies[k];
-  }
-  return found;
 }
 
 /// What the falls of the pull say of the stated stiffness and mass; empty where they agree.
@@ -133,14 +87,16 @@ double usual_error(const std::vector<double>& errors) {
   return errors.empty() ? 0 : median(errors);
 }
 
-std::vector<SampleSpan> unsure_velocities(const Trace& trace) {
+std::vector<SampleSpan> unsure_samples(const Trace& trace) {
   std::vector<SampleSpan> spans;
-  const std::vector<double>& error = trace.velocity_std_error;
-  if (error.empty()) return spans;
-  const double limit = kUnsure * usual_error(error);
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    if (error[i] <= limit) continue;
-    const std::size_t begin = i - std::min(i, kBesideUnsure), end = std::min(error.size(), i + kBesideUnsure + 1);
+  const std::vector<double>&v = trace.velocity_std_error, &friction = trace.friction_std_error;
+  if (v.empty()) return spans;
+  const double limit = kUnsure * usual_error(v);
+  const bool of_motion = trace.kind == RecordKind::motion_only;
+  const double of_friction = of_motion ? kUnsure * usual_error(friction) : 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (v[i] <= limit && (!of_motion || friction[i] <= of_friction)) continue;
+    const std::size_t begin = i - std::min(i, kBesideUnsure), end = std::min(v.size(), i + kBesideUnsure + 1);
     if (!spans.empty() && spans.back().end >= begin) {
       spans.back().end = end;
     } else {

@@ -87,7 +87,20 @@ Facts result_facts(const Identification& result) {
 
 /// Of what the motion shows.
 const char* heading_of(RecordKind kind) {
-  return kind == RecordKind::points ? "Points" : kind == RecordKind::sliding ? "Sliding" : "Stick-slip";
+  switch (kind) {
+    case RecordKind::points:
+      return "Points";
+    case RecordKind::sliding:
+      return "Sliding";
+    case RecordKind::force_only:
+      return "Friction alone";
+    case RecordKind::motion_only:
+      return "Motion";
+    case RecordKind::stick_slip:
+    case RecordKind::spring_slider:
+      break;
+  }
+  return "Stick-slip";
 }
 
 }  // namespace
@@ -102,6 +115,7 @@ std::string verdict(const Identification& result) {
 Suggestion next_command(const Identification& result, const ReportOptions& options) {
   const auto same_with = [&](const std::vector<std::string>& more) { return command_line(options, more, result.path); };
   const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
+  if (result.force_statistics) return {"to see what else the file holds", command_line({"columns"}, {result.path})};
   if (!result.analysed || is_unusable(result)) {
     if (result.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim")) {
       return {"to see whether the run-up that was left out shows more", same_with({"--no-trim"})};

@@ -7,6 +7,7 @@
 
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
+#include "measured_friction.hpp"
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/version.hpp"
@@ -159,6 +160,11 @@ Json conditions_of(const Motion& motion) {
     json["spring"] = object("drive_mm_s", motion.spring.velocity.value / kMillimetre, "stiffness_N_per_mm",
                             motion.spring.stiffness.value * kMillimetre, "mass_kg", motion.spring.mass.value);
   }
+  if (motion.kind == RecordKind::motion_only) {
+    json["spring"] = object("stiffness_N_per_m", motion.spring.stiffness.value, "mass_kg", motion.spring.mass.value,
+                            "damping_N_s_per_m", motion.spring.damping.value, "rubs_on",
+                            motion.spring.counterface == Counterface::base ? "base" : "ground");
+  }
   if (motion.steps.size() < 2) return json;
   json["steps"] = list_of(motion.steps, [](const Step& step) {
     Json item = object("label", step.label, "begin", step.begin, "end", step.end);
@@ -192,8 +198,11 @@ std::string text_of(const Json& json) {
 }
 
 Json record_json(const Identification& trace, const JsonOptions& options) {
-  return object("tool", tool_json(options), "trace", trace_json(trace), "conditions", conditions_of(trace.motion),
-                "health", health_json(trace.motion), "stick_slip", stick_slip_json(trace));
+  Json json = object("tool", tool_json(options), "trace", trace_json(trace), "conditions", conditions_of(trace.motion),
+                     "health", health_json(trace.motion), "stick_slip", stick_slip_json(trace));
+  if (trace.force_statistics) json["force"] = force_json(*trace.force_statistics);
+  if (trace.friction_levels) json["friction_over_velocity"] = friction_levels_json(*trace.friction_levels);
+  return json;
 }
 
 Json identification_json(const Identification& r, const JsonOptions& options) {

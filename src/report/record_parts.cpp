@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "measured_friction.hpp"
 #include "numbers.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
@@ -101,6 +102,17 @@ std::string spring_text(const Condition& known, double unit, std::string_view na
   return fmt::format("{} {} ({})", brief(known.value / unit), name, known.source);
 }
 
+/// What a mass on a spring rubs on, and what holds it.
+Facts mass_facts(const Motion& motion) {
+  const SpringDrive& s = motion.spring;
+  const bool base = s.counterface == Counterface::base;
+  return {{"moving mass", spring_text(s.mass, 1, "kg")},
+          {"spring", spring_text(s.stiffness, 1, "N/m")},
+          {"damping", spring_text(s.damping, 1, "N s/m")},
+          {"rubs on", base ? "the moving base: v_r = x' - y'" : "ground that stands still: v_r = x'"},
+          {"load", condition(motion, &Conditions::load, 1, "N")}};
+}
+
 Facts spring_facts(const Motion& motion) {
   constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
   return {{"drive", spring_text(motion.spring.velocity, kMillimetre, "mm/s")},
@@ -111,6 +123,8 @@ Facts spring_facts(const Motion& motion) {
 
 Facts condition_facts(const Motion& motion) {
   if (motion.kind == RecordKind::spring_slider) return spring_facts(motion);
+  if (motion.kind == RecordKind::motion_only) return mass_facts(motion);
+  if (motion.kind == RecordKind::force_only) return {{"load", condition(motion, &Conditions::load, 1, "N")}};
   return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
           {"disc speed", speed_text(motion)},
           {"load", condition(motion, &Conditions::load, 1, "N")}};
@@ -165,6 +179,7 @@ std::string record_sentence(const Identification& r) {
 
 Facts stick_slip_facts(const Identification& r) {
   if (r.motion.is_points()) return point_facts(r.motion);
+  if (r.force_statistics) return force_facts(*r.force_statistics, friction_unit(r.motion));
   const Segmentation& s = r.segmentation;
   Facts facts = {{"cycles", cycles_text(s)}};
   if (s.kind != MotionKind::always_sticking) facts.emplace_back("in slip", slip_text(r));
@@ -194,6 +209,7 @@ Facts stick_slip_facts(const Identification& r) {
     add_levels_of_pull(r, facts);
     facts.emplace_back("regime", regime_text(r));
   }
+  if (r.friction_levels) add_friction_levels(*r.friction_levels, friction_unit(r.motion), facts);
   if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
   return facts;
 }

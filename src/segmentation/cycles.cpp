@@ -317,13 +317,19 @@ Segmentation slips_of_points(const Motion& motion) {
 }  // namespace
 
 RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation) {
-  if (motion.kind == RecordKind::points || motion.kind == RecordKind::spring_slider) return *motion.kind;
+  const bool shows_in_motion =
+      !motion.kind || motion.kind == RecordKind::stick_slip || motion.kind == RecordKind::sliding;
+  if (!shows_in_motion) return *motion.kind;
   return segmentation.kind == MotionKind::always_slipping ? RecordKind::sliding : RecordKind::stick_slip;
 }
 
 Segmentation find_cycles(const Motion& motion) {
   if (motion.is_points()) return slips_of_points(motion);
   Segmentation result;
+  if (motion.kind == RecordKind::force_only) {
+    result.kind = MotionKind::always_sticking;
+    return result;
+  }
   const Thresholds t = segmentation::thresholds_of(motion);
   result.slip_threshold = t.slip;
   result.stick_threshold = t.stick;

@@ -9,4 +9,20 @@ namespace tribofit::segmentation {
 /// (a positioning system of published friction then comes out with half of it).
 inline constexpr double kReversalPart = 0.01;
 
+// ---- friction alone
+
+/// Standard deviations of the noise, and part of the range of friction, from which a fall is one: noise that wanders
+/// makes falls of a few standard deviations, and the steps of one slip are a tenth of it. Larger: small slips between
+/// large ones are lost.
+inline constexpr double kFallOverNoise = 10, kFallOverRange = 0.1;
+/// Time of a slip over that of the rise before it, at the most: of what only wanders or swings both are alike.
+inline constexpr double kQuickFall = 0.5;
+/// Part of the samples with the rarer sign, from which friction goes in both directions.
+inline constexpr double kOtherDirection = 0.05;
+
+// ---- friction from the motion
+
+/// Of the peak, from which a slip shows the level of friction: below, smoothing rounds its turning points.
+inline constexpr double kFasterPart = 0.3;
+
 }  // namespace tribofit::segmentation

@@ -50,4 +50,15 @@ Estimate frequency_of(const std::vector<double>& periods) {
   return {1 / period.value, period.std_error / (period.value * period.value), period.degrees_of_freedom};
 }
 
+Estimate mean_over_slips(std::vector<double> values) {
+  constexpr std::size_t kMany = 30;
+  std::erase_if(values, [](double x) { return std::isnan(x); });
+  const auto n = static_cast<double>(values.size());
+  if (values.size() < 3 || values.size() >= kMany) return mean_with_error(std::move(values));
+  double mean = 0, squares = 0;
+  for (const double x : values) mean += x / n;
+  for (const double x : values) squares += (x - mean) * (x - mean);
+  return {mean, std::sqrt(squares / (n * (n - 1))), n - 1};
+}
+
 }  // namespace tribofit::segmentation

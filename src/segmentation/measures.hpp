@@ -15,4 +15,8 @@ double branch_difference(std::span<const double> velocity, std::span<const doubl
 /// median (a long stick, a missed slip), which belong to another motion.
 Estimate frequency_of(const std::vector<double>& periods);
 
+/// Mean over slips with its standard error: where there are fewer than thirty, too few to show how neighbours are
+/// correlated, as if they were not.
+Estimate mean_over_slips(std::vector<double> values);
+
 }  // namespace tribofit::segmentation

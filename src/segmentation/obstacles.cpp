@@ -22,6 +22,13 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
     return {fmt::format("there are only {} points: too few for any law", motion.size())};
   if (motion.is_points() && !must_slip)
     return {"these are points without time: a rig shows in the motion of a record only"};
+  if (motion.kind == RecordKind::motion_only && !must_slip)
+    return {"friction was made of the motion with the stated mass and stiffness: it balances them whatever the rig is"};
+  if (motion.kind == RecordKind::force_only)
+    return {
+        "friction alone was recorded: a law needs the sliding velocity (a column v_b, v_r, x_b or the disc's speed), "
+        "or, "
+        "of a slider on a spring, --kind spring-slider with --speed and --stiffness"};
   if (motion.kind == RecordKind::spring_slider && !must_slip)
     return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
   if (!motion.is_points() && motion.size() < kFewestSamples)

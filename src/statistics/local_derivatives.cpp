@@ -88,9 +88,33 @@ std::vector<double> left_by_windows(std::span<const double> signal, const Polyno
   return left;
 }
 
+/// Samples between two known kinks, [begin, end).
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  bool holds(std::size_t first, std::size_t count) const { return first >= begin && first + count <= end; }
+};
+
+/// The piece of every sample, going up.
+class Pieces {
+ public:
+  Pieces(std::span<const std::size_t> kinks, std::size_t n) : kinks_(kinks), n_(n) { now_.end = end_of(0); }
+  const Piece& at(std::size_t i) {
+    while (i >= now_.end && now_.end < n_) now_ = {now_.end, end_of(++next_)};
+    return now_;
+  }
+
+ private:
+  std::size_t end_of(std::size_t k) const { return k < kinks_.size() ? std::min(kinks_[k], n_) : n_; }
+
+  std::span<const std::size_t> kinks_;
+  std::size_t n_, next_ = 0;
+  Piece now_;
+};
+
 }  // namespace
 
-LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half) {
+LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
+                                   std::span<const std::size_t> kinks) {
   constexpr std::size_t kFewest = 7;
   // Of the usual squares, and of those of another window: by chance one window in a thousand.
   constexpr double kKink = 3, kBetter = 2;
@@ -108,16 +132,27 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
   const Stencil middle(about, half);
   std::vector<Stencil> places;  // of every position at the ends of the signal; five of them beside kinks
   for (std::size_t at = 0; at < count; ++at) places.emplace_back(beside, at);
+  std::vector<Stencil> narrower;  // about samples beside known kinks
+  for (std::size_t h = kFewest / 2; h < half && !kinks.empty(); ++h)
+    narrower.emplace_back(PolynomialWindow(2 * h + 1, kDegreeAbout), h);
   const double usual = median(left_about);
   out.noise = std::sqrt(usual);
   const std::array<std::size_t, 4> tried = {0, half / 2, count - 1 - half / 2, count - 1};
+  constexpr double kTooNear = 10;
+  Pieces pieces(kinks, n);
   for (std::size_t i = 0; i < n; ++i) {
-    const bool whole = i >= half && i + half < n;
-    const Stencil* best = whole ? &middle : &places[i < half ? i : i + count - n];
+    Piece piece = pieces.at(i);
+    const double widening = piece.end - piece.begin < count ? kTooNear : 1;
+    if (widening > 1) piece = {0, n};
+    const bool whole = i >= piece.begin + half && i + half < piece.end;
+    const Stencil* best = whole ? &middle : &places[i < piece.begin + half ? i - piece.begin : i + count - piece.end];
+    const std::size_t free =
+        std::min(piece.begin > 0 ? i - piece.begin : half, piece.end < n ? piece.end - 1 - i : half);
+    if (!whole && free < half && free >= kFewest / 2 && i >= free && i + free < n) best = &narrower[free - kFewest / 2];
     double least = whole ? left_about[i - half] : 0;
     if (whole && least > kKink * usual) {
       for (const std::size_t at : tried) {
-        if (i < at || i - at + count > n || kBetter * left_beside[i - at] > least) continue;
+        if (i < at || !piece.holds(i - at, count) || kBetter * left_beside[i - at] > least) continue;
         best = &places[at];
         least = left_beside[i - at] / kBetter;
       }
@@ -126,8 +161,8 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
     out.value[i] = weighed_sum(best->weights[0], samples);
     out.slope[i] = weighed_sum(best->weights[1], samples) / step;
     out.bend[i] = weighed_sum(best->weights[2], samples) / (step * step);
-    out.slope_std_error[i] = out.noise * best->noise_gain[1] / step;
-    out.bend_std_error[i] = out.noise * best->noise_gain[2] / (step * step);
+    out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
+    out.bend_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
   }
   return out;
 }

@@ -19,8 +19,11 @@ struct LocalDerivatives {
 /// hold the sample the one that leaves least (I. Gijbels, A. Lambert, P. Qiu, J. Nonparametric Statistics 19 (2007)
 /// 77, doi:10.1080/10485250601097312). Errors are those of independent noise, as large as most windows show it.
 /// A signal shorter than a window: shorter windows; fewer than 7 samples: all derivatives are 0.
-/// Cost: proportional to samples times window.
-LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half);
+/// kinks: first samples behind kinks that are known, ascending: windows beside one are narrower, none reaches over it,
+/// and where two are too near for a window between them, errors are ten times as large. Cost: proportional to samples
+/// times window.
+LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
+                                   std::span<const std::size_t> kinks = {});
 
 /// Puts the mean of its two neighbours in the place of a lone sample that is far from it, in units of what samples
 /// usually are, and farther than the signal goes from sample to sample there; returns their number. A signal that

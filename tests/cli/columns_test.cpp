@@ -56,7 +56,7 @@ TEST(Columns, WithoutUsableColumnsNothingIsSuggested) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(suggested(outcome.out), "");
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("Not recognised here: time"), HasSubstr("friction (mu, force or torque)"),
-                                 HasSubstr("velocity (v_b, v_r or speed)"), Not(HasSubstr("NAME"))));
+                                 HasSubstr("velocity (v_b, v_r, x_b or speed)"), Not(HasSubstr("NAME"))));
   shop.write("pull.mat", files::mat5_of({{"t", "", {0, 1, 2}}, {"Fnorm", "", {0.1, 0.2, 0.4}}}));
   outcome = shop.identify("columns pull.mat");
   EXPECT_THAT(outcome.out, HasSubstr("If 'Fnorm' is that, say so: --columns mu=Fnorm"));

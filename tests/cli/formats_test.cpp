@@ -71,7 +71,7 @@ TEST(FormatsOfFiles, ColumnsListsWhatAFileHolds) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("trace.mat: MATLAB, 3 columns"));
   EXPECT_THAT(outcome.out, HasSubstr("cof               3     0.1      0.4  mu"));
-  EXPECT_THAT(outcome.out, HasSubstr("Not recognised here: velocity (v_b, v_r or speed)"));
+  EXPECT_THAT(outcome.out, HasSubstr("Not recognised here: velocity (v_b, v_r, x_b or speed)"));
   outcome = shop.identify("trace.mat");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.err, HasSubstr("'identify columns trace.mat' lists what it holds"));

@@ -199,6 +199,42 @@ TEST(SpringSlider, LoneSamplesOfThePullChangeNothing) {
   }
 }
 
+/// A displacement beside friction gives the velocity that was not recorded; of a linear drive the relative one.
+TEST(SpringSlider, DisplacementsBesideFrictionGiveTheVelocity) {
+  const Slider slider{.duration = 8};
+  for (const bool drive : {false, true}) {
+    Drawn drawn = Simulation(slider).run();
+    Trace& trace = *drawn.trace;
+    trace.kind = std::nullopt;
+    trace.velocity_kind = drive ? VelocityKind::relative : VelocityKind::block;
+    trace.conditions.radius = {1, "test"};
+    trace.conditions.speed = {slider.drive, "test"};
+    trace.steps = {{0, trace.size(), "", trace.conditions}};
+    for (std::size_t i = 0; i < trace.size(); ++i) {
+      const double stretch = trace.friction[i] * slider.load / slider.stiffness;
+      trace.block_position.push_back(stretch);
+      if (drive) trace.drive_position.push_back(slider.drive * trace.time[i]);
+      trace.friction[i] = drawn.friction[i];
+    }
+    MotionOptions options;
+    options.trim = false;
+    const Motion motion = compute_motion(trace, {}, options);
+    ASSERT_EQ(motion.size(), drawn.velocity.size());
+    const Pulls v = pulls_of(motion, motion.relative_velocity, drawn.velocity, motion.velocity_std_error);
+    EXPECT_LT(std::abs(v.mean), 0.2) << drive;
+    EXPECT_LT(v.spread, 2) << drive;
+    Identification result = prepared(drawn);
+    EXPECT_EQ(kind_of_record(result.motion, result.segmentation), RecordKind::stick_slip);
+    IdentifyOptions fit;
+    fit.laws = {ExponentialLaw{}};
+    fit_trace(fit, result);
+    ASSERT_FALSE(result.fits.empty());
+    EXPECT_NEAR(result.fits[0].parameters.at(0).value, slider.mu_s, 0.01 * slider.mu_s);
+    EXPECT_NEAR(result.fits[0].parameters.at(1).value, slider.mu_k, 0.02 * slider.mu_k);
+    EXPECT_NEAR(result.fits[0].parameters.at(2).value, slider.decay, 0.15 * slider.decay);
+  }
+}
+
 TEST(SpringSlider, WhatIsNotKnownIsAskedFor) {
   const Drawn drawn = Simulation({.duration = 1}).run();
   const auto refusal = [&](Trace trace) -> std::string {

@@ -8,9 +8,11 @@ namespace tribofit {
 namespace {
 
 using ::testing::Contains;
+using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 class Points : public TempFiles {};
 
@@ -131,6 +133,41 @@ TEST_F(Points, ThePullOfASpringIsAnotherKind) {
   ReadOptions loaded;
   loaded.conditions.load = {2, "command line"};
   EXPECT_THAT(read_trace(file, loaded).friction, ElementsAre(0.05, 0.1, 0.15));
+}
+
+/// So is the motion of a mass alone.
+TEST_F(Points, DisplacementsAloneAreAMotion) {
+  const Trace trace = read_trace(write("time_s,x_b [um],x_d [mm]\n0,100,1\n1,200,2\n2,300,4\n"));
+  EXPECT_EQ(trace.kind, RecordKind::motion_only);
+  EXPECT_THAT(trace.block_position, ElementsAre(DoubleEq(1e-4), DoubleEq(2e-4), DoubleEq(3e-4)));
+  EXPECT_THAT(trace.drive_position, ElementsAre(0.001, 0.002, 0.004));
+  EXPECT_THAT(trace.friction, IsEmpty());
+  EXPECT_THAT(trace.velocity, IsEmpty());
+  EXPECT_THROW(read_trace(write("time_s,x_b\n0,100\n1,200\n2,300\n")), InputError) << "no unit";
+}
+
+TEST_F(Points, DisplacementsBesideFrictionGiveTheVelocityWhereThatIsNotThere) {
+  const Trace both = read_trace(write("time_s,mu,x_b [mm],x_d [mm]\n0,0.3,1,1\n1,0.4,2,2\n2,0.3,3,4\n"));
+  EXPECT_EQ(both.kind, std::nullopt);
+  EXPECT_EQ(both.velocity_kind, VelocityKind::relative);
+  EXPECT_THAT(both.block_position, SizeIs(3));
+  const std::string file = write("time_s,mu,v_b [mm/s],x_b [mm]\n0,0.3,1,1\n1,0.4,2,2\n2,0.3,3,4\n");
+  EXPECT_THAT(read_trace(file).velocity, ElementsAre(0.001, 0.002, 0.003));
+  EXPECT_THAT(read_trace(file).block_position, IsEmpty());
+  ReadOptions named;
+  named.columns = {{"x_b", "x_b [mm]"}};
+  EXPECT_THAT(read_trace(file, named).velocity, IsEmpty());
+  EXPECT_EQ(read_trace(file, named).velocity_kind, VelocityKind::block);
+}
+
+TEST_F(Points, FrictionAloneIsARecordOfItsOwnWhereNothingElseIsInTheFile) {
+  const Trace trace = read_trace(write("time_s,force [N]\n0,1\n1,2\n2,3\n"));
+  EXPECT_EQ(trace.kind, RecordKind::force_only);
+  EXPECT_EQ(trace.friction_kind, FrictionKind::force);
+  EXPECT_THROW(read_trace(write("time_s,force [N],c\n0,1,1\n1,2,1\n2,3,1\n")), InputError) << "c may be a velocity";
+  ReadOptions stated;
+  stated.kind = RecordKind::force_only;
+  EXPECT_EQ(read_trace(write("time_s,force [N],c\n0,1,1\n1,2,1\n2,3,1\n"), stated).kind, RecordKind::force_only);
 }
 
 }  // namespace

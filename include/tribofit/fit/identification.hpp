@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "tribofit/ingest/read_trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/segmentation/force_statistics.hpp"
+#include "tribofit/segmentation/friction_levels.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
@@ -44,7 +47,9 @@ struct Identification {
   double duration = 0, rate = 0;  ///< [s], [Hz]
   Motion motion;
   Segmentation segmentation;
-  SpectralPeak spectral_peak;      ///< of v_r
+  SpectralPeak spectral_peak;                       ///< of v_r
+  std::optional<ForceStatistics> force_statistics;  ///< of a record of friction alone
+  std::optional<FrictionLevels> friction_levels;    ///< of a record whose friction follows from the motion
   Estimate load_coupling = {};     ///< found in the load channel by a diagnosis and removed from it; 0: none
   std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the per-cycle extremes
   std::size_t best = 0;            ///< the fit that predicts held-out cycles best

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace tribofit {
@@ -20,11 +21,19 @@ struct Conditions {
   Condition load;    ///< nominal normal force [N], > 0
 };
 
-/// What draws the slider of a spring-slider record.
+/// What a mass on a spring rubs on.
+enum class Counterface {
+  ground,  ///< that stands still
+  base,    ///< the other end of the spring
+};
+
+/// The spring of a spring-slider or motion-only record, with what hangs on it.
 struct SpringDrive {
-  Condition velocity;   ///< of the driven end of the spring [m/s]
-  Condition stiffness;  ///< of the spring [N/m], > 0
-  Condition mass;       ///< that it pulls [kg]; 0 where it is not known
+  Condition velocity;                      ///< of the driven end of the spring [m/s]
+  Condition stiffness;                     ///< of the spring [N/m], > 0
+  Condition mass;                          ///< that it pulls [kg]; 0 where it is not known
+  Condition damping;                       ///< beside the spring [N s/m]
+  std::optional<Counterface> counterface;  ///< of a motion-only record; nothing: the motion shows it
 };
 
 }  // namespace tribofit

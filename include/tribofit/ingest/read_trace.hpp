@@ -32,7 +32,7 @@ struct ReadOptions {
   /// Channel -> unit, or channel -> sensitivity of a voltage ("v_b" -> "5 mm/s/V").
   std::map<std::string, std::string> units;
   std::optional<RecordKind> kind;  ///< as the user states it
-  SpringDrive spring;              ///< of a spring slider, as the user states it
+  SpringDrive spring;              ///< of a spring slider or a motion alone, as the user states it
   std::optional<double> rate;      ///< samples per second [Hz] where there is no time column
   Conditions conditions;           ///< as given by the user or the manifest; beats the file
   /// One friction radius [m] per step, in the order of the steps, for files whose radius changes.

@@ -13,9 +13,11 @@ enum class RecordKind {
   sliding,        ///< speed-controlled, never sticks: friction at the lowest speeds counts
   points,         ///< steady points of speed and friction in any order, without time
   spring_slider,  ///< the pull of a spring of known stiffness that draws a mass
+  motion_only,    ///< the motion of a mass on a known spring, without friction
+  force_only,     ///< friction alone: no motion, and nothing that it would follow from
 };
 
-/// "stick-slip", "sliding", "points", "spring-slider": as --kind and JSON have them.
+/// "stick-slip", "sliding", "points", "spring-slider", "motion-only", "force-only": as --kind and JSON have them.
 std::string_view to_string(RecordKind kind);
 std::optional<RecordKind> find_record_kind(std::string_view name);
 std::vector<std::string> record_kind_names();

@@ -45,7 +45,10 @@ struct Trace {
   std::vector<double> friction;  ///< [1] or [N], see friction_kind
   std::vector<double> velocity;  ///< [m/s], see velocity_kind; empty for a fixed block
 
-  /// Of points as stated, of a spring slider as it follows from the pull [1] or [N], [m/s]; empty: not known.
+  std::vector<double> block_position, drive_position;  ///< [m], from which kinematics/ makes the velocity
+
+  /// Of points as stated, of other records as they follow from the channel that they were made of [1] or [N], [m/s];
+  /// empty: not known.
   std::vector<double> friction_std_error, velocity_std_error;
 
   std::vector<double> load;         ///< normal force [N]
@@ -58,7 +61,7 @@ struct Trace {
 
   std::optional<RecordKind> kind;  ///< as the user stated it, or as the file shows it; nothing: the motion shows it
   std::string kind_source;         ///< "stated", or what in the file shows it
-  SpringDrive spring;              ///< of a spring slider, whose `friction` is the pull of the spring
+  SpringDrive spring;              ///< of a spring slider, whose `friction` is the pull, and of a motion alone
 
   Conditions conditions;    ///< of the whole trace; radius unknown where the steps differ
   std::vector<Step> steps;  ///< at least one; they cover the trace without gaps

@@ -1,0 +1,107 @@
+#include "tribofit/segmentation/friction_levels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limits.hpp"
+#include "measures.hpp"
+
+namespace tribofit {
+
+namespace {
+
+constexpr std::size_t kBins = 6, kFewestSlips = 3, kFewestForLevels = 8;
+
+struct Sum {
+  double value = 0, velocity = 0, count = 0;
+};
+
+template <class Use>
+void for_each_sample(const Motion& motion, const Cycle& cycle, Use use) {
+  for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
+    if (!motion.has_fault(i, SampleFault::any)) use(motion.relative_velocity[i], motion.friction[i]);
+  }
+}
+
+/// Slips of one direction that take part.
+std::vector<const Cycle*> slips_of(const Segmentation& segmentation, int direction) {
+  std::vector<const Cycle*> slips;
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (cycle.direction == direction && segmentation.is_selected(cycle.slip)) slips.push_back(&cycle);
+  }
+  return slips;
+}
+
+void add_bins(const Motion& motion, const std::vector<const Cycle*>& slips, int direction,
+              std::vector<FrictionLevels::Bin>& bins) {
+  double fastest = 0;
+  for (const Cycle* slip : slips) fastest = std::max(fastest, slip->peak_velocity);
+  std::array<std::vector<double>, kBins> means;
+  std::array<Sum, kBins> all;
+  for (const Cycle* slip : slips) {
+    std::array<Sum, kBins> sums;
+    for_each_sample(motion, *slip, [&](double v, double friction) {
+      const double at = direction * v / fastest * static_cast<double>(kBins);
+      if (!(at > 0)) return;
+      const auto bin = std::min(kBins - 1, static_cast<std::size_t>(at));
+      for (Sum* sum : {&sums[bin], &all[bin]}) {
+        sum->value += friction;
+        sum->velocity += v;
+        sum->count += 1;
+      }
+    });
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+      if (sums[bin].count > 0) means[bin].push_back(sums[bin].value / sums[bin].count);
+    }
+  }
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    if (means[bin].size() < kFewestSlips) continue;
+    bins.push_back({all[bin].velocity / all[bin].count, segmentation::mean_over_slips(means[bin]), means[bin].size()});
+  }
+}
+
+/// Mean size of friction over the faster part of a slip; NaN where that is not known.
+double level_of(const Motion& motion, const Cycle& slip) {
+  Sum sum;
+  for_each_sample(motion, slip, [&](double v, double friction) {
+    if (slip.direction * v < segmentation::kFasterPart * slip.peak_velocity) return;
+    sum.value += slip.direction * friction;
+    sum.count += 1;
+  });
+  return sum.count > 0 ? sum.value / sum.count : std::nan("");
+}
+
+FrictionLevels::Level level_between(const Motion& motion, const std::vector<const Cycle*>& by_peak, std::size_t begin,
+                                    std::size_t end) {
+  std::vector<const Cycle*> slips(by_peak.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  by_peak.begin() + static_cast<std::ptrdiff_t>(end));
+  FrictionLevels::Level level{slips.front()->peak_velocity, slips.back()->peak_velocity, {}, slips.size()};
+  std::sort(slips.begin(), slips.end(),
+            [](const Cycle* a, const Cycle* b) { return a->slip.begin < b->slip.begin; });  // errors are of a series
+  std::vector<double> values;
+  for (const Cycle* slip : slips) values.push_back(level_of(motion, *slip));
+  level.friction = segmentation::mean_over_slips(std::move(values));
+  return level;
+}
+
+}  // namespace
+
+FrictionLevels friction_levels(const Motion& motion, const Segmentation& segmentation) {
+  FrictionLevels out;
+  std::vector<const Cycle*> all;
+  for (const int direction : {-1, 1}) {
+    const std::vector<const Cycle*> slips = slips_of(segmentation, direction);
+    add_bins(motion, slips, direction, out.bins);
+    all.insert(all.end(), slips.begin(), slips.end());
+  }
+  std::sort(out.bins.begin(), out.bins.end(), [](const auto& a, const auto& b) { return a.velocity < b.velocity; });
+  if (all.size() < kFewestForLevels) return out;
+  std::sort(all.begin(), all.end(), [](const Cycle* a, const Cycle* b) {
+    return a->peak_velocity != b->peak_velocity ? a->peak_velocity < b->peak_velocity : a->slip.begin < b->slip.begin;
+  });
+  out.levels = {level_between(motion, all, 0, all.size() / 2), level_between(motion, all, all.size() / 2, all.size())};
+  return out;
+}
+
+}  // namespace tribofit
