@@ -43,6 +43,7 @@ ExitStatus run(int argc, char** argv) {
     add_rig(identify);
     add_twin(identify);
     add_effects(identify);
+    add_cite(identify);
     add_simulate(identify);
     add_study(identify);
     add_help(identify);

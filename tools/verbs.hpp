@@ -12,6 +12,7 @@ void add_explore(const Command& app);
 void add_rig(const Command& app);
 void add_twin(const Command& app);
 void add_effects(const Command& app);
+void add_cite(const Command& app);
 void add_simulate(const Command& app);
 void add_study(const Command& app);
 void add_help(const Command& app);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "tribofit/report/page.hpp"
@@ -144,6 +145,29 @@ TEST(Usage, EffectsListsAndExplains) {
   const Outcome unknown = shop.identify("effects brisle");
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bristle'"));
+}
+
+/// The paragraph for a paper has the numbers of the result, and the sources are those of the law and the effect used.
+TEST(Cite, TellsARunAndItsSources) {
+  const Workshop shop;
+  const std::string result = shop / "result.json";
+  ASSERT_EQ(shop.identify("--radius 15mm --law exponential --effect viscous --quiet --json '" + result +
+                          "' " TRIBOFIT_SOURCE_DIR "/data/example.csv")
+                .status,
+            0);
+  const Outcome cited = shop.identify("cite '" + result + "'");
+  EXPECT_EQ(cited.status, 0);
+  const nlohmann::json json = nlohmann::json::parse(contents(result));
+  const nlohmann::json fit = json.at("fits").at(json.at("best").get<std::size_t>());
+  for (const auto& parameter : fit.at("parameters")) {
+    const std::string value = std::to_string(parameter.at("value").get<double>());
+    EXPECT_THAT(cited.out, HasSubstr(parameter.at("name").get<std::string>() + " = (" + value.substr(0, 5)));
+  }
+  EXPECT_THAT(cited.out, AllOf(HasSubstr("100000 samples"), HasSubstr("15 mm"), HasSubstr("Wear 24 (1973) 381"),
+                               HasSubstr(json.at("trace").at("checksum").get<std::string>())));
+  EXPECT_EQ(shop.identify("cite runot").status, 2);
+  EXPECT_THAT(shop.identify("cite runot").err, HasSubstr("did you mean runout?"));
+  EXPECT_EQ(shop.identify("cite '" TRIBOFIT_SOURCE_DIR "/data/example.json'").status, 3);
 }
 
 TEST(Help, ListsAndPrintsEveryText) {

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "tribofit/friction/effects/all.hpp"
+#include "tribofit/friction/laws/all.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/version.hpp"
+#include "verbs.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kMethod =
+    "The method\n"
+    "  Solver: S. Agarwal, K. Mierle and the Ceres Solver team, Ceres Solver 2.1, http://ceres-solver.org\n"
+    "  Break-away that differs from cycle to cycle: N. M. Laird, J. H. Ware, Biometrics 38 (1982) 963,\n"
+    "    doi:10.2307/2529876\n"
+    "  Slow noise: P. Whittle, Ark. Mat. 2 (1953) 423; M. S. Keshner, Proc. IEEE 70 (1982) 212\n";
+
+/// The source of a law or an effect, as a line; throws a UsageError where there is none of that name.
+std::string source_of(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Law& law : law_catalogue()) {
+    const LawInfo info = describe(law);
+    const std::string key(to_string(law));
+    if (key == name) return fmt::format("  {} law: {}; {}\n", name, info.equation, info.source);
+    known.push_back(key);
+  }
+  for (const Effect& effect : effect_catalogue()) {
+    const EffectInfo info = describe(effect);
+    if (info.key == name.substr(0, name.find(':'))) return fmt::format("  {}: {}\n", name, info.source);
+    known.push_back(info.key);
+  }
+  throw UsageError(fmt::format("'{}' is neither a law, an effect nor a result (.json){}; 'identify effects' lists them",
+                               name, did_you_mean(name, known)));
+}
+
+/// A value with two digits of its standard error, its interval and its unit.
+std::string value_of(const Json& parameter) {
+  const std::string name = parameter.at("effect").is_null() ? parameter.at("name").get<std::string>()
+                                                            : parameter.at("effect").get<std::string>() + "." +
+                                                                  parameter.at("name").get<std::string>();
+  const double value = parameter.at("value").get<double>();
+  const std::string unit = parameter.at("unit") == "1" ? "" : " " + parameter.at("unit").get<std::string>();
+  if (!parameter.at("std_error").is_number()) return fmt::format("{} = {:.6g}{} (held)", name, value, unit);
+  const double error = parameter.at("std_error").get<double>();
+  const int places = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
+  std::string text = fmt::format("{} = ({:.{}f} +- {:.{}f}){}", name, value, places, error, places, unit);
+  const Json& interval = parameter.at("ci95");
+  if (interval.is_array() && interval.at(0).is_number() && interval.at(1).is_number()) {
+    text +=
+        fmt::format(" [{:.{}f}, {:.{}f}]", interval.at(0).get<double>(), places, interval.at(1).get<double>(), places);
+  }
+  return text;
+}
+
+std::string conditions_of(const Json& result) {
+  const Json& conditions = result.at("conditions");
+  std::string text;
+  for (const auto& [key, unit] :
+       {std::pair("radius_mm", "mm"), std::pair("speed_rpm", "rpm"), std::pair("load_N", "N")}) {
+    const auto at = conditions.find(key);
+    if (at == conditions.end() || !at->is_number()) continue;
+    text += fmt::format("{}{:.4g} {}", text.empty() ? "" : ", ", at->get<double>(), unit);
+  }
+  return text.empty() ? "" : " (" + text + ")";
+}
+
+/// What a paper says of one run, and the names whose sources it cites.
+std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
+  const Json& fit = result.at("fits").at(result.at("best").get<std::size_t>());
+  const Json& trace = result.at("trace");
+  names = {fit.at("law").get<std::string>()};
+  std::string effects;
+  for (const Json& effect : fit.at("effects")) {
+    names.push_back(effect.get<std::string>());
+    effects += (effects.empty() ? " with " : " and ") + names.back();
+  }
+  const std::string cycles =
+      fit.at("cycles").is_number() ? fmt::format(" over {} cycles", fit.at("cycles").get<int>()) : "";
+  std::string text =
+      fmt::format("  From a {} record of {} samples{} the {} law{} was identified with tribofit {}{}: ",
+                  trace.at("kind").get<std::string>(), trace.at("samples").get<long long>(), conditions_of(result),
+                  names[0], effects, result.at("tool").at("version").get<std::string>(), cycles);
+  std::string values;
+  for (const Json& parameter : fit.at("parameters")) values += (values.empty() ? "" : "; ") + value_of(parameter);
+  text += values + " (value +- standard error [95 % interval]).";
+  const Json& error = fit.at("error").at("held_out_rmse");
+  if (error.is_number() && fit.at("floor_rmse").is_number()) {
+    text += fmt::format(" The error on cycles held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",
+                        error.get<double>(), fit.at("floor_rmse").get<double>());
+  }
+  for (const Json& message : fit.at("messages")) {
+    const std::string note = message.get<std::string>();
+    if (note.find("conditional on a law that does not hold") != std::string::npos) text += " Note: " + note + ".";
+  }
+  const auto diagnosis = result.find("diagnosis");
+  if (diagnosis != result.end() && diagnosis->is_object())
+    text += fmt::format(" Verdict of the diagnosis: {}.", diagnosis->at("verdict").get<std::string>());
+  return text + fmt::format(" Checksum of the record: {}.\n", trace.at("checksum").get<std::string>());
+}
+
+std::string paragraph_of_file(const std::string& path, std::vector<std::string>& names) {
+  const InputLocation where{path, 0, ""};
+  std::ifstream file(path);
+  if (!file) throw InputError("the result cannot be opened", "give a file that --json wrote", where);
+  try {
+    return paragraph_of(Json::parse(file), names);
+  } catch (const Json::exception&) {
+    throw InputError("is no result of one trace",
+                     "give a file that 'identify --json' or 'identify diagnose --json' wrote", where);
+  }
+}
+
+std::string citation(const std::vector<std::string>& what) {
+  std::string text = fmt::format(
+      "tribofit {}: identification of friction laws from tribometer records. Computer program\n"
+      "(CITATION.cff in its sources).\n\n{}",
+      tribofit::version, kMethod);
+  std::vector<std::string> names;
+  std::string paragraphs;
+  for (const std::string& one : what) {
+    std::vector<std::string> found = {one};
+    if (one.ends_with(".json")) paragraphs += "\n" + paragraph_of_file(one, found);
+    for (const std::string& name : found) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  if (!names.empty()) text += "\nLaws and effects ([D]: see README)\n";
+  for (const std::string& name : names) text += source_of(name);
+  if (!paragraphs.empty()) text += "\nIn a paper" + paragraphs;
+  return text;
+}
+
+}  // namespace
+
+void add_cite(const Command& app) {
+  const Command verb = app.add_verb("cite", "How to cite tribofit, its method, and the sources of laws and effects");
+  verb.footer(
+      "A result that --json wrote is told in a paragraph for a paper, with the sources of what it uses.\n\n"
+      "Examples:\n"
+      "  identify cite\n"
+      "  identify cite exponential runout\n"
+      "  identify diagnose --radius 15mm --json found.json trace.csv && identify cite found.json");
+  const auto what = std::make_shared<std::vector<std::string>>();
+  verb.add_option("WHAT", *what, "Laws, effects, results (.json)");
+  verb.on_run([what] {
+    print(citation(*what));
+    return ExitStatus::done;
+  });
+}
