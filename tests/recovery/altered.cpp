@@ -102,6 +102,22 @@ TEST(NotAltered, OtherSpeedsAndRatesHaveNoProblem) {
   }
 }
 
+/// Down to sticks of ten samples nothing is off and nothing is found.
+TEST(NotAltered, ShortSticksLeaveNoBias) {
+  for (const double rpm : {120.0, 180.0, 210.0}) {
+    for (const double rate : {20e3, 5e3}) {
+      truth::Rig rig = rig_of(12);
+      rig.rpm = rpm, rig.rate = rate, rig.duration = 4;
+      SCOPED_TRACE(std::to_string(rpm) + " rpm at " + std::to_string(rate) + " Hz");
+      const Identification found = identified(truth::simulate(rig).trace);
+      expect_true(found, rig);
+      EXPECT_EQ(item(found, "plateau-speed").status, HealthItem::Status::ok);
+      EXPECT_EQ(item(found, "channel-delay").status, HealthItem::Status::ok);
+      EXPECT_FALSE(found.motion.velocity_low_pass.any());
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Altered, ::testing::Range<std::size_t>(0, alterations().size()));
 
 TEST(NotAltered, ASoundRecordLosesNoSample) {
