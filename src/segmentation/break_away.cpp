@@ -39,8 +39,9 @@ Rise rise_of(const Motion& m, const Onset& onset) {
   // A short stick ends well before the velocity has grown to where the slip begins.
   const std::size_t half = rises_above(m, flat, 0.5 * above_stick(m, flat, onset.slip));
   const std::size_t doublings = kDoublings * (onset.slip - half);
-  // What takes all of the stick is creep, or a motion that only turns: the third quarter is its level.
-  const std::size_t grown = doublings < n ? std::max(n / 4, doublings) : n / 4;
+  // What doubles over a good part of the stick is creep, or a motion that only turns: the third quarter is its level.
+  const bool creeps = 4 * (onset.slip - half) > n;
+  const std::size_t grown = creeps ? n / 4 : std::clamp(doublings, n / 4, n);
   const std::size_t length = std::min(n / 4, n - grown), end = onset.slip - grown;
   if (length < 4) return flat;
   Rise rise{onset, 0, end};

@@ -155,12 +155,13 @@ void add_faults(List& list) {
 void add_loads(List& list) {
   for (const double part : {0.02, 0.05, 0.1, 0.2}) {
     for (const double period : {0.9, 2.3, 7.0, 15.0}) {
-      AlteredCase& one = list.add_one(fmt::format("load swings by {} % in {} s", 100 * part, period), {});
+      AlteredCase& one =
+          list.add_one(fmt::format("load swings by {} % in {} s", 100 * part, period), {}, {"load-dependence"});
       one.load = {part, period, 0};
     }
   }
   for (const double part : {0.03, 0.1, -0.1, 0.2}) {
-    AlteredCase& one = list.add_one(fmt::format("load steps by {} %", 100 * part), {}, {"step"});
+    AlteredCase& one = list.add_one(fmt::format("load steps by {} %", 100 * part), {}, {"step", "load-dependence"});
     one.load = {0, 1, part};
   }
 }

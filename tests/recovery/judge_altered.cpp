@@ -78,6 +78,14 @@ std::string problems(const Identification& trace, HealthItem::Status at_least) {
   return text;
 }
 
+/// A warning that says which parameter is off.
+bool says_at_stake(const Identification& trace) {
+  return std::any_of(trace.motion.health.begin(), trace.motion.health.end(), [](const HealthItem& item) {
+    return item.status != HealthItem::Status::ok &&
+           (item.message.find("at stake") != std::string::npos || item.message.find("alpha") != std::string::npos);
+  });
+}
+
 /// Effects that are named and are not what was done, "" where there are none.
 std::string wrong_names(const Diagnosis& diagnosis, const std::vector<std::string>& may_name) {
   const auto may = [&](const std::string& key) {
@@ -123,13 +131,16 @@ Judged judge(const AlteredCase& what) {
     const Off parameters = off(by_exponential ? found.rungs.back() : found.fits[0], what);
     judged.strict = parameters.text.empty();
     const std::string problem = problems(one, HealthItem::Status::problem);
-    judged.outcome = !wrong.empty()    ? Outcome::wrong
-                     : !parameters.far ? Outcome::right
-                     : problem.empty() ? Outcome::wrong
-                                       : Outcome::named;
+    bool is_named = !problem.empty() || says_at_stake(one);
     for (const EffectFinding& effect : found.diagnosis.effects) {
+      const bool is_fault = std::find(what.may_name.begin(), what.may_name.end(), effect.key) != what.may_name.end();
+      is_named = is_named || (is_fault && effect.status <= EffectStatus::possible);
       if (effect.status == EffectStatus::possible) judged.text += " (possible " + effect.key + ")";
     }
+    judged.outcome = !wrong.empty()    ? Outcome::wrong
+                     : !parameters.far ? Outcome::right
+                     : is_named        ? Outcome::named
+                                       : Outcome::wrong;
     judged.text += fmt::format("{}{}; {}; {}", wrong.empty() ? "" : " NAMED" + wrong, parameters.text,
                                to_string(found.diagnosis.verdict), problems(one, HealthItem::Status::warning));
   } catch (const InputError& error) {
