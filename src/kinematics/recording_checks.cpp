@@ -47,13 +47,14 @@ std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks,
   return runs;
 }
 
-std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks) {
+/// smooths: a crowd is looked for behind noise, too. A velocity crowds where the contact creeps.
+std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks, bool smooths) {
   const Extremes range = chunks.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < 16 || range.low == range.high || repeats_elsewhere(x, range)) return ends;
   std::array<PileUp, 2> piles = find_pile_ups(x);
-  const std::array<PileUp, 2> smoothed = find_smoothed_pile_ups(x);
+  const std::array<PileUp, 2> smoothed = smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
   for (std::size_t k = 0; k < 2; ++k) {
     if (piles[k].density < kCrowdedAlone && !piles[k].is_quiet && smoothed[k].count > 0) piles[k] = smoothed[k];
   }
@@ -99,7 +100,7 @@ Gaps gaps_of(std::span<const double> time, double step) {
 
 RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
   const bool recorded = trace.velocity_std_error.empty();  // not made from another channel
-  return {ends_of(trace.friction, friction), ends_of(trace.velocity, velocity),
+  return {ends_of(trace.friction, friction, true), ends_of(trace.velocity, velocity, false),
           std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high)),
           recorded ? find_slew_limit(trace.friction) : 0, recorded ? find_slew_limit(trace.velocity) : 0};
 }
