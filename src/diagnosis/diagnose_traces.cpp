@@ -13,6 +13,7 @@
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
+#include "hidden_load.hpp"
 #include "imitations.hpp"
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
@@ -213,6 +214,7 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
       uncorrected = fit_uncorrected(traces[0], options, out.diagnosis.law, effects);
     add_motion(records_of(traces), traces[0].trace.load_coupling, options.instruments, uncorrected, out.diagnosis);
     add_open_problems(records_of(traces), out.diagnosis);
+    offer_load_variation(records_of(traces), out.diagnosis);
     take_rungs(std::move(diagnosed.fits), out);
   } else {
     out.diagnosis.verdict = Verdict::not_enough_data;

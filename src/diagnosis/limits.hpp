@@ -110,6 +110,12 @@ inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-ou
 inline constexpr int kHarmonicsOfAngle = 6;  ///< of a turn: a disc's faults are low ones, and more cost evidence
 inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering
 
+// ---- a load that was not recorded
+
+/// Part of the peak above which a slip is fast; how closely friction at break-away and in fast slip go together, how
+/// much alike they swing, and by how much at least: scatter of break-away is less, and does not reach the slip.
+inline constexpr double kFastSlip = 0.7, kSwingsTogether = 0.8, kSwingsAlike = 2.0, kLeastSwing = 0.01;
+
 }  // namespace limits
 
 }  // namespace tribofit::diagnosis

@@ -91,6 +91,18 @@ std::string describe(const char* name, const Band& band) {
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
+/// Samples beside re-stick among which its jump of friction is.
+std::size_t delay_window(const Plateaus& plateaus, std::size_t factor) {
+  std::vector<double> sticks, slips;
+  for (std::size_t k = 0; k < plateaus.runs.size(); ++k) {
+    sticks.push_back(static_cast<double>(plateaus.runs[k].size()));
+    if (k > 0) slips.push_back(static_cast<double>(plateaus.runs[k].begin - plateaus.runs[k - 1].end));
+  }
+  if (slips.empty()) return 4;
+  const double shorter = std::min(median(std::move(sticks)), median(std::move(slips))) * static_cast<double>(factor);
+  return static_cast<std::size_t>(std::clamp(kDelayReach * shorter, 4.0, 2000.0));
+}
+
 /// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
 struct ClockDrift {
   double gained = 0, std_error = 0, time = 1;  // [s]
@@ -208,8 +220,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
   const std::size_t n = v.size();
   const double edge = 0.05 * plateaus.depth;
-  // Window: the steep part of re-stick and as much again, at most 10 ms.
-  const auto half = static_cast<std::size_t>(std::clamp(0.01 / motion.step, 4.0, 2000.0));
+  const std::size_t half = delay_window(plateaus, factor);
   std::vector<double> jump(2 * half, 0.0), single(2 * half);
   std::vector<double> times, delays;  // of single slips
   std::size_t used = 0;
@@ -221,7 +232,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
     // The velocity still needs edge/|dv/dt| to reach zero.
     const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
     const double rest =
-        slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 0.25 * static_cast<double>(half)) : 0;
+        slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 2 * static_cast<double>(half)) : 0;
     const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
     if (zero + half + 1 >= n) continue;
     for (std::size_t k = 0; k < 2 * half; ++k) single[k] = sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);

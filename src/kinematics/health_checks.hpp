@@ -32,7 +32,8 @@ struct EndRuns {
 /// Both ends of both channels as recorded.
 struct RangeEnds {
   std::array<EndRuns, 2> friction, velocity;
-  double largest_velocity = 0;  ///< [m/s]
+  double largest_velocity = 0;                  ///< [m/s]
+  double friction_slew = 0, velocity_slew = 0;  ///< largest change in a sample, where changes crowd at it; 0: none
 };
 RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity);
 

@@ -14,6 +14,12 @@ inline constexpr double kPlateauBand = 0.12;
 /// How far the middle of a plateau may stand out from its shoulders, over the band: a turning point of a smooth
 /// oscillation is a parabola that stands out by more.
 inline constexpr double kFlatness = 0.10;
+/// The same of a plateau that is clearly flat: above, sticks are short beside the slips, and a narrower band (by so
+/// much each time, down to so much of the first, and to so many standard deviations of the noise) leaves the slips out.
+/// A stick keeps so much of its length in it; a turning point, a parabola, keeps half. Sticks of more than kLongSticks
+/// of the record are long: what bends them is creep.
+inline constexpr double kClearlyFlat = 0.05, kNarrower = 0.25, kNarrowestBand = 1e-3, kBandNoise = 6;
+inline constexpr double kKeepsLength = 0.75, kLongSticks = 1.0 / 3;
 /// Blocks of a plateau: a middle and its two shoulders need as many.
 inline constexpr std::size_t kFewestBlocks = 4;
 /// A plateau has settled, and agrees with what is stated, within this part of its level: what radius and speed are
@@ -61,6 +67,9 @@ inline constexpr double kErrorOfCreep = 0.5;
 
 // ---- clocks of the two channels
 
+/// Of the shorter of stick and slip, how far from re-stick a jump of friction is looked for: beyond is the next event.
+inline constexpr double kDelayReach = 0.25;
+
 /// Samples by which one may fall behind the other over a record: re-stick is not seen more closely in a slip.
 inline constexpr double kDriftSamples = 3;
 /// Part of the period within which friction jumps beside re-stick, and the scatter of that [samples]: more is no jump.
@@ -72,9 +81,13 @@ inline constexpr double kSharpJump = 0.8;
 
 /// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the third
 /// (a cubic follows it), of slips that reach the last. Behind a slow filter from the second on, where from the first
-/// there is neither a filter nor a kink that leaves less than kKinkUnexplained of the fastest.
-inline constexpr double kKinkFrom = 0.2, kKinkFromSlow = 0.45, kKinkDown = 0.02, kKinkSlip = 0.5;
+/// there is neither a filter nor a kink that leaves less than kKinkUnexplained of the fastest. Before short sticks,
+/// which hold less than half as many samples as v_r falls in, from kKinkFromShort on.
+inline constexpr double kKinkFrom = 0.2, kKinkFromSlow = 0.45, kKinkFromShort = 0.06, kKinkDown = 0.02, kKinkSlip = 0.5;
 inline constexpr double kKinkUnexplained = 2e-3;
+/// The rest that is looked at, over the fall: twice as much where the stick is long. A filter shows in it; that there
+/// is none shows in less.
+inline constexpr double kKinkRest = 1.5, kKinkRestShort = 0.5;
 /// Slope of v_r when it comes to rest, over its mean one in the look: a spring brakes it most at the end, a mean over
 /// more than the look makes a parabola of it.
 inline constexpr double kKinkSteep = 0.6;
@@ -97,6 +110,9 @@ inline constexpr double kHeldInput = 0.75;
 /// What a restored velocity may have of noise, over the fastest: the law averages over it. The derivative is taken over
 /// so much of the time constant at most: more is a filter again.
 inline constexpr double kRestoredNoise = 2e-3, kRestoredSmear = 0.25;
+
+/// Samples of a slip over which v_r is straight within one: with fifteen, means make alpha 3 % less.
+inline constexpr double kFewSlipSamples = 24;
 
 // ---- low-pass of friction
 
@@ -141,6 +157,8 @@ inline constexpr double kHalvesAgree = 0.3;
 /// Part of the gain that may be lost at the fastest, and how nearly the plateau is omega r where slips alone are read
 /// wrongly, over what the block would move on average.
 inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
+/// Above this part what another characteristic would do to alpha and mu_k is some per cent of them.
+inline constexpr double kSureOfCompression = 0.12;
 /// Of the part, its standard error for not knowing the characteristic: of third order it may be or of any other.
 inline constexpr double kOtherCharacteristic = 0.1;
 
@@ -230,6 +248,15 @@ inline constexpr double kQuiet = 0.7;
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000;
 /// Samples between two at the limit that are taken for clipped too (noise brings them below it), and beside a stretch.
 inline constexpr std::size_t kClipHole = 32, kClipMargin = 8;
+
+/// Samples of a mean in which a crowd is looked for behind noise as wide as its own, how dense it must be, and means in
+/// a row: friction that is held is so for a good part of a stick.
+inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
+inline constexpr double kCrowdedSmoothed = 8;
+/// Changes from sample to sample that an amplifier cannot exceed: steps of a converter that one of them must have, how
+/// nearly they are alike, and how many are so in a row. A steepest slope is passed through, it does not last.
+inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
+inline constexpr std::size_t kShortestSlew = 8;
 
 /// Standstill at an end of a stick-slip record: the block rests for so many periods at less than this part of the
 /// plateau.

@@ -8,6 +8,11 @@
 
 namespace tribofit::kinematics {
 
+bool are_lost(const LostSamples& lost, std::size_t plateaus) {
+  return lost.jumps >= kFewestJumps &&
+         static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
+}
+
 LostSamples find_lost_samples(const Trace& trace, double noise) {
   LostSamples lost;
   const std::vector<double>& v = trace.velocity;

@@ -13,6 +13,9 @@ struct LostSamples {
   double part = 0;  ///< of the intervals in which the velocity changes fast enough to show it
 };
 
+/// Too many for blows on the rig. plateaus: of stick.
+bool are_lost(const LostSamples& lost, std::size_t plateaus);
+
 /// noise: of the velocity [m/s]. Cost: one pass.
 LostSamples find_lost_samples(const Trace& trace, double noise);
 

@@ -81,7 +81,8 @@ Smallest fit(const Restick& restick, const Filter& filter) {
   return best;
 }
 
-std::vector<Restick> resticks(std::span<const double> v, double rest, double fastest, double from) {
+/// shortest: rest after them that they must have, over the fall.
+std::vector<Restick> resticks(std::span<const double> v, double rest, double fastest, double from, double shortest) {
   const double high = from * fastest, low = kKinkDown * fastest;
   std::vector<Restick> all;
   for (std::size_t i = 0; i < v.size();) {
@@ -94,13 +95,19 @@ std::vector<Restick> resticks(std::span<const double> v, double rest, double fas
     std::size_t down = begin;
     while (down < v.size() && reads(down) > low) ++down;
     i = down;
-    const std::size_t fall = down - begin, end = down + 2 * fall;
-    if (fall < kKinkSamples || end >= v.size()) continue;
+    const std::size_t fall = down - begin;
+    std::size_t end = down;
+    while (end < std::min(v.size(), down + 6 * fall) && reads(end) < low) ++end;
+    // A short stick ends before the velocity has grown to where it began to rest.
+    end = std::min(down + 2 * fall, down + (end - down) / 3);
+    if (fall < kKinkSamples || static_cast<double>(end - down) < shortest * static_cast<double>(fall) ||
+        end + 1 >= v.size())
+      continue;
     const std::size_t stride = std::max<std::size_t>(1, fall / kKinkMost);
     Restick restick;
     restick.begin = begin, restick.stride = stride;
     std::vector<double> after;
-    for (std::size_t k = end - fall / 2; k < end; ++k) after.push_back(reads(k));
+    for (std::size_t k = end - std::max<std::size_t>(2, (end - down) / 4); k < end; ++k) after.push_back(reads(k));
     const double level = median(std::move(after));
     for (std::size_t k = begin; k < end; k += stride) restick.velocity.push_back(reads(k) - level);
     restick.fall = static_cast<double>(fall) / static_cast<double>(stride);
@@ -189,16 +196,17 @@ double LowPass::corner() const {
 namespace {
 
 /// What re-sticks show from a part of the fastest on. is_explained: there is a filter, or a kink leaves next to
-/// nothing.
+/// nothing (is_sharp).
 struct Look {
   LowPass found;
-  bool is_explained = false;
+  bool is_explained = false, is_sharp = false;
 };
 
-Look look_at(std::span<const double> velocity, double rest, double noise, double step, double fastest, double from) {
+Look look_at(std::span<const double> velocity, double rest, double noise, double step, double fastest, double from,
+             double shortest = kKinkRest) {
   Look look;
   LowPass& found = look.found;
-  const std::vector<Restick> all = resticks(velocity, rest, fastest, from), some = some_of(all);
+  const std::vector<Restick> all = resticks(velocity, rest, fastest, from, shortest), some = some_of(all);
   if (some.size() < kFewestPeriods) return look;
   found.slips = some.size();
   std::vector<double> falls;
@@ -235,8 +243,8 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
                              static_cast<double>(restick.stride) * fit(restick, {false, width}).at);
   }
   const double left = std::max(kKinkNoise * noise, kKinkUnexplained * fastest);
-  const bool is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;
-  look.is_explained = found.is_filter ? is_inside : is_sharp;
+  look.is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;
+  look.is_explained = found.is_filter ? is_inside : look.is_sharp;
   return look;
 }
 
@@ -249,6 +257,14 @@ LowPass find_low_pass(std::span<const double> velocity, double rest, double nois
   const double fastest = quantile(std::move(size), 0.999);
   if (!(fastest > 0)) return {};
   Look look = look_at(velocity, rest, noise, step, fastest, kKinkFrom);
+  // Behind short sticks only the last of the slip shows it.
+  if (look.found.slips == 0) {
+    // A fast slip is no cubic there, which a filter imitates: only that there is none is seen.
+    const Look last = look_at(velocity, rest, noise, step, fastest, kKinkFromShort, kKinkRestShort);
+    if (last.is_sharp) look.found = last.found;
+    look.found.is_filter = look.found.is_first_order = false;
+    return look.found;
+  }
   if (look.is_explained) return look.found;
   // Behind a slow filter the kink is higher up.
   Look higher = look_at(velocity, rest, noise, step, fastest, kKinkFromSlow);

@@ -19,10 +19,12 @@ void MotionStages::undo_distortions() {
     spoilt_->add_standstill(search_, final_level(search_.plateaus), trace_);
   }
   if (!trace_.velocity_std_error.empty()) return;  // the velocity was made from another channel
+  if (range_ends_.velocity_slew > 0) return;       // nothing of this brings back what an amplifier did not follow
   find_zero();
   undo_zero();
-  undo_compression();
   if (search_.sticks) jumps_ = find_lost_samples(trace_, std::max(search_.noise, steps_.velocity));
+  // What was lost of slips is missing in the way of the block.
+  if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();
   undo_clock_drift();
   find_friction_filter();

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "limits.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
 #include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 // The stages of a motion that say what its channels are worth.
 
@@ -41,17 +43,11 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
 }
 
 void MotionStages::check_health() {
-  const bool velocity_was_measured =
-      motion_.velocity_kind != VelocityKind::fixed_block && motion_.velocity_std_error.empty();
-  const std::span<const double> velocity =
-      velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
   motion_.health = {
       std::move(clipping_),
       std::move(drop_outs_),
       kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
-      motion_.kind == RecordKind::motion_only
-          ? HealthItem{health_check::kBandwidth, HealthItem::Status::ok, "friction and velocity were smoothed alike"}
-          : kinematics::check_bandwidth(motion_, velocity, low_pass_),
+      check_band(),
       check_delay(),
       kinematics::check_revolutions(motion_),
       kinematics::check_speed_ripple(motion_, ripple_),
@@ -59,6 +55,26 @@ void MotionStages::check_health() {
       check_level(),
       kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
   };
+}
+
+HealthItem MotionStages::check_band() const {
+  if (motion_.kind == RecordKind::motion_only)
+    return {health_check::kBandwidth, HealthItem::Status::ok, "friction and velocity were smoothed alike"};
+  const bool velocity_was_measured =
+      motion_.velocity_kind != VelocityKind::fixed_block && motion_.velocity_std_error.empty();
+  const std::span<const double> velocity =
+      velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
+  HealthItem item = kinematics::check_bandwidth(motion_, velocity, low_pass_);
+  const std::vector<StickPlateau>& runs = search_.plateaus.runs;
+  std::vector<double> slips;
+  for (std::size_t k = 1; k < runs.size(); ++k)
+    slips.push_back(static_cast<double>((runs[k].begin - runs[k - 1].end) * search_.blocks.length));
+  const double samples = slips.empty() ? kFewSlipSamples : median(std::move(slips));
+  if (samples >= kFewSlipSamples) return item;
+  item.status = std::max(item.status, HealthItem::Status::warning);
+  item.message += fmt::format(
+      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are at stake", samples);
+  return item;
 }
 
 HealthItem MotionStages::check_delay() const {
@@ -89,10 +105,11 @@ HealthItem MotionStages::check_level() const {
 }
 
 void MotionStages::compare_plateau() {
-  if (!is_block() || !speed_was_stated_ || !search_.sticks) return;
+  if (!is_block() || !speed_was_stated_ || !search_.sticks || range_ends_.velocity_slew > 0) return;
   kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
   const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
   if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
+  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, motion_.velocity_zero.std_error / disc_.largest);
   motion_.plateau_ratio = ratio.value;
   motion_.plateau_ratio_std_error = ratio.std_error;
   correct_plateau(motion_, ratio, options_.plateau);

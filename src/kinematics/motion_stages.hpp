@@ -57,6 +57,7 @@ class MotionStages {
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;
   Plateaus plateaus_in_motion() const { return plateaus_within(search_, motion_.trimmed, motion_.size()); }
+  HealthItem check_band() const;
   HealthItem check_delay() const;
   HealthItem check_level() const;
 

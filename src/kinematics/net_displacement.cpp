@@ -111,12 +111,16 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
   const bool is_zero = zero.kind == BlockZero::Kind::zero;
   item.status =
       is_zero || compression != 0 ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
+  const bool is_guess = std::abs(compression) > kSureOfCompression;
+  if (is_guess && !is_zero) item.status = HealthItem::Status::problem;
   item.message += fmt::format("; the block goes nowhere, yet its velocity is off by {:.3g} mm/s on average: ",
                               1e3 * zero.mean.value);
   item.message +=
-      is_zero            ? "its zero was off by as much, taken off"
-      : compression != 0 ? fmt::format("slips are not read like sticks, the gain is {:.3g} % {} at the fastest; undone",
-                                       100 * std::abs(compression), compression > 0 ? "less" : "more")
+      is_zero ? "its zero was off by as much, taken off"
+      : compression != 0
+          ? fmt::format("slips are not read like sticks, the gain is {:.3g} % {} at the fastest; undone{}",
+                        100 * std::abs(compression), compression > 0 ? "less" : "more",
+                        is_guess ? " as of third order, mu_k and alpha are at stake" : "")
       : speed_was_stated
           ? "slips are not read like sticks (a compressed velocity), or samples are missing; mu_k and alpha are at "
             "stake"

@@ -28,14 +28,75 @@ double half_sample_mode(std::span<const double> sorted) {
   return std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
 }
 
-// A plateau is flat when its middle does not stand out from its shoulders.
-bool is_flat(std::span<const double> run, double half_band) {
+// How far the middle of a plateau stands out from its shoulders.
+double bend_of(std::span<const double> run) {
   const std::size_t n = run.size(), eighth = std::max<std::size_t>(1, n / 8);
-  if (n < kFewestBlocks) return false;
   const auto middle = run.subspan(n / 2 - std::min(n / 2, eighth), 2 * eighth);
   const auto left = run.subspan(eighth / 2, 2 * eighth);
   const auto right = run.subspan(n - eighth / 2 - 2 * eighth, 2 * eighth);
-  return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right))) < kFlatness * half_band * 2;
+  return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right)));
+}
+
+/// Stretches within a band about the mode that are flat (unless any will do), how long the usual one is, and how far
+/// its middle stands out, over the band.
+struct FlatRuns {
+  std::vector<StickPlateau> runs;
+  double bend = 0, length = 0;
+  std::size_t level = 0, within = 0;  ///< blocks that are flat, of those within the band
+};
+
+FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_band, double flatness) {
+  FlatRuns flat;
+  std::vector<double> bends, lengths;
+  for (std::size_t i = 0; i < velocity.size();) {
+    if (std::abs(velocity[i] - mode) > half_band) {
+      ++i;
+      continue;
+    }
+    StickPlateau run{i, i, 0};
+    while (i < velocity.size() && std::abs(velocity[i] - mode) <= half_band) ++i;
+    run.end = i;
+    if (run.size() < kFewestBlocks) continue;
+    lengths.push_back(static_cast<double>(run.size()));
+    flat.within += run.size();
+    const double bend = bend_of(velocity.subspan(run.begin, run.size())) / (2 * half_band);
+    if (bend >= flatness) continue;
+    run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
+    flat.runs.push_back(run);
+    flat.level += run.size();
+    bends.push_back(bend);
+  }
+  if (!bends.empty()) flat.bend = median(std::move(bends));
+  if (!lengths.empty()) flat.length = median(std::move(lengths));
+  return flat;
+}
+
+/// Noise of neighbours in the middle of runs.
+double noise_within(std::span<const double> velocity, const std::vector<StickPlateau>& runs) {
+  std::vector<double> bends;
+  for (const StickPlateau& run : runs) {
+    for (std::size_t i = run.inner_begin() + 1; i + 1 < run.inner_end(); ++i)
+      bends.push_back(std::abs(velocity[i - 1] - 2 * velocity[i] + velocity[i + 1]));
+  }
+  return bends.empty() ? 0 : kSigmaPerMad * median(std::move(bends)) / std::sqrt(6.0);
+}
+
+/// In a band that is wide for a short stick the beginning of the slip belongs to the run: a narrower one leaves it out.
+/// A stick then stays as long as it is; a turning point gets shorter with the root of the band.
+std::vector<StickPlateau> runs_about(std::span<const double> velocity, double mode, double half_band) {
+  FlatRuns wide = flat_runs(velocity, mode, half_band, kFlatness);
+  const bool are_long = static_cast<double>(wide.within) > kLongSticks * static_cast<double>(velocity.size());
+  if (are_long || (2 * wide.level > wide.within && wide.bend < kClearlyFlat)) return std::move(wide.runs);
+  double length = wide.length;
+  for (double band = kNarrower * half_band; band > kNarrowestBand * half_band; band *= kNarrower) {
+    FlatRuns narrow = flat_runs(velocity, mode, band, HUGE_VAL);
+    if (band < kBandNoise * noise_within(velocity, narrow.runs)) break;
+    if (narrow.length > kKeepsLength * length && 2 * narrow.runs.size() > wide.runs.size()) {
+      return std::move(narrow.runs);
+    }
+    length = narrow.length;
+  }
+  return std::move(wide.runs);
 }
 
 double weighted_level(const std::vector<StickPlateau>& runs) {
@@ -70,19 +131,7 @@ Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRang
   const double mode = half_sample_mode(candidates);
   const std::size_t tail = sorted.size() / 1000;
   plateaus.depth = std::max(sorted[sorted.size() - 1 - tail] - mode, mode - sorted[tail]);
-  const double half_band = kPlateauBand * plateaus.depth;
-  for (std::size_t i = 0; i < velocity.size();) {
-    if (std::abs(velocity[i] - mode) > half_band) {
-      ++i;
-      continue;
-    }
-    StickPlateau run{i, i, 0};
-    while (i < velocity.size() && std::abs(velocity[i] - mode) <= half_band) ++i;
-    run.end = i;
-    if (!is_flat(velocity.subspan(run.begin, run.size()), half_band)) continue;
-    run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
-    plateaus.runs.push_back(run);
-  }
+  plateaus.runs = runs_about(velocity, mode, kPlateauBand * plateaus.depth);
   plateaus.level = weighted_level(plateaus.runs);
   return plateaus;
 }

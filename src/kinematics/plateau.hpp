@@ -35,7 +35,8 @@ struct LevelRange {
 /// Finds the level on which the velocity rests most (half-sample mode) and the stretches that rest on it.
 ///
 /// A stretch within 12 % of the largest excursion counts when it is flat: a turning point of a smooth oscillation is
-/// a parabola whose middle stands out from its shoulders, a stick is not, whether it is noisy, rings or sags.
+/// a parabola whose middle stands out from its shoulders, a stick is not, whether it is noisy, rings or sags. Where
+/// sticks are short beside the slips the band is narrowed, as far as the noise lets it.
 /// Cost: n log n for at most 2^15 of the blocks, linear in the rest.
 Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range = {});
 

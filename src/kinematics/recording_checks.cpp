@@ -47,12 +47,17 @@ std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks,
   return runs;
 }
 
-std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks) {
+/// smooths: a crowd is looked for behind noise, too. A velocity crowds where the contact creeps.
+std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks, bool smooths) {
   const Extremes range = chunks.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < 16 || range.low == range.high || repeats_elsewhere(x, range)) return ends;
-  const std::array<PileUp, 2> piles = find_pile_ups(x);
+  std::array<PileUp, 2> piles = find_pile_ups(x);
+  const std::array<PileUp, 2> smoothed = smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (piles[k].density < kCrowdedAlone && !piles[k].is_quiet && smoothed[k].count > 0) piles[k] = smoothed[k];
+  }
   for (std::size_t k = 0; k < 2; ++k) {
     ends[k].spans = runs_at(x, chunks, ends[k].at);
     for (const SampleSpan& run : ends[k].spans) ends[k].count += run.size();
@@ -94,8 +99,10 @@ Gaps gaps_of(std::span<const double> time, double step) {
 }  // namespace
 
 RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
-  return {ends_of(trace.friction, friction), ends_of(trace.velocity, velocity),
-          std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high))};
+  const bool recorded = trace.velocity_std_error.empty();  // not made from another channel
+  return {ends_of(trace.friction, friction, true), ends_of(trace.velocity, velocity, false),
+          std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high)),
+          recorded ? find_slew_limit(trace.friction) : 0, recorded ? find_slew_limit(trace.velocity) : 0};
 }
 
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
@@ -135,6 +142,18 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
     if (rests_at(end.at, range / static_cast<double>(kNarrowestRange)) || !resting.plateau) seen.pile.count = 0;
     add_warning(velocity, seen, "mu_k and alpha are");
   }
+  const auto add_slew = [&](const Units& channel, double change) {
+    if (!resting.sticks || change == 0) return;
+    const bool is_first = item.status == Status::ok;
+    item.status = Status::problem;
+    item.message = fmt::format(
+        "{}{}{} changes by {:.3g}{} a second and never faster: its amplifier cannot follow; mu_s, "
+        "mu_k and alpha are at stake",
+        is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * change / trace.interval(),
+        channel.unit);
+  };
+  add_slew(friction, ends.friction_slew);
+  add_slew(velocity, ends.velocity_slew);
   if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
     const double declared = instruments.vibrometer.range->value;
     if (ends.largest_velocity >= 0.995 * declared) {
@@ -164,8 +183,7 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
     for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
     return item;
   }
-  const bool loses =
-      lost.jumps >= kFewestJumps && static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
+  const bool loses = are_lost(lost, plateaus);
   if (gaps.count == 0 && spoilt_by.empty() && !loses) return item;
   const auto faults = static_cast<double>(gaps.count + spoilt.spikes());
   const bool many = loses || faults > 1e-3 * static_cast<double>(n) || spoilt.frozen_part() > 0.05;

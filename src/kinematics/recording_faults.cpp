@@ -174,6 +174,7 @@ PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts
   if (best.density < kCrowdedQuiet) return {};
   const double from = upper ? range.high - width : range.low, to = upper ? range.high : range.low + width;
   best.level = 0.5 * (from + to);
+  best.from = from, best.to = to;
   best.is_quiet = noise_within(x, from, to) < kQuiet;
   best.spans = spans_at_limit(x, from, to);
   return best;
@@ -220,6 +221,59 @@ std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {
     ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((x - range.low) * scale))];
   }
   return {pile_up(channel, counts, range, false), pile_up(channel, counts, range, true)};
+}
+
+namespace {
+
+/// Stretches within the crowd of at least so many samples.
+std::vector<SampleSpan> runs_within(std::span<const double> x, double from, double to, std::size_t least) {
+  std::vector<SampleSpan> runs;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] < from || x[i] > to) continue;
+    const std::size_t begin = i;
+    while (i < x.size() && x[i] >= from && x[i] <= to) ++i;
+    if (i - begin >= least) runs.push_back({begin, i});
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::array<PileUp, 2> find_smoothed_pile_ups(std::span<const double> channel) {
+  std::array<PileUp, 2> found;
+  const std::vector<double> means = block_means(channel, kSmoothedOver, 1).mean;
+  const std::array<PileUp, 2> piles = find_pile_ups(means);
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (piles[k].density < kCrowdedSmoothed) continue;
+    PileUp pile = piles[k];
+    pile.spans = runs_within(means, pile.from, pile.to, kFewestSmoothed);
+    std::size_t blocks = 0;
+    for (SampleSpan& span : pile.spans) {
+      blocks += span.size();
+      span = {span.begin * kSmoothedOver, span.end * kSmoothedOver};
+    }
+    if (2 * blocks < pile.count) continue;
+    pile.count = blocks * kSmoothedOver;
+    pile.is_quiet = false;
+    found[k] = pile;
+  }
+  return found;
+}
+
+double find_slew_limit(std::span<const double> channel) {
+  if (channel.size() < kFewestSamples) return 0;
+  std::vector<double> changes(channel.size() - 1);
+  for (std::size_t i = 0; i < changes.size(); ++i) changes[i] = channel[i + 1] - channel[i];
+  const double step = find_resolution(channel);
+  for (const PileUp& pile : find_pile_ups(changes)) {
+    if (pile.density < kCrowdedAlone || std::abs(pile.level) < kSlewSteps * step) continue;
+    const double reach = kSlewWidth * std::abs(pile.level);
+    std::size_t samples = 0;
+    for (const SampleSpan& run : runs_within(changes, pile.level - reach, pile.level + reach, kShortestSlew))
+      samples += run.size();
+    if (2 * samples > pile.count) return std::abs(pile.level);
+  }
+  return 0;
 }
 
 }  // namespace tribofit::kinematics

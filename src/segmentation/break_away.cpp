@@ -16,20 +16,12 @@ namespace {
 /// An onset with the level of its own stick: creep of the contact, a ripple of the disc or a wrong radius is no slip.
 struct Rise {
   Onset onset;
-  double stick_level = 0;  // v above the plateau in the third quarter of the stick [m/s]
+  double stick_level = 0;     // v above the plateau in a quarter of the stick, the third where that is long [m/s]
+  std::size_t level_end = 0;  // of that quarter
 };
 
 double above_stick(const Motion& m, const Rise& r, std::size_t i) {
   return r.onset.direction * above_plateau(m, i) - r.stick_level;
-}
-
-Rise rise_of(const Motion& m, const Onset& onset) {
-  Rise rise{onset, 0};
-  const std::size_t n = onset.slip - onset.stick_begin, begin = onset.stick_begin + n / 2, end = begin + n / 4;
-  if (n < 32) return rise;
-  for (std::size_t i = begin; i < end; ++i) rise.stick_level += above_stick(m, {onset, 0}, i);
-  rise.stick_level /= static_cast<double>(end - begin);
-  return rise;
 }
 
 // First sample above `level` of the rise that leads to the slip.
@@ -37,6 +29,25 @@ std::size_t rises_above(const Motion& m, const Rise& r, double level) {
   std::size_t i = r.onset.slip;
   while (i > r.onset.stick_begin && above_stick(m, r, i - 1) > level) --i;
   return i;
+}
+
+Rise rise_of(const Motion& m, const Onset& onset) {
+  constexpr std::size_t kDoublings = 6;  // of the velocity, at the last one's pace: break-away is four to five before
+  const Rise flat{onset, 0, onset.stick_begin};
+  const std::size_t n = onset.slip - onset.stick_begin;
+  if (n < 32) return flat;
+  // A short stick ends well before the velocity has grown to where the slip begins.
+  const std::size_t half = rises_above(m, flat, 0.5 * above_stick(m, flat, onset.slip));
+  const std::size_t doublings = kDoublings * (onset.slip - half);
+  // What doubles over a good part of the stick is creep, or a motion that only turns: the third quarter is its level.
+  const bool creeps = 4 * (onset.slip - half) > n;
+  const std::size_t grown = creeps ? n / 4 : std::clamp(doublings, n / 4, n);
+  const std::size_t length = std::min(n / 4, n - grown), end = onset.slip - grown;
+  if (length < 4) return flat;
+  Rise rise{onset, 0, end};
+  for (std::size_t i = end - length; i < end; ++i) rise.stick_level += above_stick(m, flat, i);
+  rise.stick_level /= static_cast<double>(length);
+  return rise;
 }
 
 // Time constant of the growth [samples] from the time between two levels, as if it were exponential.
@@ -56,8 +67,8 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   const std::size_t crossing = rises_above(m, r, level);
   // Eight time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp
   // onset.
-  const auto stick = static_cast<double>(r.onset.slip - r.onset.stick_begin);
-  const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick / 4))));
+  const auto stick = static_cast<double>(r.onset.slip - std::min(r.level_end, crossing));
+  const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick))));
   w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
   // In a short stick the window may reach back into the end of the slip before.
   while (w.begin < crossing && above_stick(m, r, w.begin) > level) ++w.begin;

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -13,6 +17,18 @@ constexpr std::size_t kFewestSamples = 16, kFewestPoints = 5;
 
 bool is_constant(const std::vector<double>& channel) {
   return std::all_of(channel.begin(), channel.end(), [&](double x) { return x == channel.front(); });
+}
+
+/// A block that slides at one speed: what its velocity does is within the noise of its reading.
+bool slides_at_one_speed(const Motion& motion, const Segmentation& segmentation) {
+  constexpr std::size_t kEnough = 20000;  // samples for a quantile
+  constexpr double kSigmas = 8;           // between both ends of noise that is a little coloured
+  constexpr double kPart = 0.05;          // of the speed, above which friction may follow it
+  if (segmentation.kind != MotionKind::always_slipping || motion.velocity_kind == VelocityKind::fixed_block)
+    return false;
+  const std::vector<double> some = thinned(motion.relative_velocity, kEnough);
+  const double range = quantile(some, 0.995) - quantile(some, 0.005);
+  return range < std::min(kSigmas * motion.velocity_noise, kPart * std::abs(median(some)));
 }
 
 }  // namespace
@@ -40,6 +56,10 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
     found.emplace_back("the velocity is the same in every sample: the channel was not recorded");
   if (found.empty() && must_slip && segmentation.kind == MotionKind::always_sticking)
     found.emplace_back("nothing slips in this trace: there is no friction law to fit");
+  if (found.empty() && must_slip && slides_at_one_speed(motion, segmentation))
+    found.emplace_back(
+        "the block slides at one speed, its velocity only has noise: friction at one speed shows no law of speed; take "
+        "the means of several such runs as points");
   return found;
 }
 

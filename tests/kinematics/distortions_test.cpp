@@ -135,6 +135,7 @@ TEST(Distortions, LowPassesOfFirstOrderAreFoundAndUndone) {
   const Trace sound = silent(3);
   for (const double s : kSlower) {
     for (const double corner : {100.0, 200.0, 500.0, 1000.0, 2000.0}) {
+      if (s != 1 && corner != 200 && corner != 1000) continue;     // what is scale-free is so at any corner
       const double tau = 20000 / (2 * std::numbers::pi * corner);  // samples
       for (const bool both : {true, false}) {
         Trace trace = sound;
@@ -174,6 +175,7 @@ TEST(Distortions, ALowPassThatIsTooSlowIsAProblem) {
 TEST(Distortions, ALowPassOfFrictionAloneIsFound) {
   for (const double s : kSlower) {
     for (const double corner : {100.0, 200.0, 500.0, 1000.0, 2000.0}) {
+      if (s != 1 && corner != 200 && corner != 1000) continue;
       Trace trace = silent(4);
       const double tau = 20000 / (2 * std::numbers::pi * corner), truth = tau * 5e-5 * s;
       filter(trace.friction, tau);

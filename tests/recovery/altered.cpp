@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../kinematics/stick_slip_truth.hpp"
-#include "alterations.hpp"
+#include "altered_cases.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
@@ -102,6 +102,22 @@ TEST(NotAltered, OtherSpeedsAndRatesHaveNoProblem) {
   }
 }
 
+/// Down to sticks of ten samples nothing is off and nothing is found.
+TEST(NotAltered, ShortSticksLeaveNoBias) {
+  for (const double rpm : {120.0, 180.0, 210.0}) {
+    for (const double rate : {20e3, 5e3}) {
+      truth::Rig rig = rig_of(12);
+      rig.rpm = rpm, rig.rate = rate, rig.duration = 4;
+      SCOPED_TRACE(std::to_string(rpm) + " rpm at " + std::to_string(rate) + " Hz");
+      const Identification found = identified(truth::simulate(rig).trace);
+      expect_true(found, rig);
+      EXPECT_EQ(item(found, "plateau-speed").status, HealthItem::Status::ok);
+      EXPECT_EQ(item(found, "channel-delay").status, HealthItem::Status::ok);
+      EXPECT_FALSE(found.motion.velocity_low_pass.any());
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Altered, ::testing::Range<std::size_t>(0, alterations().size()));
 
 TEST(NotAltered, ASoundRecordLosesNoSample) {
@@ -171,6 +187,41 @@ TEST(Diagnosed, NamesWhatWasDoneToTheReadings) {
     }
     EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(done.names));
   }
+}
+
+/// Some of the long list, of which altered_benchmark runs all.
+TEST(Diagnosed, IsNotConfidentAndWrong) {
+  for (const AlteredCase& one : altered_cases()) {
+    const auto is = [&](const char* text) { return one.name.starts_with(text); };
+    const bool is_picked = is("friction: clipped at 0.45, dither 0.002") || is("velocity: zero off by 2 mm/s") ||
+                           is("5 % of samples lost, 10 each") || is("averaged in blocks of 40 (4 rpm)") ||
+                           is("load swings by 20 % in 7 s");
+    if (!is_picked) continue;
+    const Judged judged = judge(one);
+    EXPECT_NE(judged.outcome, Outcome::wrong) << one.name << judged.text;
+  }
+}
+
+TEST(Diagnosed, OffersALoadThatNobodyRecorded) {
+  for (const AlteredCase& one : altered_cases()) {
+    if (one.name.starts_with("load swings by 20 % in 7 s")) {
+      EXPECT_THAT(judge(one).text, ::testing::HasSubstr("possible load-dependence"));
+    }
+  }
+}
+
+/// An amplifier that follows no faster is seen in either channel.
+TEST(NotAltered, OnlyASlewLimitHasOne) {
+  for (const Channel channel : {kFriction, kVelocity}) {
+    Trace trace = truth::simulate(rig_of(11)).trace;
+    Random random;
+    slew_limited({channel}, 0.5)(trace, random);
+    const Identification found = identified(std::move(trace));
+    EXPECT_EQ(item(found, "clipping").status, HealthItem::Status::problem);
+    EXPECT_THAT(item(found, "clipping").message, ::testing::HasSubstr("never faster"));
+  }
+  const Identification sound = identified(truth::simulate(rig_of(11)).trace);
+  EXPECT_EQ(item(sound, "clipping").status, HealthItem::Status::ok);
 }
 
 /// A v_r that was measured is held against rest in stick and omega r.

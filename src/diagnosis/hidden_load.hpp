@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "tribofit/diagnosis/diagnosis.hpp"
+
+namespace tribofit::diagnosis {
+
+/// Offers a load that moves and was not recorded: where structure remains that no effect explains, and friction rises
+/// and falls from cycle to cycle in proportion at break-away and in fast slip, the effect of the load channel is
+/// possible. A step of friction that was found may be one of the load.
+void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis);
+
+}  // namespace tribofit::diagnosis
