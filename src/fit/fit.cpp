@@ -133,12 +133,26 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   set_floor(floor, fit);
 }
 
+/// Adds an error that all cycles share to those from cycle to cycle.
+void widen(double error, FitParameter& p) {
+  constexpr double kNormal95 = 1.96;
+  if (!(error > 0) || !std::isfinite(p.std_error)) return;
+  const bool positive = p.lower95 >= 0;
+  p.upper95 = p.value + std::hypot(p.upper95 - p.value, kNormal95 * error);
+  p.lower95 = p.value - std::hypot(p.value - p.lower95, kNormal95 * error);
+  if (positive) p.lower95 = std::max(p.lower95, 0.0);
+  p.std_error = std::hypot(p.std_error, error);
+}
+
 /// What the declared instruments make uncertain, and of one record the creep in stick.
 void fill_errors_of_records(const FitContext& context, const std::vector<double>& p, const std::vector<bool>& free,
                             Fit& fit) {
   const std::vector<double> systematic = systematic_errors(context.model, p, context.records, context.observations,
                                                            context.instruments, free, context.by_extremes());
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
+  const std::vector<double> smoothing =
+      smoothing_errors(context.model, p, context.records, context.observations, free, context.by_extremes());
+  for (std::size_t k = 0; k < p.size(); ++k) widen(smoothing[k], fit.parameters[k]);
   const Record& record = context.records[0];
   if (context.records.size() == 1 && context.model.acts_in_stick())
     fit.stick_rmse = stick_creep_rmse(context.model, p, *record.motion, *record.segmentation);

@@ -40,4 +40,8 @@ inline constexpr double kClose = 0.02, kOutline = 0.08;
 /// p value from which one law is clearly better than another.
 inline constexpr double kClearlyBetter = 0.05;
 
+/// Of the standard deviation of the weights by which a slider's velocity is smoothed, as standard uncertainty of its
+/// break-away: in simulated sliders (three springs, three speeds, 12 and 19 bits) it is 0.3 early to 0.8 late.
+inline constexpr double kPartOfSmoothing = 0.5;
+
 }  // namespace tribofit

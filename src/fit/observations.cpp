@@ -144,6 +144,8 @@ void add_velocity_variance(const Motion& motion, const Reducer& reduce, Observat
     const double mean = out.velocity[value++];
     double squares = 0;
     for (std::size_t i = begin; i < end; ++i) squares += std::pow(motion.relative_velocity[i] - mean, 2);
+    for (std::size_t i = begin; i < end && !motion.velocity_variance.empty(); ++i)
+      squares += motion.velocity_variance[i];
     out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
   });
 }
@@ -264,6 +266,10 @@ std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& s
   constexpr double kPart = 0.015;
   const double stretch = kPart * static_cast<double>(samples.size());
   const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, 10.0));
+  if (!motion.acceleration.empty()) {
+    const std::span<const double> own = part_of(motion.acceleration, samples.begin, samples.end);
+    return {own.begin(), own.end()};
+  }
   const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
   const std::size_t length = samples.end - begin;
   std::vector<double> acceleration(samples.size(), 0.0);
@@ -377,7 +383,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
   weigh_points(motion, out);
-  if (out.samples_per_value > 1) add_velocity_variance(motion, reduce, out);
+  if (out.samples_per_value > 1 || !motion.velocity_variance.empty()) add_velocity_variance(motion, reduce, out);
   add_channels(motion, needs, reduce, out);
   set_extent(out);
   out.scales = scales_of({&out, 1});

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "influence.hpp"
+#include "limits.hpp"
 
 namespace tribofit {
 
@@ -21,6 +22,9 @@ struct Shift {
   /// |friction| by offset + part |friction|, break-aways and extremes too; one per record, or empty.
   std::vector<double> offset = {}, part = {};
 
+  std::vector<double> break_away = {};  ///< by which it is late or early [s], one per record, or empty
+
+  double late_of(std::size_t record) const { return break_away.empty() ? 0 : break_away[record]; }
   double offset_of(std::size_t record) const { return offset.empty() ? 0 : offset[record]; }
   double part_of(std::size_t record) const { return part.empty() ? 0 : part[record]; }
   bool known() const {
@@ -261,6 +265,8 @@ Observations moved(const Observations& observations, const Shift& shift) {
       out.friction[i] += offset + part * out.friction[i];
     }
     slip.break_away_friction += slip.direction * offset + part * slip.break_away_friction;
+    if (const double late = shift.late_of(slip.record); late > 0 && std::isfinite(slip.stick_slope))
+      slip.break_away_friction += late * slip.stick_slope;
   }
   return out;
 }
@@ -278,19 +284,11 @@ Eigen::VectorXd moved_levels(const Observations& observations, const Shift& shif
   return levels;
 }
 
-}  // namespace
-
-std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
-                                      std::span<const Record> records, const Observations& observations,
-                                      const Instruments& instruments, const std::vector<bool>& free, bool published) {
+/// By how much each parameter follows the shifts, which are independent.
+std::vector<double> errors_of(const std::vector<Shift>& shifts, const FrictionModel& model,
+                              const std::vector<double>& p, const Observations& observations,
+                              const std::vector<bool>& free, bool published) {
   std::vector<double> squares(p.size(), 0.0);
-  std::vector<Shift> shifts;
-  const Sources sources(records, observations, instruments);
-  add_disc_shifts(sources, shifts);
-  add_vibrometer_shifts(sources, shifts);
-  add_undone_shifts(sources, shifts);
-  add_delay_shifts(sources, shifts);
-  add_friction_shifts(sources, shifts);
   if (shifts.empty()) return squares;
   if (!std::all_of(shifts.begin(), shifts.end(), [](const Shift& shift) { return shift.known(); }))
     return std::vector<double>(p.size(), kUnknown);
@@ -314,6 +312,33 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
   }
   for (double& s : squares) s = std::sqrt(s);
   return squares;
+}
+
+}  // namespace
+
+std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
+                                      std::span<const Record> records, const Observations& observations,
+                                      const Instruments& instruments, const std::vector<bool>& free, bool published) {
+  std::vector<Shift> shifts;
+  const Sources sources(records, observations, instruments);
+  add_disc_shifts(sources, shifts);
+  add_vibrometer_shifts(sources, shifts);
+  add_undone_shifts(sources, shifts);
+  add_delay_shifts(sources, shifts);
+  add_friction_shifts(sources, shifts);
+  return errors_of(shifts, model, p, observations, free, published);
+}
+
+std::vector<double> smoothing_errors(const FrictionModel& model, const std::vector<double>& p,
+                                     std::span<const Record> records, const Observations& observations,
+                                     const std::vector<bool>& free, bool published) {
+  std::vector<Shift> shifts;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    if (!(records[r].motion->smoothing > 0)) continue;
+    shifts.push_back({.break_away = std::vector<double>(records.size(), 0.0)});
+    shifts.back().break_away[r] = kPartOfSmoothing * records[r].motion->smoothing;
+  }
+  return errors_of(shifts, model, p, observations, free, published);
 }
 
 }  // namespace tribofit

@@ -17,4 +17,10 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
                                       std::span<const Record> records, const Observations& observations,
                                       const Instruments& instruments, const std::vector<bool>& free, bool published);
 
+/// Standard uncertainty of each parameter from when a spring slider breaks away, which its smoothed velocity shows
+/// early or late by a part of the smoothing, in every cycle alike. Zero for other records.
+std::vector<double> smoothing_errors(const FrictionModel& model, const std::vector<double>& p,
+                                     std::span<const Record> records, const Observations& observations,
+                                     const std::vector<bool>& free, bool published);
+
 }  // namespace tribofit

@@ -207,6 +207,11 @@ inline constexpr double kFrequencyAgrees = 0.2;
 /// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
 inline constexpr double kUnsure = 2.5;
 inline constexpr std::size_t kBesideUnsure = 2;
+/// Standard errors of the velocity and part of the fastest slip, from which a slider on a spring slips: segmentation
+/// takes the same.
+inline constexpr double kSlipsOverError = 8, kSlipsOverFastest = 0.06;
+/// Windows before that, in which a slip begins: the velocity grows e-fold in one or less.
+inline constexpr std::size_t kRisesWithin = 2;
 /// Of the largest velocity, from which a swing counts for the level of friction in its direction: slower, friction is
 /// that of the turning point.
 inline constexpr double kSlidesFreely = 0.3;

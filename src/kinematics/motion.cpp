@@ -187,6 +187,8 @@ void MotionStages::make_relative_motion() {
       {&trace_.velocity, &motion_.relative_velocity},
       {&trace_.friction_std_error, &motion_.friction_std_error},
       {&trace_.velocity_std_error, &motion_.velocity_std_error},
+      {&trace_.acceleration, &motion_.acceleration},
+      {&trace_.velocity_variance, &motion_.velocity_variance},
       {&trace_.load, &motion_.load},
       {&trace_.temperature, &motion_.temperature},
       {&trace_.disc_speed, &motion_.disc_speed},
@@ -198,6 +200,7 @@ void MotionStages::make_relative_motion() {
   }
   kinematics::drop_ends(motion_.faults, head, lost_.tail);
   motion_.trimmed = head;
+  motion_.smoothing = trace_.smoothing;
   motion_.conditions = trace_.conditions;
   motion_.steps = kinematics::steps_within(trace_.steps, head, motion_.size());
 }

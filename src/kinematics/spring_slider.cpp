@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "smoothing.hpp"
 #include "statistics/local_derivatives.hpp"
+#include "statistics/smoothed_derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -46,6 +47,65 @@ std::string contradiction(const SpringDrive& spring, double frequency_found) {
       frequency_found / turn, stated / turn);
 }
 
+/// Whether the slider slips, sample by sample, as its velocity shows it.
+std::vector<bool> slipping(const Trace& trace, double drive) {
+  double fastest = 0;
+  for (const double v : trace.velocity) fastest = std::max(fastest, std::abs(drive - v));
+  const double least = std::max(kSlipsOverError * usual_error(trace.velocity_std_error), kSlipsOverFastest * fastest);
+  std::vector<bool> slips;
+  for (const double v : trace.velocity) slips.push_back(std::abs(drive - v) > least);
+  return slips;
+}
+
+/// Samples whose stretch is of a slip alone, and those whose stretch holds the end of one.
+struct Stretches {
+  std::vector<std::size_t> whole, mixed;
+  std::size_t mixed_slips = 0;  ///< of mixed, those in a slip
+};
+
+Stretches stretches_of(const std::vector<bool>& slips, std::size_t reach) {
+  const std::size_t n = slips.size(), clear = reach + kBesideUnsure, rise = kRisesWithin * reach;
+  std::vector<std::size_t> before(n, 0), behind(n, 0);  // samples of the same phase
+  for (std::size_t i = 1; i < n; ++i) before[i] = slips[i] == slips[i - 1] ? before[i - 1] + 1 : 0;
+  for (std::size_t i = n - 1; i-- > 0;) behind[i] = slips[i] == slips[i + 1] ? behind[i + 1] + 1 : 0;
+  Stretches out;
+  for (std::size_t i = clear; i + clear < n; ++i) {
+    const bool at_end = before[i] < (slips[i] ? clear : 0) || behind[i] < (slips[i] ? clear : rise);
+    if (at_end) out.mixed.push_back(i);
+    if (at_end && slips[i]) ++out.mixed_slips;
+    if (!at_end && slips[i]) out.whole.push_back(i);
+  }
+  return out;
+}
+
+/// Where the slider slips throughout a stretch: pull, slope and bend as means over it with the same weights, of which
+/// the force balance holds exactly. Stretches with a part of a stick show no law of sliding, and take no part; where
+/// most of the slips are such, all stays as it is. Errors of the velocity stay those of the wider window, by which
+/// stick is told from slip.
+void smooth_alike(const LocalDerivatives& pull, const std::vector<double>& raw, std::size_t half, double unit,
+                  Trace& trace) {
+  if (!trace.spring.velocity.known()) return;
+  const SmoothedDerivatives mean = smoothed_derivatives(raw, trace.interval(), half);
+  const Stretches stretches = stretches_of(slipping(trace, trace.spring.velocity.value), mean.reach);
+  if (stretches.whole.size() < stretches.mixed_slips) return;
+  const double to_speed = unit / trace.spring.stiffness.value;
+  const double mass = trace.spring.mass.known() ? trace.spring.mass.value / unit : 0;
+  const double unsure = 2 * kUnsure * usual_error(trace.velocity_std_error);
+  trace.smoothing = std::sqrt(mean.variance);
+  trace.velocity_variance.assign(trace.size(), 0.0);
+  trace.acceleration = pull.bend;
+  for (double& a : trace.acceleration) a *= to_speed;
+  for (const std::size_t i : stretches.mixed)
+    trace.velocity_std_error[i] = std::max(trace.velocity_std_error[i], unsure);
+  for (const std::size_t i : stretches.whole) {
+    trace.velocity[i] = to_speed * mean.slope[i];
+    trace.acceleration[i] = to_speed * mean.bend[i];
+    trace.friction[i] = mean.value[i] + mass * trace.acceleration[i];
+    trace.velocity_variance[i] = mean.variance * trace.acceleration[i] * trace.acceleration[i];
+    trace.friction_std_error[i] = pull.noise * std::hypot(mean.value_gain, mass * to_speed * mean.bend_gain);
+  }
+}
+
 }  // namespace
 
 void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
@@ -66,25 +126,33 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
   const double to_speed = unit / spring.stiffness.value;
   const double inertia = has_mass ? spring.mass.value / spring.stiffness.value : 0;
   trace.velocity_kind = VelocityKind::block;
+  std::vector<double> raw(trace.size());
   trace.velocity.resize(trace.size());
   trace.velocity_std_error.resize(trace.size());
   trace.friction_std_error.resize(trace.size());
   for (std::size_t i = 0; i < trace.size(); ++i) {
     trace.velocity[i] = to_speed * pull.slope[i];
     trace.velocity_std_error[i] = to_speed * pull.slope_std_error[i];
+    raw[i] = trace.friction[i];
     trace.friction[i] += inertia * pull.bend[i];
     trace.friction_std_error[i] = std::hypot(pull.noise, inertia * pull.bend_std_error[i]);
   }
+  smooth_alike(pull, raw, half, unit, trace);
   notes.push_back(
       fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms), "
-                  "which rounds break-away and re-stick: intervals do not hold that",
+                  "in slips with acceleration and friction as means over the same",
                   2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
+  if (!has_mass && found > 0) {
+    notes.push_back(fmt::format(
+        "spring: the steepest fall of the pull is that of {:.3g} Hz, which with the stiffness is a mass of {:.3g} g",
+        found / (2 * std::numbers::pi), 1e3 * spring.stiffness.value / (found * found)));
+  }
   if (has_mass && !contradiction(spring, found).empty()) notes.push_back(contradiction(spring, found));
   if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));
 }
 
 double usual_error(const std::vector<double>& errors) {
-  return errors.empty() ? 0 : median(errors);
+  return errors.empty() ? 0 : quantile(errors, 0.25);
 }
 
 std::vector<SampleSpan> unsure_samples(const Trace& trace) {

@@ -51,6 +51,11 @@ struct Trace {
   /// empty: not known.
   std::vector<double> friction_std_error, velocity_std_error;
 
+  /// Of a spring slider, beside a velocity and friction that are means over the same stretches: the acceleration over
+  /// them [m/s^2], and by how much the velocity varies within them [m^2/s^2]. Empty: not known.
+  std::vector<double> acceleration, velocity_variance;
+  double smoothing = 0;  ///< standard deviation of the weights of those means over time [s]
+
   std::vector<double> load;         ///< normal force [N]
   std::vector<double> temperature;  ///< [degC]
   std::vector<double> disc_speed;   ///< [rad/s]

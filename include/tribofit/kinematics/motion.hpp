@@ -69,6 +69,9 @@ struct Motion {
   /// were made; empty: not known.
   std::vector<double> friction_std_error, velocity_std_error;
 
+  std::vector<double> acceleration, velocity_variance;  ///< as in Trace; of the block, of v_r within a sample
+  double smoothing = 0;                                 ///< as in Trace [s]
+
   std::optional<RecordKind> kind;  ///< as in Trace
   std::string kind_source;         ///< as in Trace
   SpringDrive spring;              ///< of a spring slider
