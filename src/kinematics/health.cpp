@@ -92,7 +92,9 @@ std::string describe(const char* name, const Band& band) {
 }
 
 /// Samples beside re-stick among which its jump of friction is.
-std::size_t delay_window(const Plateaus& plateaus, std::size_t factor) {
+std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double step) {
+  constexpr double kLongest = 0.01;  // s; more holds what else friction does where its jump is not sharp
+
   std::vector<double> sticks, slips;
   for (std::size_t k = 0; k < plateaus.runs.size(); ++k) {
     sticks.push_back(static_cast<double>(plateaus.runs[k].size()));
@@ -100,7 +102,7 @@ std::size_t delay_window(const Plateaus& plateaus, std::size_t factor) {
   }
   if (slips.empty()) return 4;
   const double shorter = std::min(median(std::move(sticks)), median(std::move(slips))) * static_cast<double>(factor);
-  return static_cast<std::size_t>(std::clamp(kDelayReach * shorter, 4.0, 2000.0));
+  return static_cast<std::size_t>(std::clamp(std::min(kDelayReach * shorter, kLongest / step), 4.0, 2000.0));
 }
 
 /// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
@@ -220,7 +222,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
   const std::size_t n = v.size();
   const double edge = 0.05 * plateaus.depth;
-  const std::size_t half = delay_window(plateaus, factor);
+  const std::size_t half = delay_window(plateaus, factor, motion.step);
   std::vector<double> jump(2 * half, 0.0), single(2 * half);
   std::vector<double> times, delays;  // of single slips
   std::size_t used = 0;
