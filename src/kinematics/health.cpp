@@ -91,10 +91,10 @@ std::string describe(const char* name, const Band& band) {
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
+constexpr double kLongestWindow = 0.01;  // s; more holds what else friction does where its jump is not sharp
+
 /// Samples beside re-stick among which its jump of friction is.
 std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double step) {
-  constexpr double kLongest = 0.01;  // s; more holds what else friction does where its jump is not sharp
-
   std::vector<double> sticks, slips;
   for (std::size_t k = 0; k < plateaus.runs.size(); ++k) {
     sticks.push_back(static_cast<double>(plateaus.runs[k].size()));
@@ -102,7 +102,7 @@ std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double st
   }
   if (slips.empty()) return 4;
   const double shorter = std::min(median(std::move(sticks)), median(std::move(slips))) * static_cast<double>(factor);
-  return static_cast<std::size_t>(std::clamp(std::min(kDelayReach * shorter, kLongest / step), 4.0, 2000.0));
+  return static_cast<std::size_t>(std::clamp(std::min(kDelayReach * shorter, kLongestWindow / step), 4.0, 2000.0));
 }
 
 /// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
@@ -223,6 +223,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   const std::size_t n = v.size();
   const double edge = 0.05 * plateaus.depth;
   const std::size_t half = delay_window(plateaus, factor, motion.step);
+  const double furthest = 0.25 * std::clamp(kLongestWindow / motion.step, 4.0, 2000.0);  // that rest is from the edge
   std::vector<double> jump(2 * half, 0.0), single(2 * half);
   std::vector<double> times, delays;  // of single slips
   std::size_t used = 0;
@@ -233,8 +234,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
     const double sign = v[i] > motion.plateau_velocity ? 1 : -1;
     // The velocity still needs edge/|dv/dt| to reach zero.
     const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
-    const double rest =
-        slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, 2 * static_cast<double>(half)) : 0;
+    const double rest = slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, furthest) : 0;
     const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
     if (zero + half + 1 >= n) continue;
     for (std::size_t k = 0; k < 2 * half; ++k) single[k] = sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
