@@ -69,7 +69,8 @@ HealthItem MotionStages::check_band() const {
   std::vector<double> slips;
   for (std::size_t k = 1; k < runs.size(); ++k)
     slips.push_back(static_cast<double>((runs[k].begin - runs[k - 1].end) * search_.blocks.length));
-  const double samples = slips.empty() ? kFewSlipSamples : median(std::move(slips));
+  // A stick that is interrupted makes gaps that are no slips: they are the shorter ones.
+  const double samples = slips.empty() ? kFewSlipSamples : quantile(std::move(slips), 0.9);
   if (samples >= kFewSlipSamples) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
