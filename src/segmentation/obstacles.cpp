@@ -42,8 +42,7 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
   if (motion.kind == RecordKind::force_only)
     return {
         "friction alone was recorded: a law needs the sliding velocity (a column v_b, v_r, x_b or the disc's speed), "
-        "or, "
-        "of a slider on a spring, --kind spring-slider with --speed and --stiffness"};
+        "or of a slider on a spring --kind spring-slider with --speed and --stiffness"};
   if (motion.kind == RecordKind::spring_slider && !must_slip)
     return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
   if (!motion.is_points() && motion.size() < kFewestSamples)
