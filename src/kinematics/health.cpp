@@ -91,8 +91,6 @@ std::string describe(const char* name, const Band& band) {
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
-constexpr double kLongestWindow = 0.01;  // s; more holds what else friction does where its jump is not sharp
-
 /// Samples beside re-stick among which its jump of friction is.
 std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double step) {
   std::vector<double> sticks, slips;

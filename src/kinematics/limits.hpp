@@ -69,6 +69,9 @@ inline constexpr double kErrorOfCreep = 0.5;
 
 /// Of the shorter of stick and slip, how far from re-stick a jump of friction is looked for: beyond is the next event.
 inline constexpr double kDelayReach = 0.25;
+/// [s]; in a longer window a slow rig whose jumps are not sharp (a drill string) shows a drift of the clocks that is
+/// none. The one time here that does not go with the record.
+inline constexpr double kLongestWindow = 0.01;
 
 /// Samples by which one may fall behind the other over a record: re-stick is not seen more closely in a slip.
 inline constexpr double kDriftSamples = 3;

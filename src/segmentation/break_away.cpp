@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "growth_fit.hpp"
+#include "limits.hpp"
 #include "phases.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -32,15 +33,21 @@ std::size_t rises_above(const Motion& m, const Rise& r, double level) {
 }
 
 Rise rise_of(const Motion& m, const Onset& onset) {
-  constexpr std::size_t kDoublings = 6;  // of the velocity, at the last one's pace: break-away is four to five before
   const Rise flat{onset, 0, onset.stick_begin};
   const std::size_t n = onset.slip - onset.stick_begin;
   if (n < 32) return flat;
   // A short stick ends well before the velocity has grown to where the slip begins.
   const std::size_t half = rises_above(m, flat, 0.5 * above_stick(m, flat, onset.slip));
   const std::size_t doublings = kDoublings * (onset.slip - half);
-  // What doubles over a good part of the stick is creep, or a motion that only turns: the third quarter is its level.
-  const bool creeps = 4 * (onset.slip - half) > n;
+  // What is there in the second quarter of the stick already is creep, or a motion that only turns, not growth: the
+  // third quarter is its level.
+  const auto mean_above = [&](std::size_t begin) {
+    double sum = 0;
+    for (std::size_t i = begin; i < begin + n / 4; ++i) sum += above_stick(m, flat, i);
+    return sum / static_cast<double>(n / 4);
+  };
+  const double second = mean_above(onset.stick_begin + n / 4), third = mean_above(onset.stick_begin + n / 2);
+  const bool creeps = 4 * (onset.slip - half) > n || std::abs(second) > kAlreadyThere * std::abs(third);
   const std::size_t grown = creeps ? n / 4 : std::clamp(doublings, n / 4, n);
   const std::size_t length = std::min(n / 4, n - grown), end = onset.slip - grown;
   if (length < 4) return flat;

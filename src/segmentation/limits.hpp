@@ -9,6 +9,21 @@ namespace tribofit::segmentation {
 /// (a positioning system of published friction then comes out with half of it).
 inline constexpr double kReversalPart = 0.01;
 
+// ---- break-away
+
+/// Doublings of the velocity before a slip, at the pace of the last, before which a stick shows its own level:
+/// break-away is four to five before.
+inline constexpr std::size_t kDoublings = 6;
+/// Part of the level in the third quarter of a stick that is there in the second: growth doubles several times between
+/// them, creep does not.
+inline constexpr double kAlreadyThere = 0.5;
+
+// ---- a block at one speed
+
+/// Width of the velocity, over its noise (both ends of noise that is a little coloured) and over the speed, up to which
+/// a block slides at one speed: beyond, friction may follow it.
+inline constexpr double kWidthOfNoise = 8, kOneSpeed = 0.05;
+
 // ---- friction alone
 
 /// Standard deviations of the noise, and part of the range of friction, from which a fall is one: noise that wanders

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -22,12 +23,11 @@ bool is_constant(const std::vector<double>& channel) {
 /// A block on its spring that slides at one speed: what its velocity does is within the noise of its reading.
 bool slides_at_one_speed(const Motion& motion, const Segmentation& segmentation) {
   constexpr std::size_t kEnough = 20000;  // samples for a quantile
-  constexpr double kSigmas = 8;           // between both ends of noise that is a little coloured
-  constexpr double kPart = 0.05;          // of the speed, above which friction may follow it
   if (segmentation.kind != MotionKind::always_slipping || motion.velocity_kind != VelocityKind::block) return false;
   const std::vector<double> some = thinned(motion.relative_velocity, kEnough);
   const double range = quantile(some, 0.995) - quantile(some, 0.005);
-  return range < std::min(kSigmas * motion.velocity_noise, kPart * std::abs(median(some)));
+  return range < std::min(segmentation::kWidthOfNoise * motion.velocity_noise,
+                          segmentation::kOneSpeed * std::abs(median(some)));
 }
 
 }  // namespace
