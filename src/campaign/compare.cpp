@@ -114,8 +114,7 @@ EarlierComparison compare_with(const EarlierTable& table, std::span<const Pooled
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (met[g]) continue;
-    out.unmatched.push_back("the table has no row for the runs of " +
-                            conditions_text(groups[g].conditions, groups[g].others));
+    out.unmatched.push_back("the table has no row for the runs of " + conditions_text(groups[g]));
   }
   return out;
 }

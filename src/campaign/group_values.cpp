@@ -23,6 +23,12 @@ const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::str
   return found == values.end() ? nullptr : &*found;
 }
 
+std::optional<ResultMeasure> pooled_mean(const std::vector<PooledValue>& values, std::string_view name) {
+  const PooledValue* value = pooled_value(values, name);
+  if (value == nullptr) return std::nullopt;
+  return ResultMeasure{value->mean, value->standard_error_of_mean};
+}
+
 const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol) {
   const auto found = std::find_if(group.fits.begin(), group.fits.end(),
                                   [&](const auto& fit) { return fit.law == law && fit.protocol == protocol; });

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "statistics/thinning.hpp"
 #include "tribofit/campaign/compare.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -71,7 +72,14 @@ OverConditions::OverConditions(std::span<const PooledGroup> groups) {
     unit_ = chosen->unit;
     return;
   }
-  for (const PooledGroup& group : groups) names_.push_back(conditions_text(group.conditions, group.others));
+  for (const PooledGroup& group : groups) names_.push_back(conditions_text(group));
+}
+
+std::vector<std::size_t> OverConditions::some(std::size_t most) const {
+  std::vector<std::size_t> all, out;
+  for (const Series& series : series_) all.insert(all.end(), series.groups.begin(), series.groups.end());
+  for (const std::size_t k : thinned(all.size(), most)) out.push_back(all[k]);
+  return out;
 }
 
 }  // namespace tribofit

@@ -190,6 +190,11 @@ Trends find_trends(std::span<const RunResult> runs) {
   return out;
 }
 
+std::string Trend::slope_unit() const {
+  const std::string per = condition == "order" ? "run" : condition_unit, own = unit == "1" ? "" : unit;
+  return per.empty() ? own : own + (own.empty() ? "per " : " per ") + per;
+}
+
 std::vector<Trend> significant_trends(const Trends& trends) {
   std::vector<Trend> out;
   for (const Trend& t : trends.trends) {

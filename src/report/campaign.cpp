@@ -5,11 +5,12 @@
 #include <array>
 #include <filesystem>
 #include <set>
-#include <utility>
 
+#include "campaign/condition_cells.hpp"
 #include "campaign/figures_json.hpp"
 #include "campaign_tables.hpp"
-#include "condition_cells.hpp"
+#include "json_parts.hpp"
+#include "numbers.hpp"
 #include "terminal_text.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/version.hpp"
@@ -19,12 +20,6 @@ namespace {
 
 Json repeat_json(const RunRecord& run) {
   return run.repeat ? Json(*run.repeat) : Json(nullptr);
-}
-
-Json record_json(const RunRecord& run) {
-  return object("name", run.name, "file", run.file, "key", run.key, "settings", run.settings, "status",
-                to_string(run.status), "message", text_or_null(run.message), "stated", conditions_json(run.conditions),
-                "repeat", repeat_json(run), "others", others_json(run.others));
 }
 
 Json fit_json(const ResultFit& fit) {
@@ -54,10 +49,6 @@ Json result_json(const RunResult& result) {
                 repeat_json(run), "others", others_json(run.others), "friction_unit", result.friction_unit,
                 "stick_slip", result.was_read() ? measures_json(result) : Json(nullptr), "fits",
                 list_of(result.fits, fit_json), "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
-}
-
-Json missing_json(const MissingRun& run) {
-  return object("name", run.name, "file", run.file, "status", "missing", "message", nullptr);
 }
 
 /// A row of summary.csv, values under the names of their columns: what every run has, further conditions, the analysis.
@@ -151,7 +142,9 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
                   conditions_json(run.conditions), "fits", Json::array(), "best", nullptr, "analysed", false,
                   "warnings", Json::array({run.message}));
   }
-  json["run"] = record_json(run);
+  json["run"] = object("name", run.name, "file", run.file, "key", run.key, "settings", run.settings, "status",
+                       to_string(run.status), "message", text_or_null(run.message), "stated",
+                       conditions_json(run.conditions), "repeat", repeat_json(run), "others", others_json(run.others));
   std::string text = text_of(json);
   if (result != nullptr && result->analysed) {  // many numbers: on one line
     text.insert(text.size() - 3, ",\n  \"figures\": " + figures_text(figures_of(*result)));
@@ -181,7 +174,9 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
     const auto result = results.read(k);
     const MissingRun missing = result ? MissingRun{} : results.missing(k);
     csv.write(columns.line(result ? summary_row(*result) : summary_row(missing.name, missing.file, "missing")));
-    json.write((k == 0 ? "\n" : ",\n") + line_of(result ? result_json(*result) : missing_json(missing)));
+    json.write((k == 0 ? "\n" : ",\n") + line_of(result ? result_json(*result)
+                                                        : object("name", missing.name, "file", missing.file, "status",
+                                                                 "missing", "message", nullptr)));
     if (k < kMostRows) table.rows.push_back(result ? run_row(*result) : run_row(missing));
     const bool ok = result && result->run.status == RunStatus::ok;
     ++(ok ? summary.fitted : result ? summary.failed : summary.missing);

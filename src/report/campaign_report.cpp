@@ -48,14 +48,9 @@ ReportSection runs_section(const DrawnCampaign& of) {
   return section;
 }
 
-std::size_t count_of_fitted(const DrawnCampaign& of) {
-  return static_cast<std::size_t>(
-      std::count_if(of.runs.begin(), of.runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
-}
-
-std::string lead_of(const DrawnCampaign& of, const Trends& trends) {
+std::string lead_of(const DrawnCampaign& of, std::size_t fitted, const Trends& trends) {
   constexpr std::size_t kLong = 300;
-  std::string text = fmt::format("{} of {} runs fitted, under {} condition{}.", count_of_fitted(of), of.results.size(),
+  std::string text = fmt::format("{} of {} runs fitted, under {} condition{}.", fitted, of.results.size(),
                                  of.groups.size(), of.groups.size() == 1 ? "" : "s");
   if (of.earlier != nullptr) {
     const EarlierComparison::Agreement agreement = of.earlier->agreement();
@@ -79,8 +74,9 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   const DrawnCampaign of(results, runs, pooled, comparison);
   const std::string folder = results.traces().empty() ? results.folder() : results.traces();
   const std::string input = options.inputs.empty() ? folder : options.inputs.front();
-  Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(of, pooled.trends));
-  const std::size_t fitted = count_of_fitted(of);
+  const auto fitted = static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
+  Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(of, fitted, pooled.trends));
   report.facts = {{"runs", std::to_string(results.size())},
                   {"fitted", std::to_string(fitted)},
                   {"failed", std::to_string(runs.size() - fitted)},

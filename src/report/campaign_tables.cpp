@@ -12,28 +12,9 @@
 namespace tribofit {
 namespace {
 
-std::string name_of(const PooledGroup& group) {
-  return conditions_text(group.conditions, group.others);
-}
-
 /// The protocol as people call it; JSON and CSV have its own name.
 std::string protocol_text(const std::string& protocol) {
   return protocol == "published" ? "extremes" : protocol;
-}
-
-/// Both are ours beside the same earlier value.
-bool same_value(const ComparedValue& a, const ComparedValue& b) {
-  return a.group == b.group && a.law == b.law && a.earlier.line == b.earlier.line &&
-         a.earlier.column == b.earlier.column && a.earlier.name == b.earlier.name;
-}
-
-std::string percent_text(double percent) {
-  return std::isfinite(percent) ? fmt::format("{:+.2f} %", percent) : "-";
-}
-
-std::string signed_text(double value) {
-  if (!std::isfinite(value)) return "-";
-  return std::abs(value) < 100 ? fmt::format("{:+.1f}", value) : fmt::format("{:+.0f}", value);
 }
 
 std::string preference_text(const LawPreference& p) {
@@ -54,55 +35,40 @@ std::vector<std::string> value_row(const PooledValue& v, const std::string& name
                                    const std::string& protocol, const std::string& conditions) {
   const auto part = [&](double value) { return std::isfinite(value) && value != 0 ? significant(value, 2) : "-"; };
   const bool known = std::isfinite(v.std_error) && v.std_error > 0;
-  return {conditions,
-          name,
-          law,
-          protocol_text(protocol),
-          with_error(v.value, v.std_error),
-          known ? interval_text(v.lower95, v.upper95, places_for(v.std_error)) : "-",
-          part(v.statistical),
-          part(v.between),
-          part(v.systematic),
-          std::to_string(v.runs),
-          v.unit == "1" ? "" : v.unit};
+  const std::string interval = known ? interval_text(v.lower95, v.upper95, places_for(v.std_error)) : "-";
+  std::vector<std::string> row = {conditions, name, law, protocol_text(protocol), with_error(v.value, v.std_error)};
+  row.insert(row.end(), {interval, part(v.statistical), part(v.between), part(v.systematic), std::to_string(v.runs),
+                         v.unit == "1" ? "" : v.unit});
+  return row;
 }
 
 /// "1.2 +/- 0.3"; a star where it is that of a single run.
-std::string pooled_text(const PooledValue& value) {
+std::string cell_of(const PooledValue& value) {
   if (value.runs == 0) return "-";
   return with_error(value.value, value.std_error) + (value.runs == 1 ? " *" : "");
 }
-
-/// "s/mm per rpm".
-std::string slope_unit(const Trend& t) {
-  const std::string per = t.condition == "order" ? "run" : t.condition_unit;
-  const std::string unit = t.unit == "1" ? "" : t.unit;
-  return per.empty() ? unit : unit + (unit.empty() ? "per " : " per ") + per;
+std::string cell_of(const ResultParameter& value) {
+  return with_error(value.value, value.std_error);
 }
 
 constexpr const char* kOtherParameters = "other parameters of the law";
 
 /// Three cells: mu_s and mu_k where the law has them, and what else it has, by name and with its unit.
 template <class Value>
-void add_law_cells(const std::vector<Value>& parameters, std::string (*text)(const Value&),
-                   std::vector<std::string>& row) {
+void add_law_cells(const std::vector<Value>& parameters, std::vector<std::string>& row) {
   std::string mu_s, mu_k;
   std::vector<std::string> others;
   for (const Value& p : parameters) {
     if (!p.effect.empty()) continue;
     if (p.name == "mu_s") {
-      mu_s = text(p);
+      mu_s = cell_of(p);
     } else if (p.name == "mu_k") {
-      mu_k = text(p);
+      mu_k = cell_of(p);
     } else {
-      others.push_back(p.name + " " + text(p) + unit_behind(p.unit));
+      others.push_back(p.name + " " + cell_of(p) + unit_behind(p.unit));
     }
   }
   row.insert(row.end(), {mu_s, mu_k, fmt::format("{}", fmt::join(others, ", "))});
-}
-
-std::string fitted_text(const ResultParameter& p) {
-  return with_error(p.value, p.std_error);
 }
 
 /// Earlier values beside ours, a row a value with both protocols; conditions stand in the first row of each.
@@ -113,20 +79,20 @@ ReportTable comparison_table(const EarlierComparison& comparison, std::span<cons
   const ComparedValue* before = nullptr;
   for (const ComparedValue& v : comparison.values) {
     const bool extremes = v.protocol == "published";
-    if (!extremes || before == nullptr || before->protocol == "published" || !same_value(v, *before)) {
-      const std::string conditions = name_of(groups[v.group]);
-      table.rows.push_back({before != nullptr && name_of(groups[before->group]) == conditions ? "" : conditions,
+    if (!extremes || before == nullptr || before->protocol == "published" || !v.is_beside_same(*before)) {
+      const std::string conditions = conditions_text(groups[v.group]);
+      table.rows.push_back({before != nullptr && conditions_text(groups[before->group]) == conditions ? "" : conditions,
                             with_unit(v.earlier.name, v.ours.unit), v.law,
                             with_error(v.earlier.value, v.earlier.std_error), "", "", "", "", ""});
     }
     std::vector<std::string>& row = table.rows.back();
     if (extremes) {
       row[7] = significant(v.ours.value, 4);
-      row[8] = percent_text(v.percent);
+      row[8] = with_sign(v.percent, 2, " %");
     } else {
       row[4] = with_error(v.ours.value, v.ours.std_error);
-      row[5] = percent_text(v.percent);
-      row[6] = signed_text(v.in_std_errors);
+      row[5] = with_sign(v.percent, 2, " %");
+      row[6] = with_sign(v.in_std_errors, std::abs(v.in_std_errors) < 100 ? 1 : 0);
     }
     before = &v;
   }
@@ -140,7 +106,7 @@ ReportTable error_table(const Statements& statements, std::span<const PooledGrou
   table.numbers({"bins below 0.08", "largest of bins"});
   std::string before;
   for (const ErrorStatement& e : statements.errors) {
-    const std::string conditions = name_of(groups[e.group]);
+    const std::string conditions = conditions_text(groups[e.group]);
     table.rows.push_back({conditions == before ? "" : conditions, e.law, protocol_text(e.protocol),
                           share_text(e.below_limit), significant(e.mean_relative, 2), significant(e.max_relative, 2),
                           share_text(e.bins_below_limit), significant(e.largest_of_bins, 2)});
@@ -156,11 +122,11 @@ ReportTable groups_table(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& v : fit.parameters) {
-        table.rows.push_back(value_row(v, full_name(v), fit.law, fit.protocol, name_of(group)));
+        table.rows.push_back(value_row(v, full_name(v), fit.law, fit.protocol, conditions_text(group)));
       }
     }
     for (const PooledValue& v : group.measures)
-      table.rows.push_back(value_row(v, full_name(v), "", "", name_of(group)));
+      table.rows.push_back(value_row(v, full_name(v), "", "", conditions_text(group)));
   }
   return table;
 }
@@ -184,7 +150,7 @@ ReportTable trends_table(const Trends& trends) {
   table.numbers({"runs", "p", "p, corrected"});
   for (const Trend& t : trends.trends) {
     table.rows.push_back({t.parameter, t.law, t.condition, with_error(t.slope, t.std_error),
-                          interval_text(t.lower95, t.upper95, places_for(t.std_error)), slope_unit(t),
+                          interval_text(t.lower95, t.upper95, places_for(t.std_error)), t.slope_unit(),
                           std::to_string(t.runs), significant(t.p_value, 2), significant(t.p_corrected, 2)});
   }
   return table;
@@ -206,8 +172,8 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       if (fit.protocol != "joint") continue;
-      std::vector<std::string> row = {name_of(group), std::to_string(group.runs.size()), fit.law};
-      add_law_cells(fit.parameters, pooled_text, row);
+      std::vector<std::string> row = {conditions_text(group), std::to_string(group.runs.size()), fit.law};
+      add_law_cells(fit.parameters, row);
       row.push_back(std::to_string(fit.best_in));
       table.rows.push_back(std::move(row));
     }
@@ -231,7 +197,7 @@ std::vector<std::string> run_row(const RunResult& r) {
                                   r.was_read() ? std::to_string(r.cycles) : "",
                                   r.was_read() ? with_error(r.frequency.value, r.frequency.std_error) : "",
                                   fitted ? best.law : std::string(to_string(r.run.status))};
-  add_law_cells(best.parameters, fitted_text, row);
+  add_law_cells(best.parameters, row);
   row.push_back(fitted ? significant(best.held_out_rmse, 3) : "");
   row.push_back(fitted ? significant(best.floor_rmse, 3) : "");
   row.push_back(r.run.message.empty() ? std::to_string(r.warnings.size()) : r.run.message);
@@ -247,7 +213,7 @@ std::vector<std::string> trend_sentences(const Trends& trends) {
   for (const Trend& t : significant_trends(trends)) {
     out.push_back(fmt::format("{} ({} law) {} with {}: {}{} ({}, corrected for {} trends)", t.parameter, t.law,
                               t.rises() ? "rises" : "falls", t.condition, with_error(t.slope, t.std_error),
-                              unit_behind(slope_unit(t)), p_value_text(t.p_corrected), trends.trends.size()));
+                              unit_behind(t.slope_unit()), p_value_text(t.p_corrected), trends.trends.size()));
   }
   if (out.empty() && !trends.trends.empty()) out.push_back("no significant trend");
   return out;
@@ -269,7 +235,7 @@ ReportSection statements_section(const Statements& s, std::span<const PooledGrou
   ReportSection section{"statements", "Which law predicts better (joint fit, held-out cycles)", {}};
   if (s.overall.runs > 0) section.item("all: " + preference_text(s.overall));
   for (std::size_t g = 0; s.overall.runs > 0 && g < s.preference.size(); ++g) {
-    if (s.preference[g].runs > 0) section.item(name_of(groups[g]) + ": " + preference_text(s.preference[g]));
+    if (s.preference[g].runs > 0) section.item(conditions_text(groups[g]) + ": " + preference_text(s.preference[g]));
   }
   section.add(error_table(s, groups));
   return section;

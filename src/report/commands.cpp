@@ -52,9 +52,7 @@ std::string command_line(const std::vector<std::string>& words, const std::vecto
 }
 
 std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path) {
-  std::vector<std::string> words = options.arguments;
-  words.insert(words.end(), more.begin(), more.end());
-  return command_line(words, {path});
+  return command_line(joined(options.arguments, more), {path});
 }
 
 std::vector<std::string> words_of(std::vector<std::string> words, const std::vector<std::string>& arguments,
@@ -66,6 +64,11 @@ std::vector<std::string> words_of(std::vector<std::string> words, const std::vec
       words.push_back(arguments[k]);
     }
   }
+  return words;
+}
+
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 

@@ -26,6 +26,9 @@ std::vector<std::string> words_of(std::vector<std::string> verb, const std::vect
                                   const std::vector<std::string>& flags = {},
                                   const std::vector<std::string>& valued = {});
 
+/// `words` with `more` behind them.
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
+
 bool has_option(const std::vector<std::string>& arguments, const std::string& name);
 
 /// "NAME-csv" in the folder where one works: where the CSV files of a trace may go.

@@ -37,29 +37,19 @@ double time_cell(const Motion& motion, std::size_t i) {
   return motion.is_points() ? std::nan("") : motion.time[i];
 }
 
-/// Of a record whose velocity and friction were made from another channel.
-void write_samples_with_errors(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
-                               const Membership& member) {
-  const Motion& motion = result.motion;
-  const std::vector<bool> slips = slipping_samples(motion, result.segmentation);
-  CsvTable table = table_in(folder, "samples.csv", ",relative_velocity_std_error_mm_s,mu_std_error");
-  for (std::size_t i = 0; i < motion.size(); ++i) {
-    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i],
-              model.empty() ? std::nan("") : model[i], slips[i] ? "slip" : "stick", index_cell(member.cycle[i]),
-              index_cell(member.fold[i]), motion.velocity_std_error[i] / kMillimetre, motion.friction_std_error[i]);
-  }
-}
-
 void write_samples(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
                    const Membership& member) {
   const Motion& motion = result.motion;
   const std::vector<bool> slips = slipping_samples(motion, result.segmentation);
-  if (!motion.velocity_std_error.empty()) return write_samples_with_errors(folder, result, model, member);
-  CsvTable table = table_in(folder, "samples.csv");
+  // Of a record whose velocity and friction were made from another channel.
+  const bool with_errors = !motion.velocity_std_error.empty();
+  CsvTable table = table_in(folder, "samples.csv", with_errors ? ",relative_velocity_std_error_mm_s,mu_std_error" : "");
+  auto errors = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < motion.size(); ++i) {
+    if (with_errors) errors = {motion.velocity_std_error[i] / kMillimetre, motion.friction_std_error[i]};
     table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i],
               model.empty() ? std::nan("") : model[i], slips[i] ? "slip" : "stick", index_cell(member.cycle[i]),
-              index_cell(member.fold[i]));
+              index_cell(member.fold[i]), errors);
   }
 }
 

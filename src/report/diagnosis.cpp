@@ -31,24 +31,23 @@ std::string amount_of_data(const DiagnosedTraces& result) {
   return grouped(cycles) + (cycles == 1 ? " cycle" : " cycles");
 }
 
-/// The distinct kinds of record.
-std::string kinds_of(const DiagnosedTraces& result) {
-  std::vector<std::string> kinds;
+/// The distinct texts that the traces give, in their order; an empty one is none.
+template <class Text>
+std::vector<std::string> distinct(const DiagnosedTraces& result, Text text) {
+  std::vector<std::string> out;
   for (const Identification& trace : result.traces) {
-    const std::string kind = kind_text(trace);
-    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+    std::string own = text(trace);
+    if (!own.empty() && std::find(out.begin(), out.end(), own) == out.end()) out.push_back(std::move(own));
   }
-  return enumerated(kinds);
+  return out;
 }
 
 /// The distinct values of one condition over the traces, "1, 2, 4, 8 rpm"; empty where none is known.
 std::string condition(const DiagnosedTraces& result, Condition Conditions::*which, double unit, const char* name) {
-  std::vector<std::string> values;
-  for (const Identification& trace : result.traces) {
+  const std::vector<std::string> values = distinct(result, [&](const Identification& trace) {
     const Condition& c = trace.motion.conditions.*which;
-    const std::string value = c.known() ? brief(c.value / unit) : "";
-    if (!value.empty() && std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
-  }
+    return c.known() ? brief(c.value / unit) : "";
+  });
   return values.empty() ? "" : fmt::format("{} {}", fmt::join(values, ", "), name);
 }
 
@@ -82,7 +81,8 @@ void add_header(const DiagnosedTraces& result, TerminalText& text) {
   const bool one = result.traces.size() == 1;
   const std::string title =
       one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size());
-  std::vector<std::string> known = {kinds_of(result), condition(result, &Conditions::radius, kMillimetre, "mm"),
+  std::vector<std::string> known = {enumerated(distinct(result, kind_text)),
+                                    condition(result, &Conditions::radius, kMillimetre, "mm"),
                                     condition(result, &Conditions::speed, kRpm, "rpm"),
                                     condition(result, &Conditions::load, 1, "N"), amount_of_data(result)};
   std::erase(known, "");
@@ -191,7 +191,7 @@ void add_found(const DiagnosedTraces& result, TerminalText& text) {
   const ReportTable table = found_table(result);
   if (table.rows.empty()) return;
   text.heading("Effects found");
-  if (text.has_room_for(table)) {
+  if (widest(aligned(table, 2)) <= text.width()) {
     text.table(table);
   } else {
     for (const std::vector<std::string>& row : table.rows) {

@@ -18,11 +18,11 @@ constexpr std::size_t kDrawnTraces = 8;
 
 /// A chart of held-out errors beside the noise floor.
 Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
-  const bool force = !result.traces.empty() && friction_unit(result.traces.front().motion) == "N";
+  const std::string unit = result.traces.empty() ? "1" : friction_unit(result.traces.front().motion);
   return {.id = id,
           .title = title,
           .note = note,
-          .panels = {{.axis = {.quantity = "held-out error", .unit = force ? "N" : "1", .from_zero = true}}},
+          .panels = {{.axis = {.quantity = "held-out error", .unit = unit, .from_zero = true}}},
           .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
 }
 
@@ -70,16 +70,22 @@ Chart where_chart(const Diagnosis& d) {
   return chart;
 }
 
-struct StatusStyle {
-  EffectStatus status;
-  Stroke stroke;
-};
-constexpr std::array<StatusStyle, 5> kStatuses = {
-    StatusStyle{EffectStatus::found, dots(Colour::red, Symbol::circle, 10)},
-    StatusStyle{EffectStatus::equivalent, dots(Colour::purple, Symbol::diamond, 10)},
-    StatusStyle{EffectStatus::possible, dots(Colour::blue, Symbol::triangle_up, 9)},
-    StatusStyle{EffectStatus::superseded, dots(Colour::green, Symbol::square, 9)},
-    StatusStyle{EffectStatus::unsupported, dots(Colour::grey, Symbol::triangle_down, 9)}};
+/// Of the effects that were fitted, by the value of EffectStatus.
+constexpr std::array<Stroke, 5> kStatusStrokes = {
+    dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
+    dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
+    dots(Colour::grey, Symbol::triangle_down, 9)};
+
+/// By their status, then by their held-out error.
+std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d) {
+  std::vector<const EffectFinding*> order;
+  for (const EffectFinding& finding : d.effects) order.push_back(&finding);
+  const auto error = [](const EffectFinding* f) { return std::isfinite(f->held_out_rmse) ? f->held_out_rmse : 1e300; };
+  std::stable_sort(order.begin(), order.end(), [&](const EffectFinding* a, const EffectFinding* b) {
+    return a->status != b->status ? a->status < b->status : error(a) < error(b);
+  });
+  return order;
+}
 
 /// Held-out error with each candidate.
 Chart candidates_chart(const DiagnosedTraces& result) {
@@ -88,20 +94,14 @@ Chart candidates_chart(const DiagnosedTraces& result) {
                              "At the rung where it was judged last; bars are one standard error, from cycle to cycle. "
                              "Dashed: the noise floor; dotted: the bare law.");
   chart.panels[0].axis.digits = 6;
-  for (const auto& [status, stroke] : kStatuses) {
-    std::vector<const EffectFinding*> own;
-    for (const EffectFinding& finding : d.effects) {
-      if (finding.status == status && std::isfinite(finding.held_out_rmse)) own.push_back(&finding);
-    }
-    std::stable_sort(own.begin(), own.end(), [](const EffectFinding* a, const EffectFinding* b) {
-      return a->held_out_rmse < b->held_out_rmse;
-    });
-    ChartLine& line = chart.line(std::string(status_text(status)), stroke);
-    line.bars = true;
-    for (const EffectFinding* finding : own) {
-      line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
-      chart.x.names.push_back(finding->key);
-    }
+  for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
+    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
+  }
+  for (const EffectFinding* finding : sorted_findings(d)) {
+    if (finding->status == EffectStatus::untestable || !std::isfinite(finding->held_out_rmse)) continue;
+    ChartLine& line = chart.lines[static_cast<std::size_t>(finding->status)];
+    line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
+    chart.x.names.push_back(finding->key);
   }
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
   chart.height = 420;
@@ -112,13 +112,7 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
   table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
   table.folded = true;
-  std::vector<const EffectFinding*> order;
-  for (const EffectFinding& finding : d.effects) order.push_back(&finding);
-  const auto error = [](const EffectFinding* f) { return std::isfinite(f->held_out_rmse) ? f->held_out_rmse : 1e300; };
-  std::stable_sort(order.begin(), order.end(), [&](const EffectFinding* a, const EffectFinding* b) {
-    return a->status != b->status ? a->status < b->status : error(a) < error(b);
-  });
-  for (const EffectFinding* f : order) {
+  for (const EffectFinding* f : sorted_findings(d)) {
     std::string parameters;
     if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {

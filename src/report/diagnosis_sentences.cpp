@@ -177,10 +177,7 @@ std::string final_model_command(const DiagnosedTraces& result, const ReportOptio
       }
     }
   }
-  words.insert(words.end(), more.begin(), more.end());
-  std::vector<std::string> all = words_of({}, options.arguments, {}, dropped);
-  all.insert(all.end(), words.begin(), words.end());
-  return command(all, options, result);
+  return command(joined(joined(words_of({}, options.arguments, {}, dropped), words), more), options, result);
 }
 
 }  // namespace
@@ -275,9 +272,8 @@ Suggestion next_after_diagnosis(const DiagnosedTraces& result, const ReportOptio
     }
   }
   if (!options.csv_written && verdict != Verdict::not_enough_data) {
-    std::vector<std::string> words = words_of({"diagnose"}, options.arguments);
-    words.insert(words.end(), csv.begin(), csv.end());
-    return {"to plot the samples beside the final model", command(words, options, result)};
+    return {"to plot the samples beside the final model",
+            command(joined(words_of({"diagnose"}, options.arguments), csv), options, result)};
   }
   return {"to see the effects that a trace can show", "identify effects"};
 }

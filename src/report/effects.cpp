@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
+#include "numbers.hpp"
 #include "terminal_text.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
@@ -13,11 +15,7 @@ namespace {
 
 /// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
 std::string channels_text(const Channels& needs, bool in_full) {
-  struct Need {
-    bool needed;
-    const char *brief, *full;
-  };
-  const std::array<Need, 9> all = {
+  const std::array<std::tuple<bool, const char*, const char*>, 9> all = {
       {{needs.acceleration, "acceleration", "block acceleration (from v_b)"},
        {needs.angle, "disc angle", "disc angle (measured, or from the speed), two revolutions"},
        {needs.distance, "distance", "sliding distance (from v_r)"},
@@ -28,21 +26,20 @@ std::string channels_text(const Channels& needs, bool in_full) {
        {needs.lead, "stick", "v_r in stick"},
        {needs.plateau, needs.lead ? "" : "stick", "v_b in stick, with radius and speed stated"}}};
   std::string text;
-  for (const Need& need : all) {
-    const std::string name = in_full ? need.full : need.brief;
-    if (need.needed && !name.empty()) text += (text.empty() ? "" : ", ") + name;
+  for (const auto& [needed, brief, full] : all) {
+    const std::string name = in_full ? full : brief;
+    if (needed && !name.empty()) text += (text.empty() ? "" : ", ") + name;
   }
   return text;
 }
 
 /// "sigma [s/mm] -0.0005..0.002", one after the other.
 std::string parameters_text(std::span<const Parameter> parameters) {
-  std::string text;
+  std::vector<std::string> texts;
   for (const Parameter& p : parameters) {
-    text += fmt::format("{}{}{} {:g}..{:g}", text.empty() ? "" : ", ", p.name, p.unit == "1" ? "" : " [" + p.unit + "]",
-                        p.lower, p.upper);
+    texts.push_back(fmt::format("{} {:g}..{:g}", with_unit(p.name, p.unit), p.lower, p.upper));
   }
-  return text;
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 /// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.

@@ -1,11 +1,10 @@
 #include "tribofit/report/figures.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <numeric>
 #include <string>
 
-#include "condition_cells.hpp"
+#include "campaign/condition_cells.hpp"
 #include "tribofit/campaign/group_values.hpp"
 
 namespace tribofit {
@@ -15,13 +14,13 @@ constexpr int kDigits = 10;
 
 void write_groups(WholeFolder& files, const ConditionCells& conditions, std::span<const RunResult> runs,
                   std::span<const PooledGroup> groups) {
-  const std::string front = "runs," + conditions.header();
-  CsvTable rms(files, "05-rms-velocity.csv", front + ",rms_velocity_mm_s,rms_velocity_std_error_mm_s", kDigits);
-  CsvTable levels(files, "09-static-kinetic.csv",
-                  front +
-                      ",law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,"
-                      "mu_s_minus_mu_k,mu_s_minus_mu_k_std_error",
-                  kDigits);
+  const auto table = [&](const char* name, const std::string& columns) {
+    return CsvTable(files, name, "runs," + conditions.header() + "," + columns, kDigits);
+  };
+  CsvTable rms = table("05-rms-velocity.csv", "rms_velocity_mm_s,rms_velocity_std_error_mm_s");
+  CsvTable levels =
+      table("09-static-kinetic.csv",
+            "law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,mu_s_minus_mu_k,mu_s_minus_mu_k_std_error");
   for (const PooledGroup& group : groups) {
     const Json of_group = {group.runs.size(), conditions.of(group.conditions, group.others)};
     if (const PooledValue* v = pooled_value(group.measures, "rms_velocity")) {
@@ -39,20 +38,18 @@ void write_groups(WholeFolder& files, const ConditionCells& conditions, std::spa
 
 void write_runs(WholeFolder& files, const ConditionCells& conditions, const ResultReader& results,
                 std::span<const RunResult> runs) {
-  const std::string front = "run," + conditions.header();
-  CsvTable cycles(files, "06-08-three-cycles.csv", front + ",time_s,v_r_mm_s,friction,unit");
-  CsvTable spectrum(files, "07-spectrum.csv", front + ",frequency_hz,amplitude_mm_s", kDigits);
-  CsvTable harmonics(files, "07-harmonics.csv", front + ",harmonic,frequency_hz,amplitude_mm_s", kDigits);
-  CsvTable bins(files, "10-12-over-velocity.csv",
-                front +
-                    ",law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,"
-                    "relative_error_of_mean,mean_relative_error,largest_relative_error",
-                kDigits);
-  CsvTable errors(files, "12-relative-error.csv",
-                  front +
-                      ",law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,"
-                      "mean_relative_error,largest_relative_error",
-                  kDigits);
+  const auto table = [&](const char* name, const std::string& columns, int digits = kDigits) {
+    return CsvTable(files, name, "run," + conditions.header() + "," + columns, digits);
+  };
+  CsvTable cycles = table("06-08-three-cycles.csv", "time_s,v_r_mm_s,friction,unit", 0);
+  CsvTable spectrum = table("07-spectrum.csv", "frequency_hz,amplitude_mm_s");
+  CsvTable harmonics = table("07-harmonics.csv", "harmonic,frequency_hz,amplitude_mm_s");
+  CsvTable bins = table("10-12-over-velocity.csv",
+                        "law,protocol,unit,v_r_from_mm_s,v_r_to_mm_s,samples,friction,fitted,relative_error_of_mean,"
+                        "mean_relative_error,largest_relative_error");
+  CsvTable errors = table("12-relative-error.csv",
+                          "law,protocol,samples,share_below_0.08,share_of_bins_below_0.08,largest_of_bins,mean_"
+                          "relative_error,largest_relative_error");
   for (const RunResult& run : runs) {
     const auto f = results.figures(run.position);
     if (!f) continue;

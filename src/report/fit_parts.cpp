@@ -10,10 +10,6 @@
 namespace tribofit {
 namespace {
 
-std::string_view name_of(Protocol protocol) {
-  return protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
-}
-
 /// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
 std::string remarks_on(const Fit& fit, std::size_t index) {
   const FitParameter& p = fit.parameters[index];
@@ -83,15 +79,13 @@ ReportTable correlation_table(const Fit& fit) {
 void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
   const std::string slow = fit.floor.slow_noise > 0 ? ", slow 1/f noise " + level(fit.floor.slow_noise) : "";
-  if (motion.is_points()) {
-    section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (from {}).", level(fit.error.rmse),
-                             level(fit.error.held_out_rmse), level(fit.floor.rmse), fit.floor.source));
-  } else {
-    section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} (noise {} from {}, break-away scatter {}{}).",
-                             level(fit.error.rmse), level(fit.error.held_out_rmse), level(fit.floor.rmse),
-                             level(fit.floor.noise), fit.floor.source.empty() ? "the trace" : fit.floor.source,
-                             level(fit.floor.scatter), slow));
-  }
+  const std::string parts =
+      motion.is_points()
+          ? "from " + fit.floor.source
+          : fmt::format("noise {} from {}, break-away scatter {}{}", level(fit.floor.noise),
+                        fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter), slow);
+  section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} ({}).", level(fit.error.rmse),
+                           level(fit.error.held_out_rmse), level(fit.floor.rmse), parts));
   section.soft(fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
                            percent(fit.error.mean_relative), percent(fit.error.max_relative),
                            share_text(fit.explained)));
@@ -101,14 +95,15 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
 }
 
 void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
-  section.heading(fmt::format("{}, {}{}", fit.model.name(), name_of(fit.protocol), best ? " (best)" : ""));
+  const char* protocol = fit.protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
+  section.heading(fmt::format("{}, {}{}", fit.model.name(), protocol, best ? " (best)" : ""));
   section.soft(describe(fit.model.law()).equation);
   for (const Effect& effect : fit.model.effects()) {
     const EffectInfo info = describe(effect);
     section.soft(info.spelled() + ": " + info.equation);
   }
   if (!fit.converged) section.warning("This fit did not converge: do not rely on it.");
-  if (has_parameters(fit)) {
+  if (!fit.parameters.empty()) {
     section.add(parameter_table(fit, motion, instruments_declared));
     add_errors(fit, motion, section);
     const std::size_t n = fit.parameters.size();
@@ -126,15 +121,14 @@ void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSectio
   for (const Fit& fit : fits) {
     const Fit* joint = joint_partner(fits, fit);
     if (joint == nullptr || !joint->converged) continue;
-    if (!has_parameters(fit) || !fit.converged) {
+    if (fit.parameters.empty() || !fit.converged) {
       for (const std::string& message : fit.messages) notes.push_back(fit.model.name() + ": " + message);
     }
     for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
       const FitParameter &a = fit.parameters[k], &b = joint->parameters[k];
       const int places = places_of(b);
       table.rows.push_back({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
-                            fixed(shown(b, b.value), places),
-                            b.value != 0 ? fmt::format("{:+.1f} %", 100 * (a.value / b.value - 1)) : "-",
+                            fixed(shown(b, b.value), places), with_sign(100 * (a.value / b.value - 1), 1, " %"),
                             shown_unit(b, motion), is_outside(a, b) ? "outside the 95 % interval" : ""});
       different |= is_outside(a, b);
     }

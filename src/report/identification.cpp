@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <array>
+
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
+#include "report/charts/styles.hpp"
 #include "report_parts.hpp"
 #include "tribofit/kinematics/health_names.hpp"
-#include "verdict.hpp"
 
 namespace tribofit {
 namespace {
@@ -78,30 +80,16 @@ bool is_unusable(const Identification& r) {
 /// The best law and its parameters: what a reader looks for first.
 Facts result_facts(const Identification& result) {
   Facts facts;
-  if (result.fits.empty() || !has_parameters(result.fits[result.best])) return facts;
+  if (result.fits.empty() || result.fits[result.best].parameters.empty()) return facts;
   const Fit& best = result.fits[result.best];
   facts.emplace_back("best law", curve_name(best));
   for (const FitParameter& p : best.parameters) facts.emplace_back(full_name(p), value_text(p, result.motion));
   return facts;
 }
 
-/// Of what the motion shows.
-const char* heading_of(RecordKind kind) {
-  switch (kind) {
-    case RecordKind::points:
-      return "Points";
-    case RecordKind::sliding:
-      return "Sliding";
-    case RecordKind::force_only:
-      return "Friction alone";
-    case RecordKind::motion_only:
-      return "Motion";
-    case RecordKind::stick_slip:
-    case RecordKind::spring_slider:
-      break;
-  }
-  return "Stick-slip";
-}
+/// Of what the motion shows, in the order of RecordKind.
+constexpr std::array<const char*, 6> kHeadings = {"Stick-slip", "Sliding", "Points",
+                                                  "Stick-slip", "Motion",  "Friction alone"};
 
 }  // namespace
 
@@ -137,7 +125,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
 std::string render_terminal(const Identification& result, const TerminalOptions& options) {
   TerminalText text(options);
   add_record(result, text);
-  text.heading(heading_of(kind_of_record(result.motion, result.segmentation)));
+  text.heading(style_of(kind_of_record(result.motion, result.segmentation), kHeadings));
   for (const auto& [name, value] : stick_slip_facts(result)) {
     text.item(name, name == "frequency" ? value + " (+/- is one standard error, here and below)" : value);
   }

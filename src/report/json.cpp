@@ -7,7 +7,6 @@
 
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
-#include "measured_friction.hpp"
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/version.hpp"
@@ -53,6 +52,35 @@ Json fit_json(const Fit& fit, const Motion& motion) {
       "covariance", covariance_json(fit), "degrees_of_freedom", fit.degrees_of_freedom);
 }
 
+Json spread_json(const SlipSpread& spread) {
+  return object("mean", spread.mean.value, "std_error", spread.mean.std_error, "scatter", spread.scatter);
+}
+
+Json estimate_json(const Estimate& estimate) {
+  const Interval ci = interval_of(estimate);
+  return object("value", estimate.value, "std_error", estimate.std_error, "ci95", interval_json(ci.lower, ci.upper));
+}
+
+Json force_json(const ForceStatistics& force) {
+  return object("friction", spread_json(force.whole), "slips", force.slips, "peak", spread_json(force.peak), "drop",
+                spread_json(force.drop), "period_s", spread_json(force.period), "slip_time_s",
+                spread_json(force.slip_time), "both_directions", force.both_directions);
+}
+
+Json friction_levels_json(const FrictionLevels& levels) {
+  return object("bins",
+                list_of(levels.bins,
+                        [](const FrictionLevels::Bin& bin) {
+                          return object("velocity_mm_s", bin.velocity / kMillimetre, "friction",
+                                        estimate_json(bin.friction), "slips", bin.slips);
+                        }),
+                "levels", list_of(levels.levels, [](const FrictionLevels::Level& level) {
+                  return object("slowest_peak_mm_s", level.slowest_peak / kMillimetre, "fastest_peak_mm_s",
+                                level.fastest_peak / kMillimetre, "friction", estimate_json(level.friction), "slips",
+                                level.slips);
+                }));
+}
+
 Json shares_json(const std::vector<Share>& shares) {
   return list_of(shares,
                  [](const Share& s) { return object("variable", s.variable, "share", s.share, "p_value", s.p_value); });
@@ -88,20 +116,18 @@ Json health_json(const Motion& motion) {
 
 Json stick_slip_json(const Identification& result) {
   const Segmentation& s = result.segmentation;
-  const Interval ci = interval_of(s.frequency);
   const SpectralPeak& peak = result.spectral_peak;
-  return object(
-      "cycles", count_of_cycles(s), "frequency_hz",
-      object("value", s.frequency.value, "std_error", s.frequency.std_error, "ci95", interval_json(ci.lower, ci.upper)),
-      "amplitude_mm_s", s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre,
-      "stick_time_s", s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
-      "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value, "slip_time_std_error_s",
-      s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip", samples_in_slip(s), "sticks_over_1_s",
-      long_sticks(s).count, "longest_stick_s", long_sticks(s).longest, "branch_difference", s.branch_difference.value,
-      "branch_difference_std_error", s.branch_difference.std_error, "motion",
-      kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes, "spectrum",
-      object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
-             peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
+  return object("cycles", count_of_cycles(s), "frequency_hz", estimate_json(s.frequency), "amplitude_mm_s",
+                s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre, "stick_time_s",
+                s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
+                "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value,
+                "slip_time_std_error_s", s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip",
+                samples_in_slip(s), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s", long_sticks(s).longest,
+                "branch_difference", s.branch_difference.value, "branch_difference_std_error",
+                s.branch_difference.std_error, "motion", kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes,
+                "spectrum",
+                object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
+                       peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
 }
 
 Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
@@ -113,11 +139,8 @@ Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
 
 /// What several traces are: lists of what each is.
 void add_traces(const std::vector<Identification>& traces, Json& json) {
-  const auto of_motion = [](Json make(const Motion&)) {
-    return [make](const Identification& trace) { return make(trace.motion); };
-  };
   json["traces"] = list_of(traces, trace_json);
-  json["conditions"] = list_of(traces, of_motion(conditions_of));
+  json["conditions"] = list_of(traces, [](const Identification& trace) { return conditions_of(trace.motion); });
   json["health"] = Json::array();
   for (std::size_t k = 0; k < traces.size(); ++k) {
     for (Json item : health_json(traces[k].motion)) {
@@ -186,15 +209,6 @@ Json parameter_json(const FitParameter& p, const Motion& motion) {
 
 Json fits_json(std::span<const Fit> fits, const Motion& motion) {
   return list_of(fits, [&](const Fit& fit) { return fit_json(fit, motion); });
-}
-
-std::string line_of(const Json& json) {
-  // File names and headers need not be valid UTF-8.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json record_json(const Identification& trace, const JsonOptions& options) {

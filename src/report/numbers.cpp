@@ -8,8 +8,6 @@
 namespace tribofit {
 namespace {
 
-constexpr int kMostPlaces = 8;
-
 /// Power of ten of the first digit, after rounding to `digits` digits (0.0996 to two digits is 0.10).
 int leading_power(double value, int digits) {
   if (value == 0 || !std::isfinite(value)) return 0;
@@ -32,6 +30,7 @@ std::string brief(double value) {
 }
 
 int places_for(double std_error) {
+  constexpr int kMostPlaces = 8;
   if (!std::isfinite(std_error) || std_error <= 0) return kMostPlaces;
   return 1 - leading_power(std_error, 2);
 }
@@ -41,6 +40,10 @@ std::string fixed(double value, int places) {
   if (places >= 0) return fmt::format("{:.{}f}", value, std::min(places, 12));
   const double step = std::pow(10.0, -places);
   return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+std::string with_sign(double value, int places, std::string_view more) {
+  return std::isfinite(value) ? fmt::format("{:+.{}f}{}", value, places, more) : "-";
 }
 
 std::string with_error(double value, double std_error) {
@@ -100,10 +103,6 @@ std::string full_name(const FitParameter& p) {
 
 std::string curve_name(const Fit& fit) {
   return fit.model.name() + (fit.protocol == Protocol::published ? ", per-cycle extremes" : "");
-}
-
-bool has_parameters(const Fit& fit) {
-  return !fit.parameters.empty();
 }
 
 std::string limits_text(const FitParameter& p) {

@@ -26,6 +26,9 @@ int places_for(double std_error);
 /// `value` rounded to `places` decimal places.
 std::string fixed(double value, int places);
 
+/// The same with its sign, "+0.51"; `more` behind a number that is known.
+std::string with_sign(double value, int places, std::string_view more = "");
+
 /// A value and its standard error to the same place: "0.05214 +/- 0.00043", or four digits of the value when the error
 /// is unknown.
 std::string with_error(double value, double std_error);
@@ -66,7 +69,6 @@ int places_of(const FitParameter& parameter);
 
 /// A curve as a legend names it: "exponential + viscous, per-cycle extremes".
 std::string curve_name(const Fit& fit);
-bool has_parameters(const Fit& fit);
 
 /// "[0.507, 0.511]"; "-" where neither end is known.
 std::string interval_text(double lower, double upper, int places);

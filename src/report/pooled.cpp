@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "campaign/csv_table.hpp"
-#include "condition_cells.hpp"
+#include "campaign/condition_cells.hpp"
+#include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
 #include "tribofit/campaign/whole_file.hpp"

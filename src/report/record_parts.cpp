@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "measured_friction.hpp"
 #include "numbers.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
@@ -85,12 +84,61 @@ Facts point_facts(const Motion& motion) {
                                                                 : "stated: points weigh against their squares"}};
 }
 
+/// "0.421 +/- 0.002 N from slip to slip 0.02".
+std::string spread_text(const SlipSpread& spread, double unit, std::string_view name) {
+  std::string text = with_error(spread.mean.value / unit, spread.mean.std_error / unit) + std::string(name);
+  if (std::isfinite(spread.scatter)) text += fmt::format("; scatter {}", significant(spread.scatter / unit, 2));
+  return text + (std::isfinite(spread.scatter) ? std::string(name) : "");
+}
+
+/// Of friction without motion.
+Facts force_facts(const ForceStatistics& force, const std::string& unit) {
+  const std::string behind = unit_behind(unit);
+  Facts facts = {{"friction", "mean " + spread_text(force.whole, 1, behind) + " over all samples" +
+                                  (force.both_directions ? ", of its size: it goes in both directions" : "")}};
+  if (force.slips == 0) {
+    facts.emplace_back("slips", "none: nothing falls faster than it rises");
+    return facts;
+  }
+  facts.emplace_back("slips",
+                     fmt::format("{}; means below are over slips, +/- is one standard error, scatter that from "
+                                 "slip to slip",
+                                 grouped(force.slips)));
+  const auto add = [&](const char* name, const SlipSpread& spread, double size, const std::string& size_name) {
+    if (std::isfinite(spread.mean.value)) facts.emplace_back(name, spread_text(spread, size, size_name));
+  };
+  add("break-away", force.peak, 1, behind);
+  add("drop", force.drop, 1, behind);
+  add("period", force.period, 1, " s");
+  add("slip time", force.slip_time, kMillisecond, " ms");
+  return facts;
+}
+
+/// Friction over the velocity without a law.
+void add_friction_levels(const FrictionLevels& levels, const std::string& unit, Facts& facts) {
+  const std::string behind = unit_behind(unit);
+  for (const FrictionLevels::Bin& bin : levels.bins) {
+    facts.emplace_back(fmt::format("at {} mm/s", significant(bin.velocity / kMillimetre, 3)),
+                       fmt::format("friction {}{} ({} slips)", with_error(bin.friction.value, bin.friction.std_error),
+                                   behind, bin.slips));
+  }
+  for (const FrictionLevels::Level& level : levels.levels) {
+    facts.emplace_back("level", fmt::format("{}{} in {} slips that reach {} to {} mm/s",
+                                            with_error(level.friction.value, level.friction.std_error), behind,
+                                            level.slips, significant(level.slowest_peak / kMillimetre, 3),
+                                            significant(level.fastest_peak / kMillimetre, 3)));
+  }
+  if (const auto apart = difference_of(levels)) {
+    facts.emplace_back("amplitude",
+                       fmt::format("the two levels {}: they differ by {}{}", apart->agree ? "agree" : "do not agree",
+                                   with_error(apart->value.value, apart->value.std_error), behind));
+  }
+}
+
 /// Of a slider on a spring: it sticks, it swings about its drive, or it follows it.
 std::string regime_text(const Identification& r) {
-  constexpr double kSwings = 0.1;  // of the drive, from which friction follows the swing and not the drive
   if (r.segmentation.kind == MotionKind::stick_slip) return "stick-slip";
-  const double drive = std::abs(r.motion.constant_disc_velocity);
-  if (r.segmentation.rms_velocity < kSwings * drive) return "steady: the slider follows its drive";
+  if (follows_drive(r.motion, r.segmentation)) return "steady: the slider follows its drive";
   const std::string at =
       r.spectral_peak.frequency > 0 ? fmt::format(" at {} Hz", significant(r.spectral_peak.frequency, 4)) : "";
   return fmt::format("inertial: the slider swings{} without sticking", at);
@@ -102,32 +150,27 @@ std::string spring_text(const Condition& known, double unit, std::string_view na
   return fmt::format("{} {} ({})", brief(known.value / unit), name, known.source);
 }
 
-/// What a mass on a spring rubs on, and what holds it.
-Facts mass_facts(const Motion& motion) {
-  const SpringDrive& s = motion.spring;
-  const bool base = s.counterface == Counterface::base;
-  return {{"moving mass", spring_text(s.mass, 1, "kg")},
-          {"spring", spring_text(s.stiffness, 1, "N/m")},
-          {"damping", spring_text(s.damping, 1, "N s/m")},
-          {"rubs on", base ? "the moving base: v_r = x' - y'" : "ground that stands still: v_r = x'"},
-          {"load", condition(motion, &Conditions::load, 1, "N")}};
-}
-
-Facts spring_facts(const Motion& motion) {
-  constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
-  return {{"drive", spring_text(motion.spring.velocity, kMillimetre, "mm/s")},
-          {"spring", spring_text(motion.spring.stiffness, kNewtonPerMillimetre, "N/mm")},
-          {"moving mass", spring_text(motion.spring.mass, kGram, "g")},
-          {"load", condition(motion, &Conditions::load, 1, "N")}};
-}
-
 Facts condition_facts(const Motion& motion) {
-  if (motion.kind == RecordKind::spring_slider) return spring_facts(motion);
-  if (motion.kind == RecordKind::motion_only) return mass_facts(motion);
-  if (motion.kind == RecordKind::force_only) return {{"load", condition(motion, &Conditions::load, 1, "N")}};
-  return {{"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")},
-          {"disc speed", speed_text(motion)},
-          {"load", condition(motion, &Conditions::load, 1, "N")}};
+  constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
+  const SpringDrive& s = motion.spring;
+  const std::pair<std::string, std::string> load = {"load", condition(motion, &Conditions::load, 1, "N")};
+  if (motion.kind == RecordKind::spring_slider) {
+    return {{"drive", spring_text(s.velocity, kMillimetre, "mm/s")},
+            {"spring", spring_text(s.stiffness, kNewtonPerMillimetre, "N/mm")},
+            {"moving mass", spring_text(s.mass, kGram, "g")},
+            load};
+  }
+  if (motion.kind == RecordKind::motion_only) {
+    const bool base = s.counterface == Counterface::base;
+    return {{"moving mass", spring_text(s.mass, 1, "kg")},
+            {"spring", spring_text(s.stiffness, 1, "N/m")},
+            {"damping", spring_text(s.damping, 1, "N s/m")},
+            {"rubs on", base ? "the moving base: v_r = x' - y'" : "ground that stands still: v_r = x'"},
+            load};
+  }
+  if (motion.kind == RecordKind::force_only) return {load};
+  return {
+      {"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")}, {"disc speed", speed_text(motion)}, load};
 }
 
 void add_health(const Motion& motion, TerminalText& text) {
@@ -142,16 +185,6 @@ void add_health(const Motion& motion, TerminalText& text) {
   }
   if (!found) text.raw(fmt::format("  no problems found ({} checks)\n", motion.health.size()));
 }
-
-}  // namespace
-
-std::string kind_text(const Identification& r) {
-  std::string text(to_string(kind_of_record(r.motion, r.segmentation)));
-  if (!r.motion.kind_source.empty()) text += " (" + r.motion.kind_source + ")";
-  return text;
-}
-
-namespace {
 
 /// Level and fall of the pull over the cycles, which need no velocity.
 void add_levels_of_pull(const Identification& r, Facts& facts) {
@@ -171,6 +204,12 @@ void add_levels_of_pull(const Identification& r, Facts& facts) {
 }
 
 }  // namespace
+
+std::string kind_text(const Identification& r) {
+  std::string text(to_string(kind_of_record(r.motion, r.segmentation)));
+  if (!r.motion.kind_source.empty()) text += " (" + r.motion.kind_source + ")";
+  return text;
+}
 
 std::string record_sentence(const Identification& r) {
   if (r.motion.is_points()) return points_sentence(r.motion);

@@ -52,7 +52,7 @@ std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best
                                      const std::function<bool(const Fit&)>& wanted) {
   std::vector<const Fit*> models;
   for (const Fit& fit : fits) {
-    if (!has_parameters(fit)) continue;
+    if (fit.parameters.empty()) continue;
     if (&fit == &fits[best]) {
       models.insert(models.begin(), &fit);
     } else if (wanted(fit)) {
@@ -68,7 +68,7 @@ std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std:
   for (const Fit& fit : others) all.push_back(&fit);
   std::set<std::string> names;
   for (const Fit* fit : all) {
-    if (has_parameters(*fit) && fit->fastest > 0 && names.insert(curve_name(*fit)).second) curves.push_back(fit);
+    if (!fit->parameters.empty() && fit->fastest > 0 && names.insert(curve_name(*fit)).second) curves.push_back(fit);
   }
   return curves;
 }

@@ -25,6 +25,12 @@ ReportTable health_table(std::span<const Identification> traces);
 /// Name, size and reading of the trace, conditions and health: how the text of identify, rig and twin begins.
 void add_record(const Identification& record, TerminalText& text);
 
+/// How good the best fit is, in one sentence an engineer would say.
+std::string verdict(const Identification& result);
+
+/// What to do next with a trace and its fits.
+Suggestion next_command(const Identification& result, const ReportOptions& options);
+
 /// What is said of each fit: all of them, or those that the comparison of the protocols does not hold.
 enum class Fits { all, without_compared };
 /// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are; nothing where

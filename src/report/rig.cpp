@@ -70,9 +70,7 @@ void add_rig(const RigFit& rig, TerminalText& text) {
 Suggestion next_of(const RigIdentification& result, const TerminalOptions& options) {
   const Identification& trace = result.trace;
   const auto of_verb = [&](std::vector<std::string> verb, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words = words_of(std::move(verb), options.arguments, {"--keep-high-pass"});
-    words.insert(words.end(), more.begin(), more.end());
-    return command_line(words, {trace.path});
+    return command_line(joined(words_of(std::move(verb), options.arguments, {"--keep-high-pass"}), more), {trace.path});
   };
   const bool sticks = trace.segmentation.kind == MotionKind::stick_slip;
   if (sticks && trace.motion.high_pass == 0 && trace.motion.size() > 0 &&

@@ -8,11 +8,8 @@
 #include <variant>
 
 namespace tribofit {
-namespace {
 
 constexpr std::size_t kIndent = 2;  // of tables
-
-}  // namespace
 
 TerminalText::TerminalText(const TerminalOptions& options)
     : width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {
@@ -57,10 +54,6 @@ void TerminalText::item(std::string_view name, std::string_view text, std::size_
 
 void TerminalText::warning(std::string_view text) {
   text_ += "  " + in_yellow("warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
-}
-
-bool TerminalText::has_room_for(const ReportTable& table) const {
-  return widest(aligned(table, kIndent)) <= width_;
 }
 
 void TerminalText::table(const ReportTable& all, std::size_t most) {
@@ -165,8 +158,8 @@ std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, i
   return lines;
 }
 
-BarSigns bar_signs(bool unicode) {
-  return unicode ? BarSigns{"\u2591", "\u2588"} : BarSigns{"-", "#"};
+std::pair<const char*, const char*> bar_signs(bool unicode) {
+  return unicode ? std::pair("\u2591", "\u2588") : std::pair("-", "#");
 }
 
 std::string bar(double value, double full, std::size_t columns, bool unicode, double pale) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -33,8 +34,6 @@ class TerminalText {
   /// A table with its caption as heading, if it has rows: the first `most` of them, without the columns of most detail
   /// where the terminal is narrow.
   void table(const ReportTable& table, std::size_t most = kAll);
-  /// Whether the columns that a table never goes without have room side by side.
-  bool has_room_for(const ReportTable& table) const;
   /// What a page shows of a section; charts, and tables that it folds, are left out.
   void items(const std::vector<ReportItem>& items);
   /// The same under the title of the section, if there are any.
@@ -80,10 +79,6 @@ std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, i
 std::string bar(double value, double full, std::size_t columns, bool unicode, double pale = 0);
 
 /// The two signs of which a bar is made: {lighter, full}.
-struct BarSigns {
-  const char* pale;
-  const char* full;
-};
-BarSigns bar_signs(bool unicode);
+std::pair<const char*, const char*> bar_signs(bool unicode);
 
 }  // namespace tribofit

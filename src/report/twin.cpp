@@ -18,21 +18,6 @@ namespace {
 
 constexpr std::size_t kBins = 400;
 
-std::string decimal(double value, const char* format = "{:+.1f}") {
-  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
-}
-
-/// The last column is what the user believes in.
-bool agrees(const Twin& twin) {
-  return twin.reason.empty() && !twin.columns.empty() && std::isfinite(twin.rms_difference.back()) &&
-         twin.failures(twin.columns.size() - 1).empty();
-}
-
-/// Means over cycles may agree while the law misses what goes up and down between them.
-bool law_falls_short(const TwinIdentification& result) {
-  return !result.trace.fits.empty() && well_above_floor(result.trace.fits.back());
-}
-
 /// "0.84990 +/- 0.00022 kg, 16.1970 +/- 0.0021 N/mm, damping ratio ..., 21.9712 +/- 0.0025 Hz".
 std::string rig_text(const RigFit& rig) {
   const std::string per = rig.per_unit_load ? "/N" : "";
@@ -44,18 +29,9 @@ std::string rig_text(const RigFit& rig) {
 
 /// "exponential: mu_s 0.5090 +/- 0.0012, ...".
 std::string law_text(const Fit& fit, const Motion& motion) {
-  std::string text;
-  for (const FitParameter& p : fit.parameters) {
-    text += (text.empty() ? "" : ", ") + full_name(p) + " " + value_text(p, motion);
-  }
-  return fit.model.name() + ": " + text;
-}
-
-/// The bare law by its name, the one with effects by what is added.
-std::string column_name(const Twin& twin, std::size_t c) {
-  const std::string& name = twin.columns[c];
-  const std::size_t plus = name.find(" + ");
-  return c == 0 || plus == std::string::npos ? name : name.substr(plus + 1);
+  std::vector<std::string> parameters;
+  for (const FitParameter& p : fit.parameters) parameters.push_back(full_name(p) + " " + value_text(p, motion));
+  return fmt::format("{}: {}", fit.model.name(), fmt::join(parameters, ", "));
 }
 
 /// Measured and simulated measures, their differences in standard errors, and the root mean square of these.
@@ -64,8 +40,8 @@ ReportTable twin_table(const Twin& twin) {
   table.text({""}).numbers({"measured"});
   std::vector<std::string> total = {"root mean square", ""};
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    table.numbers({column_name(twin, c), "off by"});
-    total.insert(total.end(), {"", decimal(twin.rms_difference[c], "{:.1f}")});
+    table.numbers({twin.short_name(c), "off by"});
+    total.insert(total.end(), {"", fixed(twin.rms_difference[c], 1)});
   }
   table.text({"unit"});
   for (const TwinMeasure& m : twin.measures) {
@@ -73,7 +49,7 @@ ReportTable twin_table(const Twin& twin) {
     std::vector<std::string> row = {m.name, portrait ? "" : with_error(m.measured / m.si, m.measured_std_error / m.si)};
     for (const TwinMeasure::Simulated& s : m.simulated) {
       row.push_back(portrait ? "" : fixed(s.value / m.si, places_for(s.std_error / m.si)));
-      row.push_back(decimal(s.difference, portrait ? "{:.1f}" : "{:+.1f}"));
+      row.push_back(portrait ? fixed(s.difference, 1) : with_sign(s.difference, 1));
     }
     row.push_back(portrait ? "" : m.unit);
     table.rows.push_back(std::move(row));
@@ -106,7 +82,7 @@ Suggestion next_after_twin(const TwinIdentification& result, const std::vector<s
     return command_line(words_of(std::move(verb), arguments), {result.trace.path});
   };
   if (!result.twin.reason.empty()) return {"to see the trace, its health and its law", of_verb({})};
-  if (agrees(result.twin) && !law_falls_short(result)) {
+  if (result.twin.agrees() && !result.law_falls_short()) {
     return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
   }
   return {"to see where the law fails and which effect is missing", of_verb({"diagnose"})};
@@ -124,10 +100,10 @@ std::string twin_verdict(const TwinIdentification& result) {
                        law.substr(std::min(law.size(), law.find('+') + 2)), twin.rms_difference[0],
                        twin.rms_difference[last]);
   }
-  if (agrees(twin)) {
+  if (twin.agrees()) {
     text += fmt::format(
         "The twin of the {} law moves as the record does: nothing is off by more than three standard errors.", law);
-    if (!law_falls_short(result)) return text;
+    if (!result.law_falls_short()) return text;
     const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
                       " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
@@ -144,7 +120,7 @@ std::string twin_verdict(const TwinIdentification& result) {
 /// Said first: a law that leaves clearly more than noise has the twin of another machine.
 std::vector<std::string> warnings_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
   std::vector<std::string> warnings = result.trace.warnings;
-  if (!result.twin.reason.empty() || !law_falls_short(result)) return warnings;
+  if (!result.twin.reason.empty() || !result.law_falls_short()) return warnings;
   const Fit& fit = result.trace.fits.back();
   if (!(over_floor(fit) > 1)) return warnings;
   warnings.insert(
@@ -179,7 +155,7 @@ std::vector<DrawnMotion> motions_of(const Twin& twin) {
   std::vector<DrawnMotion> out;
   if (twin.measured.size() > 0) out.emplace_back("measured", twin.measured);
   for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() > 0) out.emplace_back("simulated, " + column_name(twin, c), twin.simulated[c]);
+    if (twin.simulated[c].size() > 0) out.emplace_back("simulated, " + twin.short_name(c), twin.simulated[c]);
   }
   return out;
 }
@@ -202,7 +178,7 @@ Chart differences_chart(const Twin& twin) {
   for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
   double largest = 4;
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    ChartLine& line = chart.line(column_name(twin, c), marked(c + 1, false));
+    ChartLine& line = chart.line(twin.short_name(c), marked(c + 1, false));
     line.stroke.colour = stroke_for(c + 1).colour;
     line.stroke.size = 8;
     for (std::size_t k = 0; k < twin.measures.size(); ++k) {
@@ -295,7 +271,7 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     const double rms = twin.rms_difference[c];
-    report.facts.emplace_back("off by, " + column_name(twin, c),
+    report.facts.emplace_back("off by, " + twin.short_name(c),
                               std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
   }
   if (twin.reason.empty() && !twin.columns.empty()) {

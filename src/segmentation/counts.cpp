@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -25,6 +26,22 @@ LongSticks long_sticks(const Segmentation& segmentation) {
 bool has_uneven_sticks(const Segmentation& segmentation) {
   constexpr double kUneven = 3;
   return long_sticks(segmentation).longest > kUneven * segmentation.stick_time.value;
+}
+
+bool follows_drive(const Motion& motion, const Segmentation& segmentation) {
+  return segmentation.rms_velocity < segmentation::kSwings * std::abs(motion.constant_disc_velocity);
+}
+
+std::optional<LevelDifference> difference_of(const FrictionLevels& levels) {
+  if (levels.levels.size() < 2) return std::nullopt;
+  const Estimate &small = levels.levels[0].friction, &large = levels.levels[1].friction;
+  LevelDifference out;
+  out.value.value = large.value - small.value;
+  out.value.std_error = std::hypot(small.std_error, large.std_error);
+  if (!std::isfinite(out.value.std_error)) return std::nullopt;
+  const double alike = std::max(2 * out.value.std_error, segmentation::kAlikeLevels * std::abs(small.value));
+  out.agree = std::abs(out.value.value) < alike;
+  return out;
 }
 
 std::size_t count_of_cycles(const Segmentation& segmentation) {

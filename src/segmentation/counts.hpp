@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "tribofit/segmentation/cycles.hpp"
+#include "tribofit/segmentation/friction_levels.hpp"
 
 namespace tribofit {
 
@@ -25,6 +27,17 @@ LongSticks long_sticks(const Segmentation& segmentation);
 
 /// Some stick lasts several times as long as the mean one: the mean alone would mislead.
 bool has_uneven_sticks(const Segmentation& segmentation);
+
+/// A slider on a spring that follows its drive: it swings so little about it that friction follows the drive alone.
+bool follows_drive(const Motion& motion, const Segmentation& segmentation);
+
+/// Friction in large swings less that in small ones.
+struct LevelDifference {
+  Estimate value;      ///< [1 or N]
+  bool agree = false;  ///< no more than chance, and what smoothing and the stated mass and stiffness leave
+};
+/// Nothing where there are no two levels with their errors.
+std::optional<LevelDifference> difference_of(const FrictionLevels& levels);
 
 /// Cycles with a stick and a slip.
 std::size_t count_of_cycles(const Segmentation& segmentation);

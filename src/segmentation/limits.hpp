@@ -39,5 +39,10 @@ inline constexpr double kOtherDirection = 0.05;
 
 /// Of the peak, from which a slip shows the level of friction: below, smoothing rounds its turning points.
 inline constexpr double kFasterPart = 0.3;
+/// Part of the level by which those of small and of large swings may differ: smoothing, the stated mass and the stated
+/// stiffness are no better. Smaller: they disagree where only these do.
+inline constexpr double kAlikeLevels = 0.02;
+/// Of the drive, RMS of the swing about it from which friction follows the swing and not the drive.
+inline constexpr double kSwings = 0.1;
 
 }  // namespace tribofit::segmentation

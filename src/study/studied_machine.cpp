@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "tribofit/fit/identification.hpp"
+#include "tribofit/study/block_motion.hpp"
+#include "tribofit/study/critical_speed.hpp"
 
 namespace tribofit {
 
@@ -23,6 +25,11 @@ double std_error_of(const StudiedMachine& of, std::string_view variable) {
     if (variable == name) return from(of.covariance.friction, k);
   }
   return std::nan("");
+}
+
+BlockMotion measured_motion(const StudiedMachine& of, double disc_velocity) {
+  if (!of.record || !(std::abs(disc_velocity / of.machine.disc_velocity() - 1) < kSameSpeed)) return {};
+  return block_motion(of.record->motion, of.record->segmentation, of.machine.load / of.machine.rig.stiffness);
 }
 
 const Estimate* measured_value(const StudiedMachine& of, const MeasureInfo& measure) {

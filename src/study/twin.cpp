@@ -1,4 +1,5 @@
 #include "tribofit/study/twin.hpp"
+#include "fit/assessment.hpp"
 #include "limits.hpp"
 
 #include <fmt/format.h>
@@ -247,6 +248,21 @@ std::vector<std::string> Twin::failures(std::size_t column) const {
   std::vector<std::string> names;
   for (auto& [size, name] : off) names.push_back(std::move(name));
   return names;
+}
+
+bool Twin::agrees() const {
+  return reason.empty() && !columns.empty() && std::isfinite(rms_difference.back()) &&
+         failures(columns.size() - 1).empty();
+}
+
+std::string Twin::short_name(std::size_t column) const {
+  const std::string& name = columns[column];
+  const std::size_t plus = name.find(" + ");
+  return column == 0 || plus == std::string::npos ? name : name.substr(plus + 1);
+}
+
+bool TwinIdentification::law_falls_short() const {
+  return !trace.fits.empty() && well_above_floor(trace.fits.back());
 }
 
 Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,

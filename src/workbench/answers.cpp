@@ -4,7 +4,6 @@
 #include <variant>
 
 #include "choice_json.hpp"
-#include "report/charts/report_json.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/friction/effects/all.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "choice_json.hpp"
 #include "diagnosis_run.hpp"
-#include "report/verdict.hpp"
+#include "report/report_parts.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/version.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "report/pictures/draw.hpp"
 #include "report/pictures/layout.hpp"
 #include "report/pictures/scale.hpp"
 #include "report/pictures/text.hpp"
-#include "report/pictures/thin.hpp"
 
 namespace tribofit {
 namespace {
@@ -122,7 +122,7 @@ TEST(ThinnedLine, StaysWithinItsTolerance) {
       farthest = std::max(farthest, std::abs(points[k].y - a.y - (points[k].x - a.x) / (b.x - a.x) * (b.y - a.y)));
     }
   }
-  EXPECT_GT(highest, 5);  // the peak
+  EXPECT_GT(highest, 5);       // the peak
   EXPECT_LT(farthest, 0.023);  // 0.02 across the line
 }
 

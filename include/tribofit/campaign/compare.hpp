@@ -20,6 +20,12 @@ struct ComparedValue {
   double in_std_errors = 0;  ///< (ours - earlier) over std_error and systematic of ours and std_error of the earlier
                              ///< value, as far as stated, added in squares; NaN where ours has none
   bool inside95 = false;     ///< the earlier value lies in our 95 % interval
+
+  /// Both are ours beside the same earlier value, by another protocol.
+  bool is_beside_same(const ComparedValue& other) const {
+    return group == other.group && law == other.law && earlier.line == other.earlier.line &&
+           earlier.column == other.earlier.column && earlier.name == other.earlier.name;
+  }
 };
 
 /// A campaign beside a table of earlier values.
@@ -37,6 +43,9 @@ struct EarlierComparison {
 
 /// "9 mm, 4 rpm, 50 N, lot L": what is known of the conditions.
 std::string conditions_text(const Conditions& conditions, const std::vector<OtherCondition>& others);
+inline std::string conditions_text(const PooledGroup& group) {
+  return conditions_text(group.conditions, group.others);
+}
 
 /// Puts each earlier value beside the pooled values of the same name, law and protocol under the same conditions.
 /// Conditions are the same where all that the row states is (a speed that was read off the plateau to 1 %); alpha is

@@ -20,6 +20,9 @@ ResultMeasure mean_over_runs(std::span<const double> values);
 /// The pooled value of that name of the base law or a measure; null where there is none.
 const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name);
 
+/// Its plain mean with the standard error; nothing where there is none.
+std::optional<ResultMeasure> pooled_mean(const std::vector<PooledValue>& values, std::string_view name);
+
 /// Fits of a group with this law and protocol; null where there are none.
 const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol);
 

@@ -27,6 +27,8 @@ class OverConditions {
   };
   const std::vector<Series>& series() const { return series_; }
   double x_of(std::size_t group) const { return x_[group]; }
+  /// At most so many groups, evenly, in the order of the series.
+  std::vector<std::size_t> some(std::size_t most) const;
 
  private:
   std::string quantity_ = "conditions", unit_;

@@ -19,6 +19,8 @@ struct Trend {
   double p_value = 1;      ///< of no slope (t test)
   double p_corrected = 1;  ///< for all trends looked at (Holm)
   bool rises() const { return slope > 0; }
+  /// "s/mm per rpm", "per run".
+  std::string slope_unit() const;
 };
 
 /// Two conditions that change together, so that a trend over one may be one over the other.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "tribofit/friction/model.hpp"
@@ -19,6 +20,7 @@ struct Machine {
   double speed = 0;                ///< omega [rad/s], > 0
 
   double disc_velocity() const { return radius * speed; }  ///< omega r [m/s]
+  double natural_hertz() const { return rig.natural_frequency() / (2 * std::numbers::pi); }
   Drive drive() const { return {.speed = constant_speed(speed), .radius = radius, .mean_load = load}; }
 };
 

@@ -41,6 +41,10 @@ struct Twin {
 
   /// Names of the measures in which a column is off by more than three standard errors, the worst first.
   std::vector<std::string> failures(std::size_t column) const;
+  /// The last column, which the user believes in, is off in none of them.
+  bool agrees() const;
+  /// A column beside the others: the bare law by its name, one with effects by what it adds.
+  std::string short_name(std::size_t column) const;
 };
 
 /// A trace beside the motions that its laws and its rig predict; see pipeline.hpp.
@@ -48,6 +52,9 @@ struct TwinIdentification {
   Identification trace;      ///< its `fits`: the best bare law, then the best law with the effects asked for
   std::vector<RigFit> rigs;  ///< beside each of them, see rig_beside()
   Twin twin;
+
+  /// Means over cycles may agree while the law misses what goes up and down between them.
+  bool law_falls_short() const;
 };
 
 struct TwinOptions {

@@ -23,11 +23,6 @@ std::string with_subscript(const std::string& name) {
   return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
 }
 
-Maybe mean_of(const PooledValue* value) {
-  if (value == nullptr) return std::nullopt;
-  return ResultMeasure{value->mean, value->standard_error_of_mean};
-}
-
 /// A chart over the conditions, panel by panel: lines of means with their standard errors, a line for each series of
 /// conditions, and earlier values beside them.
 class MeansChart {
@@ -59,7 +54,7 @@ class MeansChart {
     return *this;
   }
   MeansChart& measure(const std::string& name, const char* measure) {
-    return add(name, 0, [&](std::size_t g) { return mean_of(pooled_value(of_.groups[g].measures, measure)); });
+    return add(name, 0, [&](std::size_t g) { return pooled_mean(of_.groups[g].measures, measure); });
   }
   /// The earlier values of that name, one for each of the conditions.
   MeansChart& earlier(const std::string& name) {
@@ -106,7 +101,7 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
     }
   };
   const auto add_level = [&](const char* name) {
-    add_kinds([&](const PooledGroup&, const auto& fit) { return mean_of(pooled_value(fit.parameters, name)); });
+    add_kinds([&](const PooledGroup&, const auto& fit) { return pooled_mean(fit.parameters, name); });
     chart.earlier(name);
   };
   const std::string unit = of.friction_unit();
@@ -127,7 +122,7 @@ Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over
     const auto value_by = [&](const char* protocol) {
       return [&, protocol](std::size_t g) {
         const PooledGroup::OfFit* own = fit_of(of.groups[g], other.law, protocol);
-        return own == nullptr ? Maybe{} : mean_of(pooled_value(own->parameters, other.name));
+        return own == nullptr ? Maybe{} : pooled_mean(own->parameters, other.name);
       };
     };
     chart.panel(with_subscript(other.name), other.unit).add("joint fit", 0, value_by("joint"));
@@ -146,13 +141,14 @@ Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std
   for (const std::size_t g : of.shown) {
     const auto drawn = first_figures(of.results, of.runs, of.groups[g]);
     if (!drawn) continue;
-    ChartLine line{of.name_of(g), {}, {}, stroke_of(chart.panels.size())};
+    ChartLine line{conditions_text(of.groups[g]), {}, {}, stroke_of(chart.panels.size())};
     line.stroke.dash = Dash::solid;  // each has a panel of its own
     add(drawn->figures, line);
     if (line.x.empty()) continue;
     line.panel = chart.panels.size();
     chart.panels.push_back({.axis = y});
-    chart.note += (chart.note.empty() ? "From top to bottom: " : "; ") + of.name_of(g) + " (" + drawn->run + ")";
+    chart.note +=
+        (chart.note.empty() ? "From top to bottom: " : "; ") + conditions_text(of.groups[g]) + " (" + drawn->run + ")";
     chart.lines.push_back(std::move(line));
   }
   if (!chart.note.empty()) chart.note += ".";
@@ -234,16 +230,7 @@ DrawnCampaign::DrawnCampaign(const ResultReader& all_results, std::span<const Ru
                              const std::optional<ComparisonReport>& comparison)
     : results(all_results), runs(all_runs), groups(pooled.groups), earlier(comparison ? &comparison->values : nullptr) {
   constexpr std::size_t kShownGroups = 6;
-  std::vector<std::size_t> order;  // as the charts over the conditions have them
-  const OverConditions over(groups);
-  for (const OverConditions::Series& series : over.series()) {
-    order.insert(order.end(), series.groups.begin(), series.groups.end());
-  }
-  for (const std::size_t k : thinned(order.size(), kShownGroups)) shown.push_back(order[k]);
-}
-
-std::string DrawnCampaign::name_of(std::size_t group) const {
-  return conditions_text(groups[group].conditions, groups[group].others);
+  shown = OverConditions(groups).some(kShownGroups);
 }
 
 std::string DrawnCampaign::earlier_name() const {
@@ -289,10 +276,10 @@ ReportSection law_figures(const DrawnCampaign& of) {
     if (!drawn || drawn->figures.errors.empty()) continue;
     Chart friction = friction_chart(drawn->figures, of.friction_unit()), error = error_chart(drawn->figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
-    friction.title = "Friction over velocity, " + of.name_of(of.shown[k]);
+    friction.title = "Friction over velocity, " + conditions_text(of.groups[of.shown[k]]);
     friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + drawn->run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
-    error.title = "Relative error (Eq 5), " + of.name_of(of.shown[k]);
+    error.title = "Relative error (Eq 5), " + conditions_text(of.groups[of.shown[k]]);
     section.add(std::move(friction));
     section.add(std::move(error));
   }
@@ -311,7 +298,7 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
   for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
     std::string name, unit;
     for (std::size_t k = 0; k < of.shown.size(); ++k) {
-      ChartLine& line = chart.line(of.name_of(of.shown[k]), marked(k, false), p);
+      ChartLine& line = chart.line(conditions_text(of.groups[of.shown[k]]), marked(k, false), p);
       line.bars = true;
       const std::vector<std::size_t>& runs = of.groups[of.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {

@@ -18,7 +18,6 @@ struct DrawnCampaign {
 
   DrawnCampaign(const ResultReader& all_results, std::span<const RunResult> all_runs, const Pooled& pooled,
                 const std::optional<ComparisonReport>& comparison);
-  std::string name_of(std::size_t group) const;
   /// "1", or "N" where friction is a force.
   std::string friction_unit() const { return runs.empty() ? "1" : runs.front().friction_unit; }
   /// How values of the table named by --compare are called.

@@ -33,14 +33,17 @@ ChartLine& add_band(const std::string& name, CycleBand band, const Stroke& strok
       ChartLine{name, in_unit(band.at, kMillimetre), band.middle, stroke, band.low, band.high});
 }
 
+/// What a model leaves of every sample, in units of the noise floor.
+std::vector<double> residuals_of(const DrawnTrace& d, std::size_t model) {
+  std::vector<double> residuals = d.trace.motion.friction;
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= d.predictions[model][i];
+  return in_unit(residuals, residual_unit(*d.models[model]));
+}
+
 /// Residuals of each model on both branches, switched with the line of their model.
 void add_residuals(const DrawnTrace& d, Chart& chart) {
-  const std::vector<double>& friction = d.trace.motion.friction;
   for (std::size_t m = 0; m < d.models.size(); ++m) {
-    std::vector<double> residuals;
-    for (std::size_t i = 0; i < friction.size(); ++i) residuals.push_back(friction[i] - d.predictions[m][i]);
-    residuals = in_unit(residuals, residual_unit(*d.models[m]));
-    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, residuals, kSpeedBins)) {
+    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, residuals_of(d, m), kSpeedBins)) {
       ChartLine& line = add_band(curve_name(*d.models[m]), band, style_of(branch, kBranches).stroke, chart);
       line.stroke.width = 1.3;
       line.panel = 1;
@@ -63,17 +66,66 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
   for (const std::size_t k : drawn_samples(levels, d.bins(kBreakAways))) line.add(0, levels[k]);
 }
 
-/// The law of each fit with its band; those that no model beside the samples has can be switched on.
+/// The law of a fit with its band.
+void add_curve(const Fit& fit, const Curve& curve, const Stroke& stroke, bool shown, Chart& chart) {
+  ChartLine& line = chart.line(curve_name(fit), stroke);
+  line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
+  line.low = curve.lower95, line.high = curve.upper95;
+  line.shown = shown;
+}
+
+/// Those that no model beside the samples has can be switched on.
 void add_curves(const DrawnTrace& d, Chart& chart) {
   for (const Fit* fit : d.curves) {
     const auto beside = std::find(d.models.begin(), d.models.end(), fit);
     const bool is_beside = beside != d.models.end();
-    const Curve curve = curve_of(*fit, kCurvePoints);
-    ChartLine& line = chart.line(
-        curve_name(*fit), is_beside ? model_stroke(static_cast<std::size_t>(beside - d.models.begin())) : kPublished);
-    line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
-    line.low = curve.lower95, line.high = curve.upper95;
-    line.shown = is_beside;
+    const auto k = static_cast<std::size_t>(beside - d.models.begin());
+    add_curve(*fit, curve_of(*fit, kCurvePoints), is_beside ? model_stroke(k) : kPublished, is_beside, chart);
+  }
+}
+
+/// A chart of friction without a line yet.
+Chart friction_chart(const DrawnTrace& d, const char* note, bool logarithmic) {
+  return {.id = d.id + "-law",
+          .title = "Friction over relative velocity",
+          .note = note,
+          .x = {.quantity = "relative velocity |v_{r}|", .unit = "mm/s", .logarithmic = logarithmic},
+          .panels = {{friction_axis(d.trace.motion), 1.35}},
+          .height = 560};
+}
+
+/// Below it what the laws leave.
+void add_residual_panel(Chart& chart) {
+  chart.panels.push_back({{"residual / floor", "1"}});
+  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
+}
+
+/// Speeds at which laws are drawn beside points [m/s].
+std::vector<double> speeds_of(double slowest, double fastest, bool logarithmic) {
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < kCurvePoints; ++k) {
+    const double part = static_cast<double>(k) / (kCurvePoints - 1.0);
+    speeds.push_back(logarithmic ? slowest * std::pow(fastest / slowest, part) : fastest * part);
+  }
+  return speeds;
+}
+
+/// Values of every point over its speed, with their standard errors where there are any.
+void add_points(const DrawnTrace& d, const std::vector<double>& values, const std::vector<double>& std_errors,
+                std::size_t panel, Chart& chart) {
+  for (const int sign : {1, -1}) {
+    ChartLine& line = sign > 0 ? chart.line("measured, forwards", dots(Colour::blue, Symbol::circle), panel)
+                               : chart.line("measured, backwards", dots(Colour::red, Symbol::square), panel);
+    line.listed = panel == 0;
+    line.bars = !std_errors.empty();
+    for (const Cycle& cycle : d.trace.segmentation.cycles) {
+      if (cycle.direction != sign) continue;
+      for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
+        const double speed = std::abs(d.trace.motion.relative_velocity[i]) / kMillimetre;
+        const double value = sign * values[i];
+        line.bars ? line.add(speed, value, std_errors[i]) : line.add(speed, value);
+      }
+    }
   }
 }
 
@@ -94,65 +146,49 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
 
 /// Relative error ([D] Eq 5): the mean of each bin as a line, its largest as points.
 Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
-  return {.id = d.id + "-" + id,
-          .title = title,
-          .note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.",
-          .x = std::move(x),
-          .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
-          .marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]"}},
-          .half = true};
+  Chart chart =
+      half_chart(d.id + "-" + id, title, std::move(x), {.quantity = "relative error", .unit = "1", .from_zero = true});
+  chart.note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.";
+  chart.marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]"}};
+  return chart;
 }
 
 void add_errors(const std::string& name, std::size_t k, const BinExtremes& errors, Chart& chart) {
   constexpr std::array<Symbol, 3> kLargest = {Symbol::triangle_up, Symbol::square, Symbol::cross};
+  const auto add = [&](const char* which, const std::vector<double>& values, const Stroke& stroke) {
+    chart.lines.push_back({name + which, errors.at, values, stroke});
+    chart.lines.back().shown = k < 2;
+  };
   const Stroke stroke = model_stroke(k);
-  const bool shown = k < 2;
-  chart.lines.push_back({.name = name + ", mean",
-                         .x = errors.at,
-                         .y = errors.mean,
-                         .stroke = {stroke.colour, stroke.dash},
-                         .shown = shown});
-  chart.lines.push_back({.name = name + ", largest",
-                         .x = errors.at,
-                         .y = errors.largest,
-                         .stroke = dots(stroke.colour, kLargest[k % 3]),
-                         .shown = shown});
+  add(", mean", errors.mean, {stroke.colour, stroke.dash});
+  add(", largest", errors.largest, dots(stroke.colour, kLargest[k % 3]));
 }
 
 /// Mean residual in units of the noise floor.
-HeatMap map_of(const DrawnTrace& d, std::size_t model) {
+Chart map_chart(const DrawnTrace& d, std::size_t model) {
+  Chart chart = half_chart(d.id + "-map-" + std::to_string(model + 1),
+                           "What " + curve_name(*d.models[model]) + " leaves over cycle and phase of the slip",
+                           {"phase of the slip, 0 break-away to 1 re-stick", "1"}, {"cycle", ""});
+  chart.note =
+      "Mean residual in units of the noise floor. Upright stripes: the law has the wrong shape. Changes from cycle to "
+      "cycle: something moves with time or angle.";
   ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
   const double floor = residual_unit(*d.models[model]), most = std::max(1.0, map.usual / floor);
   for (std::vector<double>& row : map.mean) row = in_unit(row, floor);
-  return {map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
-}
-
-Chart map_chart(const DrawnTrace& d, std::size_t model) {
-  return {.id = d.id + "-map-" + std::to_string(model + 1),
-          .title = "What " + curve_name(*d.models[model]) + " leaves over cycle and phase of the slip",
-          .note =
-              "Mean residual in units of the noise floor. Upright stripes: the law has the wrong shape. Changes from "
-              "cycle to cycle: something moves with time or angle.",
-          .x = {"phase of the slip, 0 break-away to 1 re-stick", "1"},
-          .panels = {{{"cycle", ""}}},
-          .map = map_of(d, model),
-          .height = 360,
-          .half = true};
+  chart.map = HeatMap{map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
+  chart.height = 360;
+  return chart;
 }
 
 }  // namespace
 
 Chart law_chart(const DrawnTrace& d) {
   if (!(d.fastest > 0)) return {};
-  Chart chart{.id = d.id + "-law",
-              .title = "Friction over relative velocity",
-              .note =
-                  "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what "
-                  "each law leaves, in units of the noise floor. Laws are those of steady sliding at the start of "
-                  "the record, over a turn of the disc.",
-              .x = {"relative velocity |v_{r}|", "mm/s"},
-              .panels = {{friction_axis(d.trace.motion), 1.35}},
-              .height = 560};
+  Chart chart = friction_chart(d,
+                               "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. "
+                               "Below: what each law leaves, in units of the noise floor. Laws are those of steady "
+                               "sliding at the start of the record, over a turn of the disc.",
+                               false);
   const Motion& motion = d.trace.motion;
   for (const auto& [branch, band] : bands_over_speed(motion, d.pieces, motion.friction, kSpeedBins)) {
     const BranchStyle& style = style_of(branch, kBranches);
@@ -162,9 +198,30 @@ Chart law_chart(const DrawnTrace& d) {
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
-  chart.panels.push_back({{"residual / floor", "1"}});
+  add_residual_panel(chart);
   add_residuals(d, chart);
-  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
+  return chart;
+}
+
+Chart points_chart(const DrawnTrace& d) {
+  constexpr double kDecades = 100;  // fastest over slowest from which speeds are drawn by their logarithm
+  if (!(d.fastest > 0)) return {};
+  const Motion& motion = d.trace.motion;
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const double v : motion.relative_velocity) slowest = std::min(slowest, std::abs(v) / kMillimetre);
+  const bool logarithmic = slowest > 0 && d.fastest > kDecades * slowest;
+  Chart chart = friction_chart(d,
+                               "Points as measured, with their standard errors where they are stated. Bands of the "
+                               "laws: 95 % interval. Below: what the best law leaves, in units of the noise floor.",
+                               logarithmic);
+  add_points(d, motion.friction, motion.friction_std_error, 0, chart);
+  const std::vector<double> speeds = speeds_of(slowest * kMillimetre, d.fastest * kMillimetre, logarithmic);
+  for (std::size_t k = 0; k < d.curves.size(); ++k) {
+    add_curve(*d.curves[k], law_curve(*d.curves[k], speeds), model_stroke(k), k < 2, chart);
+  }
+  if (d.models.empty()) return chart;
+  add_residual_panel(chart);
+  add_points(d, residuals_of(d, 0), {}, 1, chart);
   return chart;
 }
 
@@ -198,18 +255,14 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
   for (const FitParameter& p : fit.parameters) {
     if (p.profile.empty()) continue;
     const std::string name = full_name(p);
-    Chart chart{
-        .id = id + "-profile-" + name,
-        .title = "Profile likelihood of " + name,
-        .note =
-            "Rise of the squares with this parameter held and all others refitted, in units of the rise at which "
-            "the 95 % interval ends. Dotted: best value. A parabola means that the interval from the curvature is "
-            "right.",
-        .x = {.quantity = name, .unit = shown_unit(p, motion), .digits = 9},
-        .panels = {{.axis = {.quantity = "rise / that of 95 %", .unit = "1", .from_zero = true}}},
-        .marks = {{1, false, Dash::dashed, "95 %"}, {shown(p, p.value), true, Dash::dotted, ""}},
-        .height = 280,
-        .half = true};
+    Chart chart = half_chart(id + "-profile-" + name, "Profile likelihood of " + name,
+                             {.quantity = name, .unit = shown_unit(p, motion), .digits = 9},
+                             {.quantity = "rise / that of 95 %", .unit = "1", .from_zero = true});
+    chart.note =
+        "Rise of the squares with this parameter held and all others refitted, in units of the rise at which the 95 % "
+        "interval ends. Dotted: best value. A parabola means that the interval from the curvature is right.";
+    chart.marks = {{1, false, Dash::dashed, "95 %"}, {shown(p, p.value), true, Dash::dotted, ""}};
+    chart.height = 280;
     std::replace_if(
         chart.id.begin(), chart.id.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '-');
     ChartLine& line = chart.line("profile", {Colour::blue, Dash::solid, Symbol::circle});

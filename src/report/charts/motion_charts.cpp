@@ -29,10 +29,8 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
 void add_loop(const DrawnMotion& m, std::size_t bins, const Stroke& stroke, Chart& chart, bool closed) {
   std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, bins);
   if (closed) kept.push_back(kept.front());
-  chart.lines.push_back({.name = m.name,
-                         .x = picked(m.displacement, kept, kMillimetre),
-                         .y = picked(m.velocity, kept, kMillimetre),
-                         .stroke = stroke});
+  chart.lines.push_back(
+      {m.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke});
 }
 
 void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& channels, std::size_t bins,
@@ -45,11 +43,8 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
   const std::vector<double> time = picked(m.time, kept, 1);
   for (std::size_t panel = 0; panel < channels.size(); ++panel) {
     const MotionChannel& channel = channels[panel];
-    chart.lines.push_back({.name = m.name,
-                           .x = time,
-                           .y = picked(m.*channel.values, kept, channel.unit),
-                           .stroke = stroke,
-                           .panel = panel});
+    chart.lines.push_back({m.name, time, picked(m.*channel.values, kept, channel.unit), stroke});
+    chart.lines.back().panel = panel;
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "tribofit/report/chart.hpp"
 
@@ -29,6 +31,10 @@ inline constexpr std::array<ColourStyle, 6> kColours = {{{"black", "#000000"},
                                                          {"grey", "#6b6b6b"}}};
 constexpr Paint ink(Colour colour) {
   return {kColours[static_cast<std::size_t>(colour)].rgb};
+}
+/// Red, green or blue (0 to 2) of "#d55e00", 0 to 255.
+inline int channel_of(std::string_view rgb, std::size_t which) {
+  return std::stoi(std::string(rgb.substr(1 + 2 * which, 2)), nullptr, 16);
 }
 /// Of a band under its line.
 constexpr Paint pale(Colour colour) {
@@ -110,6 +116,13 @@ inline Stroke marked(std::size_t k, bool joined = true) {
   out.symbol = kOrder[k % kOrder.size()];
   out.joined = joined;
   return out;
+}
+
+/// A chart of one panel, without lines yet, that stands beside its neighbour.
+inline Chart half_chart(std::string id, std::string title, ChartAxis x, ChartAxis y) {
+  Chart chart{.id = std::move(id), .title = std::move(title), .x = std::move(x), .half = true};
+  chart.panels[0].axis = std::move(y);
+  return chart;
 }
 
 /// Points that are not joined.

@@ -108,13 +108,10 @@ Chart spectrum_chart(const DrawnTrace& d) {
   const Spectrum spectrum = spectrum_up_to(v_r, motion.step, peak > 0 ? kHarmonics * peak : 0.5 / motion.step);
   const std::vector<double> amplitude = in_unit(spectrum.amplitude, kMillimetre);
   if (amplitude.empty()) return {};
-  Chart chart{.id = d.id + "-spectrum",
-              .title = "Spectrum of the relative velocity",
-              .note = "Hann window over the whole record.",
-              .x = {"frequency", "Hz"},
-              .panels = {{.axis = {.quantity = "amplitude of v_{r}", .unit = "mm/s", .from_zero = true}}},
-              .height = 290,
-              .half = true};
+  Chart chart = half_chart(d.id + "-spectrum", "Spectrum of the relative velocity", {"frequency", "Hz"},
+                           {.quantity = "amplitude of v_{r}", .unit = "mm/s", .from_zero = true});
+  chart.note = "Hann window over the whole record.";
+  chart.height = 290;
   if (peak > 0) {
     chart.note = "Strongest line at " + significant(peak, 4) + " Hz (dotted). " + chart.note;
     chart.marks.push_back({peak, true, Dash::dotted, ""});
@@ -136,12 +133,9 @@ struct CycleMeasure {
 /// Measures of each cycle as points over time.
 Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis, double unit,
                   std::initializer_list<CycleMeasure> measures) {
-  Chart chart{.id = d.id + "-" + id,
-              .title = title,
-              .x = {.quantity = "time of break-away", .unit = "s", .digits = kTimeDigits},
-              .panels = {{std::move(axis)}},
-              .height = 290,
-              .half = true};
+  Chart chart = half_chart(d.id + "-" + id, title,
+                           {.quantity = "time of break-away", .unit = "s", .digits = kTimeDigits}, std::move(axis));
+  chart.height = 290;
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   for (const CycleMeasure& measure : measures) {
     std::vector<double> values;

@@ -40,16 +40,12 @@ function fillSection(element, section) {
   element.replaceChildren(...parts);
 }
 
-function navigation(sections) {
-  return make("nav", { "aria-label": "Sections" }, make("ul", {}, ...sections.map((section) =>
-    make("li", {}, make("a", { href: `#${section.id}` }, section.title)))));
-}
-
 function headerItems(report) {
+  const links = report.sections.map((section) => make("li", {}, make("a", { href: `#${section.id}` }, section.title)));
   return [make("h1", {}, report.title), make("p", { className: "soft" }, report.subtitle),
     report.lead ? make("p", { className: "verdict" }, prose(report.lead)) : null,
     ...report.warnings.map((warning) => make("p", { className: "warning" }, make("strong", {}, "Warning: "), prose(warning))),
-    navigation(report.sections), facts(report.facts)].filter((part) => part !== null);
+    make("nav", { "aria-label": "Sections" }, make("ul", {}, ...links)), facts(report.facts)].filter((part) => part !== null);
 }
 
 /** Shows a report; what stands there already is brought up to date. */

@@ -2,7 +2,6 @@
 #include <cairo.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "report/pictures/canvas.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -27,15 +26,15 @@ std::string with_dots_per_metre(std::string png) {
 class CairoCanvas : public Canvas {
  public:
   CairoCanvas(PictureFormat format, double width, double height, const std::string& title)
-      : height_(height), format_(format) {
-    const double across = width / kMillimetresPerPoint, along = height / kMillimetresPerPoint;
+      : Canvas(height), format_(format) {
+    const double right = across(width), bottom = across(height);
     if (format == PictureFormat::pdf) {
-      surface_ = cairo_pdf_surface_create_for_stream(append, &out_, across, along);
+      surface_ = cairo_pdf_surface_create_for_stream(append, &out_, right, bottom);
       cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_TITLE, title.c_str());
     } else {
       const double dots = kPicturePixelsPerInch / 72.0;
-      surface_ = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(across * dots)),
-                                            static_cast<int>(std::lround(along * dots)));
+      surface_ = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(right * dots)),
+                                            static_cast<int>(std::lround(bottom * dots)));
       cairo_surface_set_device_scale(surface_, dots, dots);
     }
     cairo_ = cairo_create(surface_);
@@ -83,20 +82,15 @@ class CairoCanvas : public Canvas {
   std::string finish() override;
 
  private:
-  static double across(double mm) { return mm / kMillimetresPerPoint; }
-  double down(double y) const { return across(height_ - y); }
   void trace(const Path& path) {
     cairo_new_sub_path(cairo_);
     for (const Point& point : path) cairo_line_to(cairo_, across(point.x), down(point.y));
   }
   void use(const Paint& paint) {
-    const auto part = [&](std::size_t at) {
-      return static_cast<double>(std::strtol(std::string(paint.colour.substr(at, 2)).c_str(), nullptr, 16)) / 255;
-    };
-    cairo_set_source_rgba(cairo_, part(1), part(3), part(5), paint.opacity);
+    const auto part = [&](std::size_t which) { return channel_of(paint.colour, which) / 255.0; };
+    cairo_set_source_rgba(cairo_, part(0), part(1), part(2), paint.opacity);
   }
 
-  double height_;
   PictureFormat format_;
   cairo_surface_t* surface_ = nullptr;
   cairo_t* cairo_ = nullptr;

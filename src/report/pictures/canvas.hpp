@@ -58,6 +58,8 @@ struct Words {
 
 class Canvas {
  public:
+  /// Of a sheet of this height [mm].
+  explicit Canvas(double height) : height_(height) {}
   virtual ~Canvas() = default;
   /// Lines with round ends where a path is one point: a dot as wide as the pen.
   virtual void stroke(std::span<const Path> paths, const Pen& pen) = 0;
@@ -71,6 +73,14 @@ class Canvas {
 
   void stroke_path(const Path& path, const Pen& pen) { stroke({&path, 1}, pen); }
   void fill_path(const Path& path, const Paint& paint) { fill({&path, 1}, paint); }
+
+ protected:
+  /// In points, from the upper left corner.
+  static double across(double mm) { return mm / kMillimetresPerPoint; }
+  double down(double y) const { return across(height_ - y); }
+
+ private:
+  double height_;
 };
 
 /// A sheet of this size [mm].

@@ -72,8 +72,7 @@ class Drawing {
     for (const ChartLine& one : chart_.lines) {
       if (!one.shown || one.panel != panel) continue;
       for (std::size_t k = 0; k < std::min(one.x.size(), one.y.size()); ++k) {
-        const Point at = f.at(one.x[k], one.y[k]);
-        if (area.holds(at)) ++count;
+        if (area.holds(f.at(one.x[k], one.y[k]))) ++count;
       }
     }
     return count;

@@ -34,6 +34,13 @@ void draw_symbols(Canvas& canvas, const Path& at, const Stroke& stroke);
 void draw_box(Canvas& canvas, const Area& box, Colour colour, bool hatched);
 /// A path that ends where it begins.
 Path closed(Path path);
+/// The points to draw of a line without gaps, so that it stays within `tolerance` [mm] of all of them (Douglas and
+/// Peucker 1973): what is not distinguishable on paper is left out, and no peak is lost. Cost: n log n.
+Path thinned_line(const Path& points, double tolerance);
+
+/// The same of points that are not joined: the first of those within a square of side `cell` [mm].
+Path thinned_points(const Path& points, double cell);
+
 /// Colour of a part of the heat map's range, 0 to 1.
 std::string heat_colour(double part);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "report/pictures/draw.hpp"
-#include "report/pictures/thin.hpp"
 
 namespace tribofit {
 namespace {
@@ -29,11 +28,7 @@ std::vector<Path> thinned_runs(std::size_t count, PointAt point) {
   };
   for (std::size_t k = 0; k < count; ++k) {
     const Point p = point(k);
-    if (finite(p)) {
-      run.push_back(p);
-    } else {
-      end_run();
-    }
+    finite(p) ? run.push_back(p) : end_run();
   }
   end_run();
   return runs;
@@ -173,11 +168,9 @@ std::string heat_colour(double part) {
   const double at = std::clamp(part, 0.0, 1.0) * static_cast<double>(kHeatColours.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(at), kHeatColours.size() - 2);
   std::string out = "#";
-  for (const std::size_t k : {1UL, 3UL, 5UL}) {
-    const auto channel = [&](std::size_t i) {
-      return std::stoi(std::string(kHeatColours[i].substr(k, 2)), nullptr, 16);
-    };
-    const double value = channel(below) + (at - static_cast<double>(below)) * (channel(below + 1) - channel(below));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int from = channel_of(kHeatColours[below], k), to = channel_of(kHeatColours[below + 1], k);
+    const double value = from + (at - static_cast<double>(below)) * (to - from);
     out += fmt::format("{:02x}", static_cast<int>(std::lround(value)));
   }
   return out;

@@ -270,21 +270,18 @@ void place_upwards(PictureLayout& layout, const std::vector<double>& heights, do
 
 }  // namespace
 
-std::vector<double> cell_edges(const std::vector<double>& centres, bool logarithmic) {
-  std::vector<double> at = centres, edges;
+std::vector<double> cell_edges(std::vector<double> centres, bool logarithmic) {
   if (logarithmic) {
-    for (double& value : at) value = std::log(value);
+    for (double& centre : centres) centre = std::log(centre);
+    std::vector<double> edges = cell_edges(std::move(centres), false);
+    for (double& edge : edges) edge = std::exp(edge);
+    return edges;
   }
-  if (at.size() == 1) {
-    edges = {at[0] - 0.5, at[0] + 0.5};
-  } else if (at.size() > 1) {
-    edges.push_back(at[0] - (at[1] - at[0]) / 2);
-    for (std::size_t k = 1; k < at.size(); ++k) edges.push_back((at[k - 1] + at[k]) / 2);
-    edges.push_back(at.back() + (at.back() - at[at.size() - 2]) / 2);
-  }
-  if (logarithmic) {
-    for (double& value : edges) value = std::exp(value);
-  }
+  if (centres.empty()) return {};
+  if (centres.size() == 1) return {centres[0] - 0.5, centres[0] + 0.5};
+  std::vector<double> edges = {centres[0] - (centres[1] - centres[0]) / 2};
+  for (std::size_t k = 1; k < centres.size(); ++k) edges.push_back((centres[k - 1] + centres[k]) / 2);
+  edges.push_back(centres.back() + (centres.back() - centres[centres.size() - 2]) / 2);
   return edges;
 }
 

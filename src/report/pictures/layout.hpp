@@ -57,7 +57,7 @@ struct PictureLayout {
 };
 
 /// Edges of the cells of a map about these centres, one more than there are.
-std::vector<double> cell_edges(const std::vector<double>& centres, bool logarithmic);
+std::vector<double> cell_edges(std::vector<double> centres, bool logarithmic);
 
 /// Decides the layout of a chart: ranges, tics, margins wide enough for the numbers and names, the legend in rows
 /// below. `chart` must outlive it.

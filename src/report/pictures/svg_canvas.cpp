@@ -19,7 +19,7 @@ std::string number(double value) {
 /// SVG, in points; text stays text.
 class SvgCanvas : public Canvas {
  public:
-  SvgCanvas(double width, double height, const std::string& title) : height_(height) {
+  SvgCanvas(double width, double height, const std::string& title) : Canvas(height) {
     out_ = fmt::format(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" "
         "height=\"{:.2f}mm\" viewBox=\"0 0 {} {}\" font-family=\"Arial, 'Liberation Sans', Helvetica, sans-serif\" "
@@ -55,8 +55,6 @@ class SvgCanvas : public Canvas {
     fmt::format_to(std::back_inserter(out_), pattern, std::forward<Parts>(parts)...);
     out_ += '\n';
   }
-  static double across(double mm) { return mm / kMillimetresPerPoint; }
-  double down(double y) const { return across(height_ - y); }
   static std::string opacity(std::string_view what, const Paint& paint) {
     return paint.opacity < 1 ? fmt::format(" {}-opacity=\"{:.3g}\"", what, paint.opacity) : "";
   }
@@ -76,7 +74,6 @@ class SvgCanvas : public Canvas {
     return data;
   }
 
-  double height_;
   int plots_ = 0;
   bool dots_ = false;
   std::string out_;

@@ -1,5 +1,3 @@
-#include "report/pictures/thin.hpp"
-
 #include <boost/geometry/algorithms/simplify.hpp>
 #include <boost/geometry/geometries/register/linestring.hpp>
 #include <boost/geometry/geometries/register/point.hpp>
@@ -7,6 +5,8 @@
 #include <cmath>
 #include <set>
 #include <utility>
+
+#include "report/pictures/draw.hpp"
 
 BOOST_GEOMETRY_REGISTER_POINT_2D(tribofit::Point, double, boost::geometry::cs::cartesian, x, y)
 BOOST_GEOMETRY_REGISTER_LINESTRING(tribofit::Path)

@@ -19,16 +19,13 @@ ChartAxis axis_for(const MapAxis& axis) {
 
 Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRows& rows, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart{.id = "map-" + info.name,
-              .title = capitalised(
-                  fmt::format("{} over {} and {}", info.name, request.x.variable.name, request.y.variable.name)),
-              .x = axis_for(request.x),
-              .panels = {{axis_for(request.y)}},
-              .height = 420,
-              .half = true};
+  const Variable &across = request.x.variable, &up = request.y.variable;
+  Chart chart =
+      half_chart("map-" + info.name, capitalised(fmt::format("{} over {} and {}", info.name, across.name, up.name)),
+                 axis_for(request.x), axis_for(request.y));
+  chart.height = 420;
   const CoarseMap coarse = coarse_map(request, rows, measure, kMostCells);
-  HeatMap map{
-      in_unit(coarse.x, request.x.variable.si), in_unit(coarse.y, request.y.variable.si), {}, info.name, info.unit};
+  HeatMap map{in_unit(coarse.x, across.si), in_unit(coarse.y, up.si), {}, info.name, info.unit};
   for (const std::vector<double>& row : coarse.z) map.z.push_back(in_unit(row, info.si));
   const bool any_gap = std::any_of(map.z.begin(), map.z.end(), [](const std::vector<double>& row) {
     return std::any_of(row.begin(), row.end(), [](double z) { return !std::isfinite(z); });
@@ -38,10 +35,9 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRo
   ChartLine& edge = chart.line("edge of stick-slip", dots(Colour::black, Symbol::circle, 3));
   const std::size_t every = 1 + std::max(request.x.values.size(), request.y.values.size()) / kMostCells;
   for (const auto& [at_x, at_y] : edge_of_stick_slip(request, rows, every)) {
-    edge.add(at_x / request.x.variable.si, at_y / request.y.variable.si);
+    edge.add(at_x / across.si, at_y / up.si);
   }
-  const double x = value_of(of.machine, request.x.variable.name) / request.x.variable.si;
-  const double y = value_of(of.machine, request.y.variable.name) / request.y.variable.si;
+  const double x = value_of(of.machine, across.name) / across.si, y = value_of(of.machine, up.name) / up.si;
   if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {
     chart.lines.push_back({"the machine", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
   }
@@ -59,18 +55,17 @@ ReportTable regimes_table(const MapRows& rows) {
 }
 
 ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
-  const auto heading = [](const Variable& v) { return with_unit(v.name, v.unit); };
+  const Variable &x = request.x.variable, &y = request.y.variable;
   ReportTable table("Least and largest of each measure");
   table.text({"measure", ""}).numbers({"value"}).text({"unit"});
-  table.numbers({heading(request.x.variable), heading(request.y.variable)});
+  table.numbers({with_unit(x.name, x.unit), with_unit(y.name, y.unit)});
   for (std::size_t k = 0; k < measures().size(); ++k) {
     for (const bool most : {false, true}) {
       const auto best = extreme_of(request, rows, k, most);
       if (!best) continue;
       table.rows.push_back({most ? "" : measures()[k].name, most ? "largest" : "least",
                             significant(best->value / measures()[k].si, 4), measures()[k].unit,
-                            significant(best->x / request.x.variable.si, 4),
-                            significant(best->y / request.y.variable.si, 4)});
+                            significant(best->x / x.si, 4), significant(best->y / y.si, 4)});
     }
   }
   return table;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "tribofit/fit/identification.hpp"
@@ -17,7 +16,7 @@ std::string rig_sentence(const Machine& m) {
       "m = {} kg, k = {} N/mm, c = {} N s/mm (damping ratio {}), natural frequency {} Hz; N = {} N, r = {} mm, {} rpm, "
       "omega r = {} mm/s",
       significant(m.rig.mass, 4), significant(1e-3 * m.rig.stiffness, 4), significant(1e-3 * m.rig.damping, 4),
-      significant(m.rig.damping_ratio(), 3), significant(natural_hertz(m), 4), brief(m.load),
+      significant(m.rig.damping_ratio(), 3), significant(m.natural_hertz(), 4), brief(m.load),
       brief(m.radius / kMillimetre), brief(m.speed / kRpm), significant(m.disc_velocity() / kMillimetre, 4));
 }
 
@@ -27,8 +26,8 @@ std::string friction_sentence(const Machine& m) {
   for (std::size_t k = 0; k < m.parameters.size(); ++k) {
     const FrictionModel::Slot& slot = m.model.parameters()[k];
     const Parameter& q = slot.parameter;
-    parameters.push_back(fmt::format("{}{} = {}{}", slot.effect.empty() ? "" : slot.effect + ".", q.name,
-                                     significant(m.parameters[k] / q.si, 4), unit_behind(q.unit)));
+    parameters.push_back(
+        fmt::format("{} = {}{}", slot.full_name(), significant(m.parameters[k] / q.si, 4), unit_behind(q.unit)));
   }
   return fmt::format("{}", fmt::join(parameters, ", "));
 }
@@ -57,7 +56,7 @@ Facts facts_of(const StudiedMachine& of, const std::string& kind, const ReportOp
     facts.emplace_back(name == std::string("velocity") ? "omega r" : v.name,
                        significant(value_of(of.machine, v.name) / v.si, 4) + unit_behind(v.unit));
   }
-  facts.emplace_back("natural frequency", significant(natural_hertz(of.machine), 4) + " Hz");
+  facts.emplace_back("natural frequency", significant(of.machine.natural_hertz(), 4) + " Hz");
   facts.emplace_back("law", of.machine.model.name() + (of.sharpness > 0 ? ", " + sharpness_text(of) : ""));
   facts.emplace_back("friction", friction_sentence(of.machine));
   facts.emplace_back("study", kind);
@@ -97,9 +96,8 @@ TerminalText machine_text(const StudiedMachine& of, const TerminalOptions& optio
 
 std::string ended(TerminalText text, const std::string& purpose, const std::string& kind,
                   const TerminalOptions& options, const std::vector<std::string>& more) {
-  std::vector<std::string> words = {"study", kind};
-  words.insert(words.end(), more.begin(), more.end());
-  text.next({purpose, command_line(words_of(std::move(words), options.arguments), options.inputs)});
+  const std::vector<std::string> words = words_of(joined({"study", kind}, more), options.arguments);
+  text.next({purpose, command_line(words, options.inputs)});
   return text.take();
 }
 
@@ -167,14 +165,6 @@ std::string measure_text(const Settled& settled, const MeasureInfo& measure) {
 
 std::string seen_sentence(const Settled& settled) {
   return settled.regime == Regime::not_settled ? "did not settle: " + settled.seen : "";
-}
-
-double natural_hertz(const Machine& machine) {
-  return machine.rig.natural_frequency() / (2 * std::numbers::pi);
-}
-
-ChartAxis axis_of(const MeasureInfo& measure) {
-  return {.quantity = measure.name, .unit = measure.unit};
 }
 
 }  // namespace tribofit

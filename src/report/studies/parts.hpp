@@ -50,9 +50,4 @@ std::string measure_text(const Settled& settled, const MeasureInfo& measure);
 /// Why a motion did not settle; empty where it did.
 std::string seen_sentence(const Settled& settled);
 
-double natural_hertz(const Machine& machine);
-
-/// "frequency [Hz]" as an axis.
-ChartAxis axis_of(const MeasureInfo& measure);
-
 }  // namespace tribofit

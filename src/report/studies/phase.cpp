@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "parts.hpp"
 #include "report/charts/motion_charts.hpp"
-#include "tribofit/fit/identification.hpp"
 #include "tribofit/study/block_motion.hpp"
 
 namespace tribofit {
@@ -18,17 +16,6 @@ std::string speed_text(const Portrait& portrait) {
   return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
 }
 
-/// Whether this portrait is made at the speed of the machine, at which there may be a record.
-bool is_own(const StudiedMachine& of, const Portrait& portrait) {
-  return std::abs(portrait.velocity / of.machine.disc_velocity() - 1) < kSameSpeed;
-}
-
-/// Three cycles of the record that the machine was identified from, where it was made at this speed.
-BlockMotion measured_at(const StudiedMachine& of, const Portrait& portrait) {
-  if (!of.record || !is_own(of, portrait)) return {};
-  return block_motion(of.record->motion, of.record->segmentation, of.machine.load / of.machine.rig.stiffness);
-}
-
 Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
   Chart chart = portrait_plane(
       fmt::format("phase-{}", number),
@@ -38,7 +25,7 @@ Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::si
   if (portrait.cycle.size() > 0) {
     add_loop({"settled cycle", portrait.cycle}, kCycleBins, {.colour = Colour::black, .width = 2}, chart, true);
   }
-  const BlockMotion measured = measured_at(of, portrait);
+  const BlockMotion measured = measured_motion(of, portrait.velocity);
   if (measured.size() > 0) {
     add_loop({fmt::format("measured, {} cycles", measured.cycles), measured}, kCycleBins,
              {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
@@ -80,7 +67,7 @@ Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::
   Animation out{.id = fmt::format("block-{}", number),
                 .title = "The block on its disc at " + speed_text(portrait),
                 .disc_velocity = portrait.velocity / kMillimetre};
-  const BlockMotion measured = measured_at(of, portrait);
+  const BlockMotion measured = measured_motion(of, portrait.velocity);
   if (measured.size() > 0) {
     out.blocks.push_back(animated({"measured", measured}));
     out.note = "Measured (three cycles) beside simulated (one settled cycle).";
@@ -99,15 +86,12 @@ std::string regimes_sentence(const std::vector<Portrait>& study) {
     }
     if (at.empty()) continue;
     std::sort(at.begin(), at.end());
-    std::string speeds;
-    if (at.size() > 4) {
-      speeds = fmt::format("{} speeds from {} to {}", at.size(), significant(at.front(), 4), significant(at.back(), 4));
-    } else {
-      std::vector<std::string> each;
-      for (const double speed : at) each.push_back(significant(speed, 4));
-      speeds = enumerated(each);
-    }
-    texts.push_back(fmt::format("{} at {} mm/s", to_string(regime), speeds));
+    std::vector<std::string> speeds;
+    for (const double speed : at) speeds.push_back(significant(speed, 4));
+    const std::string all = at.size() > 4
+                                ? fmt::format("{} speeds from {} to {}", at.size(), speeds.front(), speeds.back())
+                                : enumerated(speeds);
+    texts.push_back(fmt::format("{} at {} mm/s", to_string(regime), all));
   }
   return capitalised(fmt::format("{}.", fmt::join(texts, "; ")));
 }

@@ -71,11 +71,7 @@ Chart curve_chart(const Response& study) {
 Chart spectrum_chart(const Response& study, const char* id, const char* title, ChartAxis axis,
                      double ResponseLine::*amplitude, double unit) {
   axis.from_zero = true;
-  Chart chart{.id = id,
-              .title = title,
-              .x = {.quantity = "frequency", .unit = "Hz", .from_zero = true},
-              .panels = {{std::move(axis)}},
-              .half = true};
+  Chart chart = half_chart(id, title, {.quantity = "frequency", .unit = "Hz", .from_zero = true}, std::move(axis));
   ChartLine stems{.name = "lines", .stroke = {.colour = Colour::blue, .width = 2}, .listed = false};
   ChartLine ends{.name = "amplitude", .stroke = dots(Colour::blue, Symbol::square)};
   for (const ResponseLine& h : study.harmonics) {

@@ -7,17 +7,12 @@
 namespace tribofit {
 namespace {
 
-/// "+0.512", "-" where there is none.
-std::string elasticity_text(double elasticity) {
-  return std::isnan(elasticity) ? std::string("-") : fmt::format("{:+.3f}", elasticity);
-}
-
 /// What matters most for one measure (an index in measures()): "stiffness (-0.512), mass (+0.5)".
 std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t measure) {
   std::vector<std::string> list;
   for (const std::size_t i : ranked(study, measure)) {
     const double e = study[i].elasticities[measure];
-    if (!std::isnan(e)) list.push_back(fmt::format("{} ({})", study[i].variable.name, elasticity_text(e)));
+    if (!std::isnan(e)) list.push_back(fmt::format("{} ({})", study[i].variable.name, with_sign(e, 3)));
   }
   return list.empty() ? "nothing can be said here" : fmt::format("{}", fmt::join(list, ", "));
 }
@@ -29,7 +24,7 @@ ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
   for (const Sensitivity& one : study) {
     std::vector<std::string> row = {one.variable.name, significant(one.base / one.variable.si, 4),
                                     one.variable.unit == "1" ? "" : one.variable.unit};
-    for (const double e : one.elasticities) row.push_back(elasticity_text(e));
+    for (const double e : one.elasticities) row.push_back(with_sign(e, 3));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -40,13 +35,11 @@ constexpr std::size_t kShown = 6;  // sweeps that are not switched off at first
 /// A measure over each variable, those that matter most first.
 Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart{.id = "sweep-" + info.name,
-              .title = "The " + info.name + " over each number of the machine",
-              .x = {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true},
-              .panels = {{axis_of(info)}},
-              .marks = {{1, true, Dash::dotted, "the machine", 0}},
-              .height = 380,
-              .half = true};
+  Chart chart = half_chart("sweep-" + info.name, "The " + info.name + " over each number of the machine",
+                           {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true},
+                           {info.name, info.unit});
+  chart.marks = {{1, true, Dash::dotted, "the machine", 0}};
+  chart.height = 380;
   std::size_t k = 0;
   for (const std::size_t i : ranked(study, measure)) {
     const Sensitivity& one = study[i];
@@ -61,10 +54,8 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
 
 Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
-  Chart chart{.id = "elasticity-" + info.name,
-              .title = "What moves the " + info.name,
-              .x = {.quantity = "change of the " + info.name + " for 1 % of the number", .unit = "%"},
-              .half = true};
+  Chart chart = half_chart("elasticity-" + info.name, "What moves the " + info.name,
+                           {"change of the " + info.name + " for 1 % of the number", "%"}, {});
   ChartAxis& names = chart.panels[0].axis;
   names.falling = true;  // the largest stands on top
   ChartBars bars{info.name, {}};
@@ -140,8 +131,7 @@ Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study
     const std::vector<std::size_t> order = ranked(study, k);
     if (order.empty() || !std::isfinite(study[order.front()].elasticities[k])) continue;
     lead.push_back(fmt::format("{} answers most to {} ({} % for 1 %)", measures()[k].name,
-                               study[order.front()].variable.name,
-                               elasticity_text(study[order.front()].elasticities[k])));
+                               study[order.front()].variable.name, with_sign(study[order.front()].elasticities[k], 3)));
   }
   bars.add(elasticity_table(study));
   return study_report(of, "sensitivity", "Which number matters",

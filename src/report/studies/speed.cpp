@@ -121,11 +121,10 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
 /// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
 void add_range(const Range& range, std::size_t panel, Chart& chart) {
   if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
-  chart.lines.push_back({.name = "95 % range of a critical speed",
-                         .x = {range.lower95 / kMillimetre, range.upper95 / kMillimetre},
-                         .y = {0, 0},
-                         .stroke = {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4},
-                         .panel = panel});
+  ChartLine& line = chart.line("95 % range of a critical speed",
+                               {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4}, panel);
+  line.add(range.lower95 / kMillimetre, 0);
+  line.add(range.upper95 / kMillimetre, 0);
 }
 
 void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
@@ -168,13 +167,11 @@ Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const char* 
   for (const std::string& name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
-    ChartPanel& added = chart.panels.emplace_back();
-    added.axis = axis_of(measure);
-    added.axis.from_zero = true;
+    chart.panels.push_back({{.quantity = measure.name, .unit = measure.unit, .from_zero = true}});
     add_sweeps(study, measure, panel, chart);
     add_measured(of, measure, panel, chart);
     if (name == "frequency") {
-      chart.marks.push_back({natural_hertz(of.machine), false, Dash::dotted, "natural frequency", panel});
+      chart.marks.push_back({of.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
     }
     if (name == "stick-time") {
       add_range(study.vanishes_range, panel, chart);

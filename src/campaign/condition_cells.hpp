@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "campaign/csv_table.hpp"
-#include "json_parts.hpp"
-#include "numbers.hpp"
+#include "csv_table.hpp"
+#include "json.hpp"
 #include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/run_result.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace tribofit {
+
+/// Objects and lists of JSON, as all files and pages are made of them: members in the order in which they are named,
+/// what is not known as null.
+
+using Json = nlohmann::ordered_json;
+
+/// A number, or null for what is not known.
+inline Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+/// A number, or null for what is not declared.
+inline Json positive_or_null(double value) {
+  return value > 0 ? number(value) : Json(nullptr);
+}
+inline Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+/// The ends of an interval.
+inline Json interval_json(double lower, double upper) {
+  return Json::array({number(lower), number(upper)});
+}
+
+inline void add_members(Json&) {}
+/// Adds names and values, one after the other; numbers that are not known become null.
+template <class Value, class... More>
+void add_members(Json& json, const char* name, Value&& value, More&&... more) {
+  if constexpr (std::is_same_v<std::decay_t<Value>, double>) {
+    json[name] = number(value);
+  } else {
+    json[name] = std::forward<Value>(value);
+  }
+  add_members(json, std::forward<More>(more)...);
+}
+
+/// An object of names and values: object("law", "exponential", "slope", 0.2).
+template <class... Members>
+Json object(Members&&... members) {
+  Json json = Json::object();
+  add_members(json, std::forward<Members>(members)...);
+  return json;
+}
+
+/// A list of what `make` makes of each item.
+template <class Items, class Make>
+Json list_of(const Items& items, Make&& make) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(make(item));
+  return list;
+}
+
+/// A number with so many digits, so that files stay small.
+inline Json rounded(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 40> text = {};
+  const auto end = fmt::format_to_n(text.data(), text.size(), "{:.{}g}", value, digits).out;
+  std::from_chars(text.data(), end, value);
+  return value;
+}
+inline Json rounded_list(std::span<const double> values, int digits) {
+  return list_of(values, [&](double value) { return rounded(value, digits); });
+}
+
+/// On one line. File names and headers need not be valid UTF-8.
+inline std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+/// Indented text, which ends with a line break.
+inline std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tribofit
