@@ -226,8 +226,9 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
                                     std::span<const double> residual) {
   switch (parameter.search) {
     case ParameterSearch::steady_line:
-      return starts_at_lines(parameter,
-                             strongest_lines(first, observations, residual, parameter.lower, parameter.upper));
+      return starts_at_lines(
+          parameter, strongest_lines(first, observations, residual,
+                                     std::max(parameter.lower, lowest_steady_line(observations)), parameter.upper));
     case ParameterSearch::ringing_line:
       return starts_at_lines(parameter, strongest_ringing(observations, residual,
                                                           std::max(parameter.lower, lowest_ringing(observations))));

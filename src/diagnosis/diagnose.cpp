@@ -217,14 +217,15 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
                                     [](const EffectFinding& f) { return f.status == EffectStatus::possible; });
   if (possible) diagnosis.verdict = Verdict::unexplained;
   const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
-  const double left_over = fits.back().error.held_out_rmse / diagnosis.floor_rmse;
+  const double error = fits.back().error.held_out_rmse, left_over = error / diagnosis.floor_rmse;
   if (structured || possible) return;
   if (is_most_left(fits, diagnosis.floor_rmse)) {
     diagnosis.verdict = Verdict::unexplained;
     diagnosis.messages.push_back("the effects found explain less than half of the error above the noise floor");
     return;
   }
-  if (!(left_over > far)) return;
+  // Few cycles that wander say little of a floor, and as little of an error.
+  if (!(error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse)) return;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(
       fmt::format("what remains is {:.1f} times the noise floor and goes with no variable of these data more than "

@@ -174,13 +174,13 @@ bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judge
 }
 
 /// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
-/// of what is left above the noise; or its bounds alone. At the noise floor nothing is left to take away.
+/// of what is left above the noise: at the noise floor nothing is. Or its bounds alone.
 bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;
   if (!(judged.size > limits::kLeastPossible) || !(judged.fall > 0)) return false;
-  if (in.fits.back().error.held_out_rmse <= kAtFloor * in.fits.back().floor.rmse) return false;
   if (!judged.plausible) return acts_beyond_bounds(in.all[k], judged);
+  if (in.fits.back().error.held_out_rmse <= kAtFloor * in.fits.back().floor.rmse) return false;
   const double excess = in.ladder.top().held_out_squares - in.context.noise_squares();
   return judged.p_value < limits::kChanceOfPossible && judged.fall > limits::kPossiblePart * excess;
 }

@@ -43,9 +43,11 @@ bool is_plausible(const DiagnosisContext& context, const Trial& trial, const Can
     const bool far =
         std::abs(trial.p[offset + k] - q.neutral * q.si) > limits::kAwayFromNone * (q.upper - q.lower) * q.si;
     if (!decisive && !q.periodic && far && trial.at_bound[offset + k]) return false;
-    const bool too_slow =
-        q.search == ParameterSearch::ringing_line && trial.p[offset + k] < lowest_ringing(context.fine.observations);
-    if (too_slow) return false;
+    const Observations& seen = context.fine.observations;
+    const double slowest = q.search == ParameterSearch::ringing_line  ? lowest_ringing(seen)
+                           : q.search == ParameterSearch::steady_line ? lowest_steady_line(seen)
+                                                                      : 0;
+    if (slowest > 0 && trial.p[offset + k] < slowest) return false;
     const bool at_an_end =
         q.search == ParameterSearch::moment_of_change && !is_amid_slips(context.fine.observations, trial.p[offset + k]);
     if (at_an_end) return false;

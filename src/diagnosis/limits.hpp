@@ -94,7 +94,8 @@ inline constexpr double kChanceOfPossible = 0.05;  ///< p-value: one record in t
 inline constexpr double kPossiblePart = 0.3;       ///< of what is above the noise: less does not change the picture
 inline constexpr double kLeastPossible = 0.1;      ///< of the squares of the noise: less shows on no plot
 
-inline constexpr double kChanceBeyondBounds = 0.01;  ///< p-value, as for structure that remains: this is what it is
+/// p-value: what is not plausible takes more evidence than a name, and no slow noise passes for it.
+inline constexpr double kChanceBeyondBounds = 0.001;
 
 // Whether a run that was held back bears a finding out.
 inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those that do one in twenty fails by chance

@@ -34,6 +34,10 @@ class FullRecord {
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 
+/// Variance that 1/f noise has in every e-fold of time, from how the noise in stick grows with the time it is taken over;
+/// 0 where it does not grow.
+double flicker_in_stick(const Motion& motion, const Segmentation& segmentation);
+
 /// What a model leaves on every sample.
 struct SampleErrors {
   ErrorFigures figures;         ///< held_out_rmse not set

@@ -93,11 +93,16 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
 }
 
-/// Standard deviation of 1/f noise over longer times than sensor noise was taken over; 0 where what the model leaves is
-/// rather of another kind, which may be a cause that was not recorded.
+/// What the model leaves may be 1/f noise, and is not rather of another kind, which may be a cause that was not
+/// recorded.
+bool is_slow_sensor_noise(const SlowNoise& slow) {
+  return slow.is_flicker && !slow.is_rather_other;
+}
+
+/// Standard deviation of 1/f noise over longer times than sensor noise was taken over; 0 where there is none.
 double slow_noise_beyond_stretches(const SampleErrors& errors) {
   const SlowNoise slow = slow_noise(errors.levels);
-  if (!slow.is_flicker || slow.is_rather_other) return 0;
+  if (!is_slow_sensor_noise(slow)) return 0;
   const std::size_t stretch = errors.levels_per_noise_stretch;
   const std::vector<double> mean(stretch, 1 / static_cast<double>(stretch));
   const double within_stretch = slow.covariance[0] - slow.variance_of_sum(mean);
@@ -107,6 +112,29 @@ double slow_noise_beyond_stretches(const SampleErrors& errors) {
   return std::sqrt(std::clamp(slow.variance_within() - within_stretch, 0.0, squares));
 }
 
+/// The same from one slip to the next, beside the scatter of break-away: slips are far apart, and what 1/f noise does
+/// within them is known from the stick.
+///
+/// 1/f noise has as much in every octave, and those that the stick shows bound what it has over longer times: friction
+/// that wanders by more from slip to slip does so itself.
+double slow_noise_between_slips(const FitContext& context, const std::vector<double>& p,
+                                const NormalEquations& equations, const std::vector<bool>& free) {
+  if (context.records.size() > 1) return 0;  // levels of their own are no noise
+  const SlowLevels slow = slow_levels(equations, level_change(context.model, p), free);
+  if (!is_slow_sensor_noise(slow.noise)) return 0;
+  const Observations& data = context.observations;
+  double squares = 0, weights = 0;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    squares += data.weight[i] * data.friction[i] * data.friction[i];
+    weights += data.weight[i];
+  }
+  const double seen = kPartBesideParabola * static_cast<double>(kLongestNoiseStretch);
+  const auto& [motion, segmentation] = context.records[0];
+  const double longer = std::max(1.0, static_cast<double>(motion->size()) / seen);
+  const double most = flicker_in_stick(*motion, *segmentation) * std::log(longer);
+  return std::sqrt(std::min(most, std::min(slow.noise.variance_within(), slow.mean_square) * squares / weights));
+}
+
 /// What a fit with so many parameters leaves of points, as one value: their noise is no larger, though points that are
 /// far apart in speed differ by more.
 double noise_beside(const Fit& fit, std::size_t parameters) {
@@ -114,7 +142,8 @@ double noise_beside(const Fit& fit, std::size_t parameters) {
   return fit.error.rmse * std::sqrt(count / std::max(1.0, left));
 }
 
-void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
+void fill_floor(const FitContext& context, const std::vector<double>& p, const NormalEquations& equations,
+                const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
   const ModelResiduals::Whitening whitening =
@@ -128,7 +157,10 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   });
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
-  if (!sticks && !points) floor.slow_noise = slow_noise_beyond_stretches(errors);
+  if (!points) {
+    floor.slow_noise =
+        sticks ? slow_noise_between_slips(context, p, equations, free) : slow_noise_beyond_stretches(errors);
+  }
   floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.slow_noise, 2) + scatter);
   set_floor(floor, fit);
 }
@@ -219,7 +251,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
 
   const SampleErrors errors = sample_errors(model, p, FullRecord(records, observations, model.needs()), observations);
   fill_errors(errors, fit);
-  fill_floor(context, p, errors, fit);
+  fill_floor(context, p, equations, freedom.inside, errors, fit);
   cross_validate(context, solution, equations, freedom.inside, errors, fit);
   fill_errors_of_records(context, p, freedom.inside, fit);
   if (!context.by_extremes()) {

@@ -55,19 +55,20 @@ bool is_spoilt(const Motion& motion, const SampleRange& samples) {
 constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
 constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
 
-/// Every stick without its ends, where the transients of re-stick and break-away are, in stretches.
-std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation& segmentation) {
+/// Every stick without its ends, where the transients of re-stick and break-away are, in stretches of so many samples.
+std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation& segmentation,
+                                       std::size_t stretch = kLongestNoiseStretch) {
   std::vector<Remainder> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
     if (cycle.stick.size() < kShortestStick || !segmentation.is_selected(cycle)) continue;
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
-    const std::size_t pieces = std::max<std::size_t>(1, length / kLongestNoiseStretch);
+    const std::size_t pieces = std::max<std::size_t>(1, length / stretch);
     for (std::size_t k = 0; k < pieces; ++k) {
       const SampleRange piece{begin + k * length / pieces, begin + (k + 1) * length / pieces};
       if (!is_spoilt(motion, piece)) parts.push_back(about_parabola(motion.friction, piece.begin, piece.end));
     }
-    if (parts.size() > kStretches) break;
+    if (parts.size() * stretch > kStretches * kLongestNoiseStretch) break;
   }
   return parts;
 }
@@ -134,6 +135,14 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
 }
 
 }  // namespace
+
+double flicker_in_stick(const Motion& motion, const Segmentation& segmentation) {
+  const std::vector<Remainder> longer = stick_residuals(motion, segmentation),
+                               shorter =
+                                   stick_residuals(motion, segmentation, kLongestNoiseStretch / kShorterNoiseStretch);
+  const double growth = std::pow(pooled_noise(longer), 2) - std::pow(pooled_noise(shorter), 2);
+  return std::max(0.0, growth) / std::log(static_cast<double>(kShorterNoiseStretch));
+}
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
   if (motion.is_points()) return noise_of_points(motion, segmentation);

@@ -152,6 +152,7 @@ SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& 
     const double norm = level.dot(pull);
     levels.push_back(norm > 0 ? level.dot(equations.gradient[c]) / norm : 0);
     out.influence.row(static_cast<Eigen::Index>(c)) = (inverse * pull).transpose();
+    out.mean_square += levels.back() * levels.back() / static_cast<double>(cycles);
   }
   out.noise = slow_noise(levels);
   return out;

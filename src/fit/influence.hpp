@@ -43,6 +43,7 @@ Eigen::VectorXd level_change(const FrictionModel& model, const std::vector<doubl
 struct SlowLevels {
   SlowNoise noise;            ///< of the levels, in parts of friction
   Eigen::MatrixXd influence;  ///< of the level of each cycle on each parameter: cycles x parameters
+  double mean_square = 0;     ///< of the levels, in squared parts of friction
 };
 SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free);
 

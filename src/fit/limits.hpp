@@ -18,6 +18,13 @@ inline constexpr std::size_t kShortestNoiseStretch = 12, kLongestNoiseStretch = 
 /// would be a quarter wider than with one variance for all, which a standard error of each point serves better.
 inline constexpr double kFewestFreeVariances = 5;
 
+/// Whether noise is 1/f noise shows over stretches so much shorter: a quarter of 200 samples is beyond the memory of an
+/// amplifier that follows within ten, and leaves two octaves.
+inline constexpr std::size_t kShorterNoiseStretch = 4;
+
+/// A parabola over a stretch takes away what is slower than a third of it.
+inline constexpr double kPartBesideParabola = 1.0 / 3;
+
 /// Levels by which 1/f noise is distinguished from what a wrong model leaves: with 600 it is in four of five records,
 /// with 60 in hardly any; more only cost time.
 inline constexpr std::size_t kEnoughLevels = 2000;

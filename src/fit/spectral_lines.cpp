@@ -58,6 +58,12 @@ double observation_rate(const Observations& observations) {
   return slowest;
 }
 
+double lowest_steady_line(const Observations& observations) {
+  constexpr double kPeriods = 0.5;
+  const double length = median_slip_time(observations);
+  return length > 0 ? kPeriods / length : 0;
+}
+
 double lowest_ringing(const Observations& observations) {
   constexpr double kPeriods = 6;
   const double length = median_slip_time(observations);

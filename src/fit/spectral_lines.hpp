@@ -27,6 +27,9 @@ double noise_without_line(const Record& record, double noise);
 /// The strongest line, if any, whose phase starts anew at each break-away, from `lowest` [Hz] up.
 SpectralLines strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest);
 
+/// Below this a steady line has less than half a period in a slip: it moves slips as a whole, as slow noise does [Hz].
+double lowest_steady_line(const Observations& observations);
+
 /// Below this a ring has too few periods in a slip to be told from the shape of the law [Hz].
 double lowest_ringing(const Observations& observations);
 

@@ -24,7 +24,7 @@ struct Options {
   std::size_t records = 20;
   std::string only, one, json_path;
   int threads = 0;
-  bool quiet = false, experiments = true;
+  bool quiet = false, experiments = true, asked = false, coverage = false;
 };
 
 std::string describe(const Name& name) {
@@ -123,8 +123,9 @@ void explain(const Case& c) {
 
 std::vector<Case> plan(Options options) {
   if (!options.experiments) options.plan.look_alikes = 0;
-  if (options.kinds.empty()) return plan_cases(options.plan);
-  if (options.kinds.front() == "all") options.kinds.clear();
+  if (options.kinds.empty() && !options.asked) return plan_cases(options.plan);
+  if (!options.kinds.empty() && options.kinds.front() == "all") options.kinds.clear();
+  if (options.asked) return plan_asked_of_sliding(options.kinds, options.records, options.plan.seed);
   return plan_record_kinds(options.kinds, options.records, options.records, options.plan.seed);
 }
 
@@ -151,11 +152,12 @@ int run(const Options& options) {
     if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
   });
   if (!options.json_path.empty()) write(options.json_path, outcomes);
-  if (options.kinds.empty()) {
+  if (options.coverage) fmt::print("{}\n", coverage_table(outcomes));
+  if (options.kinds.empty() && !options.asked) {
     fmt::print("{}", tables(outcomes));
     return 0;
   }
-  fmt::print("{}\n", record_kinds_table(outcomes));
+  fmt::print("{}\n", options.asked ? groups_table(outcomes) : record_kinds_table(outcomes));
   for (const Outcome& o : outcomes) {
     if (!o.right) fmt::print("{}\n", line(o));
   }
@@ -169,6 +171,7 @@ int main(int argc, char** argv) {
   CLI::App app("Diagnoses records in which effects of the catalogue are hidden, and counts what was named");
   app.add_option("--runs", options.plan.runs, "cases of each effect and size")->capture_default_str();
   app.add_option("--pairs", options.plan.pairs, "cases of each pair")->capture_default_str();
+  app.add_option("--triples", options.plan.triples, "cases of each three")->capture_default_str();
   app.add_option("--nothing", options.plan.nothing, "cases with nothing hidden")->capture_default_str();
   app.add_option("--aliens", options.plan.aliens, "cases of each effect in no catalogue")->capture_default_str();
   app.add_option("--unknowable", options.plan.unknowable, "cases of ageing at one constant speed")
@@ -181,7 +184,11 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--records", options.records, "of each kind: so many with nothing hidden, and so many with an effect")
       ->capture_default_str();
+  app.add_flag("--asked", options.asked,
+               "of each kind of sliding: viscous, drift, asymmetry, a logarithmic law, and Stribeck curves with "
+               "viscous friction");
   app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
+  app.add_flag("--coverage", options.coverage, "how often the intervals of effects that were named hold the truth");
   app.add_option(
       "--only", options.only,
       "only cases whose name holds this (or one of these, with ; between), e.g. runout, 'drift=', nothing, +, ~");

@@ -204,9 +204,34 @@ std::string_view to_string(Setting setting) {
 }
 
 std::string_view to_string(Kind kind) {
-  constexpr std::string_view kNames[] = {"single", "pair", "nothing", "alien", "unknowable", "look-alike"};
+  constexpr std::string_view kNames[] = {"single", "pair",       "triple",     "nothing",
+                                         "alien",  "unknowable", "look-alike", "base law"};
   return kNames[static_cast<std::size_t>(kind)];
 }
+
+namespace {
+
+/// Two and three effects in one record.
+template <class Add>
+void plan_together(const PlanOptions& options, const Add& add) {
+  const auto hide = [](Case& c, Random& random, const char* key, double size) {
+    c.hidden.push_back(ingredient(recipe(key).effect, size, random));
+  };
+  for (const Pair& pair : kPairs) {
+    add(fmt::format("{}+{}", pair.a, pair.b), options.pairs, Kind::pair, pair.setting, [&](Case& c, Random& random) {
+      hide(c, random, pair.a, pair.size_a);
+      hide(c, random, pair.b, pair.size_b);
+    });
+  }
+  for (const Triple& triple : kTriples) {
+    add(fmt::format("{}", fmt::join(triple.keys, "+")), options.triples, Kind::triple, triple.setting,
+        [&](Case& c, Random& random) {
+          for (std::size_t k = 0; k < std::size(triple.keys); ++k) hide(c, random, triple.keys[k], triple.sizes[k]);
+        });
+  }
+}
+
+}  // namespace
 
 std::vector<Case> plan_cases(const PlanOptions& options) {
   std::vector<Case> cases;
@@ -228,12 +253,7 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
           [&](Case& c, Random& random) { c.hidden = {ingredient(r.effect, size, random)}; });
     }
   }
-  for (const Pair& pair : kPairs) {
-    add(fmt::format("{}+{}", pair.a, pair.b), options.pairs, Kind::pair, pair.setting, [&](Case& c, Random& random) {
-      c.hidden = {ingredient(recipe(pair.a).effect, pair.size_a, random)};
-      c.hidden.push_back(ingredient(recipe(pair.b).effect, pair.size_b, random));
-    });
-  }
+  plan_together(options, add);
   // Nothing is hidden in records of every kind, mostly the plain ones.
   constexpr Setting kSettings[] = {Setting::fast,        Setting::slow,
                                    Setting::fast,        Setting::slow,

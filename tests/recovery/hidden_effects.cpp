@@ -90,11 +90,14 @@ bool is_right(const Outcome& out) {
   switch (out.of.kind) {
     case Kind::single:
     case Kind::pair:
+    case Kind::triple:
       return out.naming == Naming::alone || out.naming == Naming::group;
     case Kind::look_alike:
       return out.split;
     case Kind::nothing:
       return out.names.empty() && out.verdict == Verdict::sufficient;
+    case Kind::base_law:
+      return out.names.empty() && out.verdict == Verdict::sufficient && out.law == out.of.law;
     case Kind::alien:
       return out.verdict == Verdict::unexplained && out.remaining == out.of.variable;
     case Kind::unknowable:

@@ -50,10 +50,12 @@ enum class Programme {
 enum class Kind {
   single,      ///< one effect: to be named
   pair,        ///< two effects: both to be named
+  triple,      ///< three effects: all to be named
   nothing,     ///< none: nothing to be named
   alien,       ///< what no catalogue holds: to be called unexplained, over the right variable
   unknowable,  ///< an effect that these data cannot show: not to be named
-  look_alike   ///< one effect, to be named apart from one that looks like it after the experiment that tells them apart
+  look_alike,  ///< one effect, to be named apart from one that looks like it after the experiment that tells them apart
+  base_law     ///< none, but a law that is not tried first: to be chosen, with nothing beside it
 };
 std::string_view to_string(Kind kind);
 
@@ -93,6 +95,7 @@ struct Case {
 struct PlanOptions {
   std::size_t runs = 10;      ///< of each effect and size
   std::size_t pairs = 10;     ///< of each pair
+  std::size_t triples = 0;    ///< of each three
   std::size_t nothing = 800;  ///< with nothing hidden
   std::size_t aliens = 40;    ///< of each of those in no catalogue
   std::size_t unknowable = 20;
@@ -110,6 +113,12 @@ std::vector<std::string> record_kinds();
 /// the effects which the kind can show, in all their sizes. Throws std::invalid_argument for an unknown kind.
 std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::size_t empty, std::size_t loaded,
                                     std::uint64_t seed = 1);
+
+/// Of each of these kinds of sliding (all of them: empty) `records` ones that walk through what is asked of sliding:
+/// viscous friction beside Coulomb's and beside Stribeck curves, drift, asymmetry where the record reverses, and a
+/// logarithmic law. Throws std::invalid_argument for a kind in which the block sticks.
+std::vector<Case> plan_asked_of_sliding(const std::vector<std::string>& kinds, std::size_t records,
+                                        std::uint64_t seed = 1);
 
 /// A record of a case.
 struct Run {
@@ -168,7 +177,7 @@ enum class Naming {
   alone,   ///< everything hidden named, each by itself, and nothing else
   group,   ///< everything named, alone or in groups of at most four, and nothing else
   beside,  ///< everything named, but something else too
-  partly,  ///< of two, one
+  partly,  ///< of several, some
   wrong,   ///< only something else
   missed   ///< nothing named
 };
@@ -212,6 +221,13 @@ std::string tables(const std::vector<Outcome>& outcomes);
 
 /// False alarms, names and intervals of each kind of record, as Markdown.
 std::string record_kinds_table(const std::vector<Outcome>& outcomes);
+
+/// How often intervals of the effects that were named hold the truth: by the number of effects hidden, by noise, by
+/// parameter, and overall, as Markdown.
+std::string coverage_table(const std::vector<Outcome>& outcomes);
+
+/// How often each group of cases was named, as Markdown.
+std::string groups_table(const std::vector<Outcome>& outcomes);
 
 /// A case fitted with the law and the effects it was made with (those of friction), started at the truth.
 struct KnownFit {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,23 @@ TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
   for (const Outcome& o : run_cases(plan_record_kinds({"steps", "ramps", "sines", "reversals"}, 3, 0), 0)) {
     EXPECT_TRUE(o.right) << o.of.name << ": " << names(o);
   }
+}
+
+/// What the block shows by how it sticks is not hidden where it never does.
+TEST(HiddenEffects, SlidingHidesOnlyWhatItCanShow) {
+  const std::vector<std::string> sliding = {"steps", "ramps", "sines", "reversals"};
+  std::set<std::string> hidden;
+  for (const Case& c : plan_record_kinds(sliding, 0, 60)) {
+    const tribofit::EffectInfo info = tribofit::describe(tribofit::make_effect(c.hidden.at(0).key));
+    EXPECT_FALSE(info.kinematic_effect || info.needs.plateau) << info.key;
+    EXPECT_TRUE(info.excitation.break_away.empty()) << info.key;
+    hidden.insert(info.key);
+  }
+  for (const Case& c : plan_asked_of_sliding(sliding, 6)) {
+    for (const Ingredient& what : c.hidden) EXPECT_EQ(hidden.count(what.key), 1u) << what.key;
+    EXPECT_EQ(c.kind == Kind::base_law, c.hidden.empty()) << c.name;
+  }
+  EXPECT_THROW(plan_asked_of_sliding({"slow-30"}, 1), std::invalid_argument);
 }
 
 /// A slow rig makes the same record with another clock.

@@ -67,6 +67,8 @@ Ingredient ingredient(const EffectInfo& effect, double size, Random& random) {
 }
 
 std::optional<Programme> sliding_programme(const EffectInfo& effect) {
+  // Effects that are found in the motion, before any fit, are found by how the block sticks.
+  if (effect.kinematic_effect || effect.needs.plateau || !effect.excitation.break_away.empty()) return std::nullopt;
   switch (effect.sketch.view) {
     case SketchView::loop:
       return Programme::sines;
@@ -136,6 +138,15 @@ const std::vector<Pair> kPairs = {
     {"ringing", "runout", 0.014, 0.06, Setting::slow},
     {"run-in", "sensor-inertia", 0.08, 0.2, Setting::slow},
     {"drift", "runout", 0.0012, 0.04, Setting::slow},
+};
+
+const std::vector<Triple> kTriples = {
+    {{"viscous", "frictional-lag", "runout"}, {0.0015, 2, 0.04}, Setting::slow},
+    {{"sensor-inertia", "drift", "runout"}, {0.2, 0.0012, 0.06}, Setting::slow},
+    {{"channel-delay", "viscous", "heating"}, {1, 0.0015, 0.1}, Setting::slow},
+    {{"rate-state", "step", "disc-pattern"}, {90, 0.03, 0.04}, Setting::slow},
+    {{"load-dependence", "channel-delay", "viscous"}, {0.2, 1, 0.0011}, Setting::load_swings},
+    {{"temperature-dependence", "frictional-lag", "runout"}, {0.006, 1, 0.04}, Setting::temperature_swings},
 };
 
 }  // namespace recovery

@@ -52,7 +52,8 @@ const Recipe& recipe(std::string_view key);
 /// The effect in one of its sizes, its other parameters drawn as its header says.
 Ingredient ingredient(const tribofit::EffectInfo& effect, double size, Random& random);
 
-/// The speed programme of a sliding record that shows the effect; none where only break-away or stick shows it.
+/// The speed programme of a sliding record that shows the effect; none where only break-away or stick shows it, as its
+/// header says.
 std::optional<Programme> sliding_programme(const tribofit::EffectInfo& effect);
 
 /// Scales of a record over those of the records for which effects state their sizes.
@@ -86,5 +87,14 @@ struct Pair {
 };
 
 extern const std::vector<Pair> kPairs;
+
+/// Three effects hidden together.
+struct Triple {
+  const char* keys[3];
+  double sizes[3];
+  Setting setting;
+};
+
+extern const std::vector<Triple> kTriples;
 
 }  // namespace recovery

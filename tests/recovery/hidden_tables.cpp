@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "hidden_effects.hpp"
+#include "hidden_tables.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 
 namespace recovery {
@@ -16,69 +16,14 @@ using namespace tribofit;
 
 namespace {
 
-using Outcomes = std::vector<const Outcome*>;
-
-Outcomes of_kind(const std::vector<Outcome>& all, Kind kind) {
-  Outcomes found;
-  for (const Outcome& o : all) {
-    if (o.of.kind == kind) found.push_back(&o);
-  }
-  return found;
-}
-
-/// Groups in the order of their first case.
-std::vector<Outcomes> by_group(const Outcomes& outcomes) {
-  std::vector<Outcomes> groups;
-  std::map<std::string, std::size_t> at;
-  for (const Outcome* o : outcomes) {
-    const auto [entry, is_new] = at.emplace(o->of.group, groups.size());
-    if (is_new) groups.emplace_back();
-    groups[entry->second].push_back(o);
-  }
-  return groups;
-}
-
-template <class Predicate>
-std::size_t count(const Outcomes& outcomes, Predicate predicate) {
-  return static_cast<std::size_t>(std::count_if(outcomes.begin(), outcomes.end(), predicate));
-}
-
-std::size_t count(const Outcomes& outcomes, Naming naming) {
-  return count(outcomes, [&](const Outcome* o) { return o->failure.empty() && o->naming == naming; });
-}
-
-std::string percent(std::size_t hits, std::size_t n) {
-  return n == 0 ? "" : fmt::format("{:.1f} %", 100 * static_cast<double>(hits) / static_cast<double>(n));
-}
-
 bool is_low(const Outcome* o) {
   return o->last > 0 && o->last <= 1.15 * o->floor;
-}
-bool is_right(const Outcome* o) {
-  return o->right;
 }
 bool was_tried(const Outcome* o) {
   return !o->partners.empty();
 }
 bool failed(const Outcome* o) {
   return !o->failure.empty();
-}
-
-struct Parameters {
-  std::size_t n = 0, close = 0, covered = 0;
-};
-
-Parameters parameters(const Outcomes& outcomes) {
-  Parameters out;
-  for (const Outcome* o : outcomes) {
-    if (!o->right) continue;
-    for (const Recovered& p : o->parameters) {
-      ++out.n;
-      out.close += std::abs(p.value - p.truth) <= 0.1 * std::abs(p.truth) ? 1u : 0u;
-      out.covered += p.lower95 <= p.truth && p.truth <= p.upper95 ? 1u : 0u;
-    }
-  }
-  return out;
 }
 
 std::string mean_group(const Outcomes& outcomes) {
@@ -111,7 +56,7 @@ std::string singles_table(const Outcomes& singles) {
 
 std::string pairs_table(const Outcomes& pairs) {
   std::string text =
-      "| hidden | n | both | both, beside another | one | neither | nothing | error within 1.15 |\n"
+      "| hidden | n | all | all, beside another | some | none | nothing | error within 1.15 |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|\n";
   const auto row = [&](const std::string& name, const Outcomes& g) {
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} |\n", name, g.size(),
@@ -120,17 +65,6 @@ std::string pairs_table(const Outcomes& pairs) {
   };
   for (const Outcomes& g : by_group(pairs)) row(fmt::format("`{}`", g[0]->of.group), g);
   row("all", pairs);
-  return text;
-}
-
-/// "drift 2, runout 1", most frequent first.
-std::string list(const std::map<std::string, std::size_t>& counts) {
-  std::vector<std::pair<std::string, std::size_t>> sorted(counts.begin(), counts.end());
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::string text;
-  for (const auto& [key, n] : sorted) {
-    fmt::format_to(std::back_inserter(text), "{}{} {}", text.empty() ? "" : ", ", key, n);
-  }
   return text;
 }
 
@@ -214,16 +148,6 @@ std::string experiments_table(const Outcomes& tried) {
                    counts.second);
   }
   return text;
-}
-
-/// What was said of records with nothing hidden.
-std::map<std::string, std::size_t> alarms_of(const Outcomes& empties) {
-  std::map<std::string, std::size_t> said;
-  for (const Outcome* o : empties) {
-    for (const Name& n : o->names) ++said[n.added];
-    if (o->names.empty() && !o->right) ++said[std::string("verdict ") + std::string(to_string(o->verdict))];
-  }
-  return said;
 }
 
 std::string nothing_table(const Outcomes& empties) {
@@ -310,6 +234,7 @@ std::string summary(const std::vector<Outcome>& all) {
   share("single effects named, alone or in a group of at most 4", singles, is_right);
   share("single effects named alone", singles, [](const Outcome* o) { return o->naming == Naming::alone; });
   share("pairs of which both are named", pairs, is_right);
+  share("threes of which all are named", of_kind(all, Kind::triple), is_right);
   const std::size_t alarms = empties.size() - count(empties, is_right);
   row("something named where nothing is hidden (at most, 95 %)", empties.size(),
       fmt::format("{} ({:.1f} %)", percent(alarms, empties.size()), 100 * upper_bound_95(alarms, empties.size())));
@@ -342,35 +267,6 @@ std::string summary(const std::vector<Outcome>& all) {
 
 }  // namespace
 
-std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
-  std::string text =
-      "| kind of record | empty | false alarms | rate at most (95 %) | alarms | loaded | named | alone | wrong | "
-      "missed | "
-      "inside 95 % |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|\n";
-  const auto row = [&](const std::string& name, const Outcomes& all) {
-    Outcomes empty, loaded;
-    for (const Outcome* o : all) (o->of.kind == Kind::nothing ? empty : loaded).push_back(o);
-    const std::size_t alarms = empty.size() - count(empty, is_right);
-    const Parameters p = parameters(loaded);
-    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name,
-                   empty.size(), alarms,
-                   empty.empty() ? "" : fmt::format("{:.1f} %", 100 * upper_bound_95(alarms, empty.size())),
-                   list(alarms_of(empty)), loaded.size(), percent(count(loaded, is_right), loaded.size()),
-                   count(loaded, Naming::alone), count(loaded, Naming::wrong) + count(loaded, Naming::beside),
-                   count(loaded, Naming::missed), percent(p.covered, p.n));
-  };
-  std::map<std::string, Outcomes> kinds;
-  Outcomes all;
-  for (const Outcome& o : outcomes) {
-    kinds[o.of.record_kind].push_back(&o);
-    kinds[o.of.flicker ? "with 1/f noise" : o.of.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(&o);
-    all.push_back(&o);
-  }
-  for (const auto& [name, of] : kinds) row(name, of);
-  row("all", all);
-  return text;
-}
-
 std::string tables(const std::vector<Outcome>& all) {
   std::string text = summary(all);
   const auto section = [&](const char* title, const Outcomes& of, auto&& table) {
@@ -379,6 +275,7 @@ std::string tables(const std::vector<Outcome>& all) {
   const Outcomes singles = of_kind(all, Kind::single);
   section("One effect hidden", singles, singles_table);
   section("Two effects hidden", of_kind(all, Kind::pair), pairs_table);
+  section("Three effects hidden", of_kind(all, Kind::triple), pairs_table);
   section("Nothing hidden", of_kind(all, Kind::nothing), nothing_table);
   Outcomes others = of_kind(all, Kind::alien);
   const Outcomes unknowable = of_kind(all, Kind::unknowable);

@@ -62,6 +62,12 @@ void scale(Ingredient& what, const RelativeScales& scales) {
   }
 }
 
+/// The block slides under a stiff rig through all of the programme.
+void let_slide(Case& c) {
+  c.rig = stiff_rig();
+  c.speed = kMeanSpeed / c.radius;
+}
+
 void set_noise(Case& c, Noise noise, std::size_t number) {
   constexpr Noise kTurn[] = {Noise::white, Noise::coloured, Noise::flicker};
   if (noise == Noise::any) noise = kTurn[number % 3];
@@ -82,16 +88,59 @@ Case make_case(const RecordKind& kind, const Recipe* of, std::size_t size, std::
   c.record_kind = kind.name;
   c.programme = kind.programme;
   set_noise(c, kind.noise, number);
-  if (slides) {
-    c.rig = stiff_rig();
-    c.speed = kMeanSpeed / c.radius;
-  }
+  if (slides) let_slide(c);
   if (of != nullptr) {
     const std::vector<double>& sizes = of->effect.hidden.sizes;
     c.hidden = {ingredient(of->effect, sizes[size % sizes.size()], random)};
     if (slides) scale(c.hidden[0], sliding_scales());
   }
   return slowed(std::move(c), kind.slowness);
+}
+
+/// What is asked of sliding.
+struct Asked {
+  const char* name;
+  std::optional<Law> law;                  ///< none: one of those drawn for every case
+  std::optional<std::string_view> effect;  ///< none: the law itself is asked for
+};
+
+const std::vector<Asked>& asked_of_sliding() {
+  static const std::vector<Asked> all = {{"viscous", CoulombLaw{}, Viscous::key},
+                                         {"drift", {}, Drift::key},
+                                         {"asymmetry", {}, Asymmetry::key},
+                                         {"logarithmic", LogarithmicLaw{}, {}},
+                                         {"exponential + viscous", ExponentialLaw{}, Viscous::key},
+                                         {"gaussian + viscous", GaussianLaw{}, Viscous::key}};
+  return all;
+}
+
+Case make_asked(const RecordKind& kind, const Asked& asked, std::size_t number, std::uint64_t seed) {
+  const std::string group = fmt::format("{}/{}", kind.name, asked.name);
+  const std::uint64_t own = hash(fmt::format("{}:{}", group, number), seed);
+  Random random(own);
+  Case c = draw_case(group, number, asked.effect ? Kind::single : Kind::base_law, Setting::fast, own, random);
+  c.record_kind = kind.name;
+  c.programme = kind.programme;
+  set_noise(c, kind.noise, number);
+  let_slide(c);
+  if (asked.law) c.law = *asked.law;
+  if (c.law == Law(CoulombLaw{})) c.friction.resize(2);
+  if (c.law == Law(LogarithmicLaw{})) {
+    c.friction = {random.uniform(0.35, 0.45), random.sign() * random.uniform(0.01, 0.02)};
+  }
+  if (asked.effect) {
+    const EffectInfo& effect = recipe(*asked.effect).effect;
+    c.hidden = {ingredient(effect, effect.hidden.sizes[random.below(effect.hidden.sizes.size())], random)};
+    scale(c.hidden[0], sliding_scales());
+  }
+  return c;
+}
+
+const RecordKind& kind_called(const std::string& name) {
+  const auto at = std::find_if(std::begin(kRecordKinds), std::end(kRecordKinds),
+                               [&](const RecordKind& kind) { return kind.name == name; });
+  if (at == std::end(kRecordKinds)) throw std::invalid_argument(fmt::format("there is no kind of record '{}'", name));
+  return *at;
 }
 
 }  // namespace
@@ -164,12 +213,7 @@ std::vector<std::string> record_kinds() {
 
 std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::size_t empty, std::size_t loaded,
                                     std::uint64_t seed) {
-  for (const std::string& name : kinds) {
-    const std::vector<std::string> known = record_kinds();
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw std::invalid_argument(fmt::format("there is no kind of record '{}'", name));
-    }
-  }
+  for (const std::string& name : kinds) kind_called(name);
   std::vector<Case> cases;
   for (const RecordKind& kind : kRecordKinds) {
     if (!kinds.empty() && std::find(kinds.begin(), kinds.end(), kind.name) == kinds.end()) continue;
@@ -183,6 +227,26 @@ std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::
       cases.push_back(make_case(kind, shown[i % shown.size()], i + i / shown.size(), i, seed));
     }
   }
+  return cases;
+}
+
+std::vector<Case> plan_asked_of_sliding(const std::vector<std::string>& kinds, std::size_t records,
+                                        std::uint64_t seed) {
+  std::vector<Case> cases;
+  for (const RecordKind& kind : kRecordKinds) {
+    const bool slides = kind.programme != Programme::stick_slip;
+    if (kinds.empty() ? !slides : std::find(kinds.begin(), kinds.end(), kind.name) == kinds.end()) continue;
+    if (!slides) throw std::invalid_argument(fmt::format("a block sticks in records of the kind '{}'", kind.name));
+    std::vector<const Asked*> shown;
+    for (const Asked& asked : asked_of_sliding()) {
+      const bool both_ways = asked.effect && recipe(*asked.effect).effect.excitation.both_directions;
+      if (!both_ways || kind.programme == Programme::reversals) shown.push_back(&asked);
+    }
+    for (std::size_t i = 0; i < records; ++i) {
+      cases.push_back(make_asked(kind, *shown[i % shown.size()], i / shown.size(), seed));
+    }
+  }
+  for (const std::string& name : kinds) kind_called(name);
   return cases;
 }
 

@@ -81,7 +81,7 @@ struct ErrorFigures {
 struct Floor {
   double noise = 0;       ///< sensor noise, standard deviation of a sample [1 or N]
   double scatter = 0;     ///< standard deviation of the break-away level from cycle to cycle [1 or N]
-  double slow_noise = 0;  ///< where nothing sticks: of 1/f noise over longer times than `noise` was taken [1 or N]
+  double slow_noise = 0;  ///< of 1/f noise over longer times than `noise` was taken over [1 or N]
   double rmse = 0;        ///< all of them, over the samples of the error
   std::string source;     ///< how the noise was found: "stick" or "slip"
 };

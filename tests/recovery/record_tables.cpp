@@ -1,0 +1,103 @@
+/// Tables of other kinds of record, of what is asked of sliding, and of intervals after naming.
+#include <string>
+
+#include "hidden_tables.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
+  std::string text =
+      "| kind of record | empty | false alarms | rate at most (95 %) | alarms | loaded | named | alone | wrong | "
+      "missed | "
+      "inside 95 % |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|\n";
+  const auto row = [&](const std::string& name, const Outcomes& all) {
+    Outcomes empty, loaded;
+    for (const Outcome* o : all) (o->of.kind == Kind::nothing ? empty : loaded).push_back(o);
+    const std::size_t alarms = empty.size() - count(empty, is_right);
+    const Parameters p = parameters(loaded);
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name,
+                   empty.size(), alarms,
+                   empty.empty() ? "" : fmt::format("{:.1f} %", 100 * upper_bound_95(alarms, empty.size())),
+                   list(alarms_of(empty)), loaded.size(), percent(count(loaded, is_right), loaded.size()),
+                   count(loaded, Naming::alone), count(loaded, Naming::wrong) + count(loaded, Naming::beside),
+                   count(loaded, Naming::missed), percent(p.covered, p.n));
+  };
+  std::map<std::string, Outcomes> kinds;
+  Outcomes all;
+  for (const Outcome& o : outcomes) {
+    kinds[o.of.record_kind].push_back(&o);
+    kinds[o.of.flicker ? "with 1/f noise" : o.of.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(&o);
+    all.push_back(&o);
+  }
+  for (const auto& [name, of] : kinds) row(name, of);
+  row("all", all);
+  return text;
+}
+
+std::string groups_table(const std::vector<Outcome>& outcomes) {
+  std::string text = "| asked | n | named | beside another | something else | nothing |\n|---|--:|--:|--:|--:|--:|\n";
+  Outcomes all;
+  for (const Outcome& o : outcomes) all.push_back(&o);
+  const auto row = [&](const std::string& name, const Outcomes& g) {
+    const auto wrong = [](Naming naming) {
+      return [naming](const Outcome* o) { return !o->right && o->naming == naming; };
+    };
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} |\n", name, g.size(),
+                   percent(count(g, is_right), g.size()), count(g, wrong(Naming::beside)),
+                   count(g, wrong(Naming::wrong)), count(g, wrong(Naming::missed)));
+  };
+  for (const Outcomes& g : by_group(all)) row(g[0]->of.group, g);
+  row("all", all);
+  return text;
+}
+
+namespace {
+
+/// Intervals of effects that the ladder found.
+struct Coverage {
+  std::size_t n = 0, covered = 0;
+
+  void add(const Recovered& p) {
+    ++n;
+    covered += p.lower95 <= p.truth && p.truth <= p.upper95 ? 1u : 0u;
+  }
+};
+
+void add_coverage(std::string& text, const std::string& name, const Coverage& of) {
+  fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} |\n", name, of.n, of.covered,
+                 percent(of.covered, of.n));
+}
+
+std::string noise_of(const Case& c) {
+  return fmt::format("{} noise, {} scatter",
+                     c.flicker      ? "1/f"
+                     : c.colour > 0 ? "AR(1) 0.9"
+                                    : "white",
+                     c.wander > 0 ? "wandering" : "independent");
+}
+
+}  // namespace
+
+std::string coverage_table(const std::vector<Outcome>& outcomes) {
+  std::map<std::size_t, Coverage> by_count;
+  std::map<std::string, Coverage> by_noise, by_parameter;
+  Coverage all;
+  for (const Outcome& o : outcomes) {
+    for (const Recovered& p : o.parameters) {
+      all.add(p);
+      by_count[o.of.hidden.size()].add(p);
+      by_noise[noise_of(o.of)].add(p);
+      by_parameter[fmt::format("`{}` {}", p.key, p.parameter)].add(p);
+    }
+  }
+  std::string text = "| 95 % intervals after naming | n | hold the truth | |\n|---|--:|--:|--:|\n";
+  for (const auto& [count, of] : by_count) add_coverage(text, fmt::format("{} hidden", count), of);
+  for (const auto& [name, of] : by_noise) add_coverage(text, name, of);
+  for (const auto& [name, of] : by_parameter) add_coverage(text, name, of);
+  add_coverage(text, "all", all);
+  return text;
+}
+
+}  // namespace recovery
