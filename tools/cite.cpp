@@ -21,7 +21,7 @@ using namespace tribofit;
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kMethod =
     "The method\n"

@@ -1,7 +1,6 @@
 #include "figures_json.hpp"
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "json.hpp"
 
@@ -14,14 +13,14 @@ Json numbers(const std::vector<double>& values) {
   return rounded_list(values, kDigits);
 }
 
-double value_of(const nlohmann::json& json) {
+double value_of(const Json& json) {
   return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<double> values_of(const nlohmann::json& list) {
+std::vector<double> values_of(const Json& list) {
   std::vector<double> values;
   values.reserve(list.size());
-  for (const nlohmann::json& value : list) values.push_back(value_of(value));
+  for (const Json& value : list) values.push_back(value_of(value));
   return values;
 }
 
@@ -34,7 +33,7 @@ Json curve_json(const ErrorCurve& curve) {
                 numbers(curve.bin_max_relative));
 }
 
-ErrorCurve curve_from(const nlohmann::json& json) {
+ErrorCurve curve_from(const Json& json) {
   ErrorCurve curve;
   curve.law = json.at("law").get<std::string>();
   curve.protocol = json.at("protocol").get<std::string>();
@@ -63,15 +62,15 @@ std::string figures_text(const RunFigures& figures) {
                         numbers(figures.friction)));
 }
 
-RunFigures figures_from(const nlohmann::json& json) {
+RunFigures figures_from(const Json& json) {
   RunFigures figures;
   figures.bin_width = value_of(json.at("bin_width_mm_s"));
   figures.bin_samples = json.at("bin_samples").get<std::vector<std::size_t>>();
   figures.bin_friction = values_of(json.at("bin_friction"));
-  for (const nlohmann::json& curve : json.at("errors")) figures.errors.push_back(curve_from(curve));
+  for (const Json& curve : json.at("errors")) figures.errors.push_back(curve_from(curve));
   figures.spectrum_step = value_of(json.at("spectrum_step_hz"));
   figures.spectrum = values_of(json.at("spectrum_mm_s"));
-  for (const nlohmann::json& line : json.at("harmonics")) {
+  for (const Json& line : json.at("harmonics")) {
     figures.harmonics.push_back({value_of(line.at("frequency_hz")), value_of(line.at("amplitude_mm_s"))});
   }
   figures.time = values_of(json.at("time_s"));

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "figures_json.hpp"
 #include "ingest/content_hash.hpp"
+#include "json.hpp"
 #include "order.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -24,27 +24,27 @@ constexpr std::string_view kFigures = "\n  \"figures\": {";
 constexpr std::string_view kEnd = "\n}\n", kSeal = ",\n  \"checksum\": \"";
 
 /// A number, NaN for null and for what is not there.
-double number(const nlohmann::json& json, const char* key) {
+double number(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string text(const nlohmann::json& json, const char* key) {
+std::string text(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-std::size_t count(const nlohmann::json& json, const char* key) {
+std::size_t count(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
 }
 
-std::vector<std::string> texts(const nlohmann::json& json, const char* key) {
+std::vector<std::string> texts(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
-Conditions conditions_of(const nlohmann::json& json) {
+Conditions conditions_of(const Json& json) {
   return {{number(json, "radius_mm") * kMillimetre, text(json, "radius_source")},
           {number(json, "speed_rpm") * kRpm, text(json, "speed_source")},
           {number(json, "load_N"), text(json, "load_source")}};
@@ -55,7 +55,7 @@ RunStatus status_of(const std::string& name) {
   return name == "failed" ? RunStatus::failed : RunStatus::unreadable;
 }
 
-RunRecord record_of(const nlohmann::json& run) {
+RunRecord record_of(const Json& run) {
   RunRecord record;
   record.name = text(run, "name");
   record.file = text(run, "file");
@@ -65,12 +65,11 @@ RunRecord record_of(const nlohmann::json& run) {
   record.message = text(run, "message");
   record.conditions = conditions_of(run.at("stated"));
   if (run.at("repeat").is_number()) record.repeat = run.at("repeat").get<int>();
-  for (const nlohmann::json& other : run.at("others"))
-    record.others.push_back({text(other, "name"), text(other, "value")});
+  for (const Json& other : run.at("others")) record.others.push_back({text(other, "name"), text(other, "value")});
   return record;
 }
 
-ResultParameter parameter_of(const nlohmann::json& json) {
+ResultParameter parameter_of(const Json& json) {
   ResultParameter p;
   p.name = text(json, "name");
   p.unit = text(json, "unit");
@@ -78,7 +77,7 @@ ResultParameter parameter_of(const nlohmann::json& json) {
   p.value = number(json, "value");
   p.std_error = number(json, "std_error");
   p.systematic = json.at("systematic_error").is_null() ? 0 : number(json, "systematic_error");
-  const nlohmann::json& ci = json.at("ci95");
+  const Json& ci = json.at("ci95");
   const auto end = [&](std::size_t k) {
     return ci.at(k).is_number() ? ci.at(k).get<double>() : std::numeric_limits<double>::quiet_NaN();
   };
@@ -88,19 +87,19 @@ ResultParameter parameter_of(const nlohmann::json& json) {
   return p;
 }
 
-ResultFit fit_of(const nlohmann::json& json) {
+ResultFit fit_of(const Json& json) {
   ResultFit fit;
   fit.law = text(json, "law");
   fit.protocol = text(json, "protocol");
   fit.effects = texts(json, "effects");
-  for (const nlohmann::json& parameter : json.at("parameters")) fit.parameters.push_back(parameter_of(parameter));
-  for (const nlohmann::json& row : json.at("covariance")) {
-    for (const nlohmann::json& value : row) {
+  for (const Json& parameter : json.at("parameters")) fit.parameters.push_back(parameter_of(parameter));
+  for (const Json& row : json.at("covariance")) {
+    for (const Json& value : row) {
       fit.covariance.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
     }
   }
   fit.degrees_of_freedom = number(json, "degrees_of_freedom");
-  const nlohmann::json& error = json.at("error");
+  const Json& error = json.at("error");
   fit.rmse = number(error, "rmse");
   fit.held_out_rmse = number(error, "held_out_rmse");
   fit.mean_relative = number(error, "mean_relative");
@@ -113,7 +112,7 @@ ResultFit fit_of(const nlohmann::json& json) {
   return fit;
 }
 
-void read_stick_slip(const nlohmann::json& json, RunResult& result) {
+void read_stick_slip(const Json& json, RunResult& result) {
   result.cycles = count(json, "cycles");
   result.frequency = {number(json.at("frequency_hz"), "value"), number(json.at("frequency_hz"), "std_error")};
   result.amplitude = {number(json, "amplitude_mm_s"), number(json, "amplitude_std_error_mm_s")};
@@ -122,12 +121,12 @@ void read_stick_slip(const nlohmann::json& json, RunResult& result) {
   result.rms_velocity = number(json, "rms_velocity_mm_s");
 }
 
-RunResult result_of(const nlohmann::json& json) {
+RunResult result_of(const Json& json) {
   RunResult result;
   result.run = record_of(json.at("run"));
   if (json.contains("conditions")) result.conditions = conditions_of(json.at("conditions"));
   if (json.contains("trace")) {
-    const nlohmann::json& trace = json.at("trace");
+    const Json& trace = json.at("trace");
     if (trace.contains("friction_unit")) result.friction_unit = text(trace, "friction_unit");
     result.samples = count(trace, "samples");
     result.duration = number(trace, "duration_s");
@@ -135,7 +134,7 @@ RunResult result_of(const nlohmann::json& json) {
     if (trace.contains("checksum")) result.checksum = text(trace, "checksum");
   }
   if (json.contains("stick_slip")) read_stick_slip(json.at("stick_slip"), result);
-  for (const nlohmann::json& fit : json.at("fits")) result.fits.push_back(fit_of(fit));
+  for (const Json& fit : json.at("fits")) result.fits.push_back(fit_of(fit));
   result.best = json.contains("best") && json.at("best").is_number() ? count(json, "best") : 0;
   if (result.best >= result.fits.size()) result.best = 0;
   result.warnings = texts(json, "warnings");
@@ -160,17 +159,17 @@ std::string_view line_of_figures(std::string_view text) {
 }
 
 /// The object in a sealed file without its figures, which are many numbers that few ask for; or nothing.
-std::optional<nlohmann::json> object_in(const std::string& path) {
+std::optional<Json> object_in(const std::string& path) {
   std::string bytes = bytes_of(path);
   if (!is_whole(bytes)) return std::nullopt;
   const std::string_view figures = line_of_figures(bytes);
   if (!figures.empty()) bytes.erase(static_cast<std::size_t>(figures.data() - bytes.data()), figures.size());
-  nlohmann::json json = nlohmann::json::parse(bytes, nullptr, false);
+  Json json = Json::parse(bytes, nullptr, false);
   if (!json.is_object()) return std::nullopt;
   return json;
 }
 
-nlohmann::json campaign_object(const std::string& folder) {
+Json campaign_object(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / campaign_name).string();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
@@ -215,7 +214,7 @@ std::optional<RunRecord> read_record(const std::string& path) {
     const auto json = object_in(path);
     if (!json) return std::nullopt;
     return record_of(json->at("run"));
-  } catch (const nlohmann::json::exception&) {  // whole, but of another make
+  } catch (const Json::exception&) {  // whole, but of another make
     return std::nullopt;
   }
 }
@@ -227,10 +226,10 @@ std::optional<std::string> folder_of_campaign(const std::string& results) {
 }
 
 ResultReader::ResultReader(std::string folder) : folder_(std::move(folder)) {
-  const nlohmann::json campaign = campaign_object(folder_);
+  const Json campaign = campaign_object(folder_);
   traces_ = text(campaign, "folder");
   problems_ = texts(campaign, "problems");
-  for (const nlohmann::json& run : campaign.at("runs")) {
+  for (const Json& run : campaign.at("runs")) {
     runs_.push_back({text(run, "name"), text(run, "file"), text(run, "settings")});
   }
 }
@@ -243,7 +242,7 @@ std::optional<RunResult> ResultReader::read(std::size_t k) const {
     RunResult result = result_of(*json);
     result.position = k;
     return result;
-  } catch (const nlohmann::json::exception&) {  // whole, but of another make: as if it were not there
+  } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
     return std::nullopt;
   }
 }
@@ -254,8 +253,8 @@ std::optional<RunFigures> ResultReader::figures(std::size_t k) const {
   if (line.empty() || !is_whole(bytes)) return std::nullopt;
   const std::size_t begin = line.find('{'), end = line.rfind('}') + 1;
   try {
-    return figures_from(nlohmann::json::parse(line.substr(begin, end - begin)));
-  } catch (const nlohmann::json::exception&) {
+    return figures_from(Json::parse(line.substr(begin, end - begin)));
+  } catch (const Json::exception&) {
     return std::nullopt;
   }
 }

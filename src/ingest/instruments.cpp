@@ -17,7 +17,7 @@
 namespace tribofit {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 class InstrumentsReader {
  public:

@@ -2,6 +2,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
+
+// LAPACK, which Ceres brings: Eigen's own solver for matrices without symmetry takes ten seconds to compile.
+extern "C" void dgeev_(const char* want_left, const char* want_right, const int* n, double* matrix, const int* rows,
+                       double* real, double* imaginary, double* left, const int* left_rows, double* right,
+                       const int* right_rows, double* work, const int* work_size, int* info);
 
 namespace tribofit {
 
@@ -14,7 +20,17 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
 }
 
 Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) {
-  return Eigen::EigenSolver<MatrixXd>(matrix, false).eigenvalues();
+  MatrixXd overwritten = matrix;
+  const int n = static_cast<int>(matrix.rows()), unused = 1, work_size = 4 * n;
+  VectorXd real(n), imaginary(n), work(work_size);
+  int info = 0;
+  dgeev_("N", "N", &n, overwritten.data(), &n, real.data(), imaginary.data(), nullptr, &unused, nullptr, &unused,
+         work.data(), &work_size, &info);
+  if (info != 0) return Eigen::VectorXcd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  Eigen::VectorXcd values(n);
+  values.real() = real;
+  values.imag() = imaginary;
+  return values;
 }
 
 MatrixXd solve_symmetric(const MatrixXd& matrix, const MatrixXd& right) {

@@ -126,7 +126,7 @@ TEST(Figures, ComeBackFromTheirText) {
   const RunFigures figures = figures_of(analysed_twin());
   const std::string text = figures_text(figures);
   EXPECT_LT(text.size(), 14000u);
-  const RunFigures back = figures_from(nlohmann::json::parse(text));
+  const RunFigures back = figures_from(nlohmann::ordered_json::parse(text));
   EXPECT_EQ(back.bin_samples, figures.bin_samples);
   ASSERT_EQ(back.errors.size(), 4u);
   EXPECT_NEAR(back.errors[2].fitted[7], figures.errors[2].fitted[7], 1e-6);

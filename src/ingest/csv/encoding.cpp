@@ -27,6 +27,12 @@ std::size_t utf8_sequence(std::string_view text, std::size_t i) {
   for (std::size_t k = 1; k < length && i + k < text.size(); ++k) {
     if ((byte_at(text, i + k) & 0xC0) != 0x80) return 0;
   }
+  if (length > 2 && i + 1 < text.size()) {  // neither longer than need be, nor a half of UTF-16, nor beyond Unicode
+    const unsigned char second = byte_at(text, i + 1);
+    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second >= 0xA0) || (lead == 0xF0 && second < 0x90) ||
+        (lead == 0xF4 && second >= 0x90))
+      return 0;
+  }
   return length;
 }
 
@@ -146,6 +152,17 @@ std::string to_utf8(std::string_view text, Encoding encoding) {
       break;
   }
   return std::string(text);
+}
+
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_sequence(text, i);
+    const bool is_letter = length > 0 && i + length <= text.size();
+    valid += is_letter ? text.substr(i, length) : "\xEF\xBF\xBD";
+    i += is_letter ? length : 1;
+  }
+  return valid;
 }
 
 std::size_t byte_order_mark(std::string_view head) {

@@ -23,6 +23,9 @@ Encoding guess_encoding(std::string_view head);
 /// `text` in UTF-8. What cannot be decoded becomes '?'.
 std::string to_utf8(std::string_view text, Encoding encoding);
 
+/// The text with U+FFFD for every byte that is not of a letter in UTF-8: names of files need not be.
+std::string valid_utf8(std::string_view text);
+
 /// Length of the UTF-8 byte order mark at the start, 0 or 3.
 std::size_t byte_order_mark(std::string_view head);
 

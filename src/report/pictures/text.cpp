@@ -4,7 +4,8 @@
 
 #include <array>
 #include <cstddef>
-#include <nlohmann/json.hpp>
+
+#include "ingest/csv/encoding.hpp"
 
 namespace tribofit {
 namespace {
@@ -39,10 +40,7 @@ double width_of_character(std::string_view character) {
 }  // namespace
 
 std::string one_line(std::string_view text) {
-  // Names of files need not be valid UTF-8; pictures are.
-  const nlohmann::json json = std::string(text);
-  auto out =
-      nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).get<std::string>();
+  std::string out = valid_utf8(text);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const auto byte = static_cast<unsigned char>(out[k]);
     const bool c1 = byte == 0xC2 && k + 1 < out.size() && static_cast<unsigned char>(out[k + 1]) < 0xA0;
