@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace {
 
@@ -34,6 +35,34 @@ std::string nearest_option(const CLI::App& app, const std::string& message) {
   const std::string nearest = tribofit::nearest_name(word, known);
   constexpr std::size_t kAlike = 4;  // two dashes and two letters: anything less is not a misspelling
   return nearest.substr(0, kAlike) == word.substr(0, kAlike) ? "; did you mean " + nearest + "?" : "";
+}
+
+/// The words in "TEXT:{svg,pdf,png}".
+std::vector<std::string> words_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  return tribofit::split(std::string_view(type).substr(begin + 1, end - begin - 1), ',');
+}
+
+void add_typables(const CLI::App& app, const std::vector<std::string>& verb, std::vector<Command::Typable>& out) {
+  Command::Typable own{verb};
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string> words = words_of(*option);
+    if (option->get_positional()) own.verbs = words;  // typed as a verb is
+    for (const std::string& name : option->get_lnames()) {
+      own.options.push_back("--" + name);
+      if (!words.empty()) own.words[own.options.back()] = words;
+    }
+  }
+  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
+  for (const CLI::App* sub : subcommands) own.verbs.push_back(sub->get_name());
+  out.push_back(std::move(own));
+  for (const CLI::App* sub : subcommands) {
+    std::vector<std::string> longer = verb;
+    longer.push_back(sub->get_name());
+    add_typables(*sub, longer, out);
+  }
 }
 
 ExitStatus wrong_usage(const CLI::App& app, const std::string& text) {
@@ -161,6 +190,12 @@ std::vector<Command::Typed> Command::typed() const {
 
 bool Command::has_option(const char* name) const {
   return app_->get_option_no_throw(name) != nullptr;
+}
+
+std::vector<Command::Typable> Command::typables() const {
+  std::vector<Typable> out;
+  add_typables(*app_, {}, out);
+  return out;
 }
 
 void Command::refuse_empty_values() const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,15 @@ class Command {
   };
   std::vector<Typed> typed() const;
   bool has_option(const char* name) const;
+
+  /// What can be typed after a verb.
+  struct Typable {
+    std::vector<std::string> verb;                               ///< {"study", "speed"}; empty: the command itself
+    std::vector<std::string> verbs = {}, options = {};           ///< its own verbs; "--radius", ...
+    std::map<std::string, std::vector<std::string>> words = {};  ///< that an option takes, where they are few
+  };
+  /// Of this command, then of each verb and the verbs of each.
+  std::vector<Typable> typables() const;
 
   /// Usage error: an option given an empty value.
   void refuse_empty_values() const;

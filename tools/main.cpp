@@ -47,6 +47,7 @@ ExitStatus run(int argc, char** argv) {
     add_simulate(identify);
     add_study(identify);
     add_help(identify);
+    add_completion(identify);
   });
 }
 

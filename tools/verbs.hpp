@@ -16,3 +16,4 @@ void add_cite(const Command& app);
 void add_simulate(const Command& app);
 void add_study(const Command& app);
 void add_help(const Command& app);
+void add_completion(const Command& app);

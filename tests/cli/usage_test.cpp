@@ -157,14 +157,14 @@ TEST(Cite, TellsARunAndItsSources) {
             0);
   const Outcome cited = shop.identify("cite '" + result + "'");
   EXPECT_EQ(cited.status, 0);
-  const nlohmann::json json = nlohmann::json::parse(contents(result));
-  const nlohmann::json fit = json.at("fits").at(json.at("best").get<std::size_t>());
+  const nlohmann::json run = nlohmann::json::parse(contents(result));
+  const nlohmann::json fit = run.at("fits").at(run.at("best").get<std::size_t>());
   for (const auto& parameter : fit.at("parameters")) {
     const std::string value = std::to_string(parameter.at("value").get<double>());
     EXPECT_THAT(cited.out, HasSubstr(parameter.at("name").get<std::string>() + " = (" + value.substr(0, 5)));
   }
   EXPECT_THAT(cited.out, AllOf(HasSubstr("100000 samples"), HasSubstr("15 mm"), HasSubstr("Wear 24 (1973) 381"),
-                               HasSubstr(json.at("trace").at("checksum").get<std::string>())));
+                               HasSubstr(run.at("trace").at("checksum").get<std::string>())));
   EXPECT_EQ(shop.identify("cite runot").status, 2);
   EXPECT_THAT(shop.identify("cite runot").err, HasSubstr("did you mean runout?"));
   EXPECT_EQ(shop.identify("cite '" TRIBOFIT_SOURCE_DIR "/data/example.json'").status, 3);
