@@ -53,16 +53,6 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   return out;
 }
 
-/// What is said of a trace that holds the same values as one of the others: a copy of a record is no repeat of it, and
-/// confirms nothing. Empty where there is none. A checksum of 0 is not known.
-std::string copy_of(const Identification& trace, const std::vector<const Identification*>& others) {
-  for (const Identification* other : others) {
-    if (trace.checksum == 0 || trace.checksum != other->checksum) continue;
-    return trace.path + " holds the same values as " + other->path + ": identical files are one run, it counts once";
-  }
-  return {};
-}
-
 }  // namespace
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
@@ -106,32 +96,12 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     return diagnosis::prepare_to_diagnose(again, options);
   };
   std::vector<diagnosis::PreparedTrace> traces;
-  std::vector<std::string> copies;
-  for (const TraceInput& input : inputs) {
-    diagnosis::PreparedTrace next = prepared(input);
-    std::vector<const Identification*> others;
-    for (const diagnosis::PreparedTrace& other : traces) others.push_back(&other.trace);
-    std::string copy = copy_of(next.trace, others);
-    if (copy.empty()) {
-      traces.push_back(std::move(next));
-    } else {
-      copies.push_back(std::move(copy));
-    }
-  }
+  for (const TraceInput& input : inputs) traces.push_back(prepared(input));
+  const std::vector<std::string> copies = diagnosis::exclude_copies(traces);
   DiagnosedTraces out = diagnosis::diagnose_traces(std::move(traces), options, more.diagnosis);
-  std::vector<const Identification*> diagnosed;
-  for (const Identification& trace : out.traces) diagnosed.push_back(&trace);
-  for (const TraceInput& input : more.confirm) {
-    if (out.rungs.empty()) break;
-    const Identification other = prepared(input).trace;
-    std::string copy = copy_of(other, diagnosed);
-    if (copy.empty()) {
-      out.diagnosis.confirmations.push_back(diagnosis::confirm(other, out.rungs));
-    } else {
-      copies.push_back(std::move(copy));
-    }
-  }
-  for (std::string& copy : copies) out.traces.front().warnings.push_back(std::move(copy));
+  out.traces.front().warnings.insert(out.traces.front().warnings.end(), copies.begin(), copies.end());
+  if (out.rungs.empty()) return out;
+  for (const TraceInput& input : more.confirm) diagnosis::add_confirmation(prepared(input).trace, out);
   diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);
   return out;
 }

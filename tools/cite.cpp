@@ -103,10 +103,8 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
     text += fmt::format(" The error on cycles held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",
                         error.get<double>(), fit.at("floor_rmse").get<double>());
   }
-  for (const Json& message : fit.at("messages")) {
-    const std::string note = message.get<std::string>();
-    if (note.find("conditional on a law that does not hold") != std::string::npos) text += " Note: " + note + ".";
-  }
+  if (fit.at("conditional").get<bool>())
+    text += " The law does not hold to the noise floor: errors and intervals are conditional on it.";
   const auto diagnosis = result.find("diagnosis");
   if (diagnosis != result.end() && diagnosis->is_object())
     text += fmt::format(" Verdict of the diagnosis: {}.", diagnosis->at("verdict").get<std::string>());

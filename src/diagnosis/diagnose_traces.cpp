@@ -175,6 +175,13 @@ Fit with_values_of_record(const Fit& joint, const Identification& trace) {
   return out;
 }
 
+/// What is said of a trace that holds the same values as another. Empty where it does not. A checksum of 0 is not
+/// known.
+std::string copy_of(const Identification& trace, const Identification& other) {
+  if (trace.checksum == 0 || trace.checksum != other.checksum) return {};
+  return trace.path + " holds the same values as " + other.path + ": identical files are one run, it counts once";
+}
+
 }  // namespace
 
 EffectRoles roles_of(const std::vector<Effect>& effects) {
@@ -237,6 +244,22 @@ void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis) 
   }
 }
 
+std::vector<std::string> exclude_copies(std::vector<PreparedTrace>& traces) {
+  std::vector<std::string> copies;
+  std::vector<PreparedTrace> kept;
+  for (PreparedTrace& next : traces) {
+    std::string copy;
+    for (std::size_t k = 0; k < kept.size() && copy.empty(); ++k) copy = copy_of(next.trace, kept[k].trace);
+    if (copy.empty()) {
+      kept.push_back(std::move(next));
+    } else {
+      copies.push_back(std::move(copy));
+    }
+  }
+  traces = std::move(kept);
+  return copies;
+}
+
 Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs) {
   Confirmation out;
   out.path = trace.path;
@@ -249,6 +272,16 @@ Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs)
   const Comparison comparison = compare_held_out(last, base);
   out.p_value = comparison.first_better ? 0.5 * comparison.p_value : 1 - 0.5 * comparison.p_value;
   return out;
+}
+
+void add_confirmation(const Identification& trace, DiagnosedTraces& diagnosed) {
+  for (const Identification& other : diagnosed.traces) {
+    std::string copy = copy_of(trace, other);
+    if (copy.empty()) continue;
+    diagnosed.traces.front().warnings.push_back(std::move(copy));
+    return;
+  }
+  diagnosed.diagnosis.confirmations.push_back(confirm(trace, diagnosed.rungs));
 }
 
 }  // namespace tribofit::diagnosis

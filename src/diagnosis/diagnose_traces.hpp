@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -30,6 +31,9 @@ EffectRoles roles_of(const std::vector<Effect>& effects);
 /// within every cycle is freed of it.
 PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options);
 
+/// Leaves one of those that hold the same values: a copy of a record is no repeat of it. Returns what was left out.
+std::vector<std::string> exclude_copies(std::vector<PreparedTrace>& traces);
+
 /// Diagnoses the traces together. A trace without what `options.effects` need is refused, and nothing is diagnosed.
 /// Corrections of the plateau that nobody asked for are taken back where the effect that was found explains it.
 DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const IdentifyOptions& options,
@@ -37,6 +41,10 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
 
 /// The last rung against the base law on a trace that was held back, every parameter frozen.
 Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs);
+
+/// Adds how the last rung does on a trace that was held back. A copy of a trace that was diagnosed confirms nothing: it
+/// is only warned of.
+void add_confirmation(const Identification& trace, DiagnosedTraces& diagnosed);
 
 /// A confirmation that fails vetoes what was found: on a run that was held back the last rung is no better than the
 /// base law, or no better than chance would have it.

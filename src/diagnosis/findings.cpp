@@ -174,7 +174,8 @@ bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judge
 }
 
 /// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
-/// of what is left above the noise: at the noise floor nothing is. Or its bounds alone.
+/// of what is left above the noise floor (at the noise floor nothing is left). Or its bounds alone, also at the noise
+/// floor: another effect may take its place there.
 bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;

@@ -40,6 +40,10 @@ bool well_above_floor(const Fit& fit) {
   return fit.error.held_out_rmse > kWellAbove * fit.floor.rmse;
 }
 
+bool is_conditional(const Fit& fit) {
+  return well_above_floor(fit) && over_floor(fit) > 1;
+}
+
 double residual_unit(const Fit& fit) {
   if (fit.floor.rmse > 0) return fit.floor.rmse;
   return fit.error.rmse > 0 ? fit.error.rmse : 1;

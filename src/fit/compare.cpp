@@ -70,7 +70,8 @@ double held_out_std_error(const Fit& fit) {
   const std::size_t n = fit.cycle_squares.size();
   double counts = 0;
   for (const double count : fit.cycle_counts) counts += count;
-  if (n < 3 || !(counts > 0) || !(fit.error.held_out_rmse > 0)) return 0;
+  if (n < 3 || !(counts > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (!(fit.error.held_out_rmse > 0)) return 0;
   std::vector<double> squares(n);
   for (std::size_t c = 0; c < n; ++c) squares[c] = fit.cycle_squares[c] * static_cast<double>(n) / counts;
   return standard_error_of_mean(squares).std_error / (2 * fit.error.held_out_rmse);

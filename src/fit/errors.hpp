@@ -34,9 +34,13 @@ class FullRecord {
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 
-/// Variance that 1/f noise has in every e-fold of time, from how the noise in stick grows with the time it is taken over;
-/// 0 where it does not grow.
-double flicker_in_stick(const Motion& motion, const Segmentation& segmentation);
+/// 1/f noise as the stick shows it.
+struct FlickerInStick {
+  double variance = 0;  ///< in every e-fold of time; 0: none, or the sticks are too short to show it
+  double samples = 0;   ///< mean length of the stretches that noise was taken over
+};
+/// From how the noise in stick grows from shorter stretches to longer ones.
+FlickerInStick flicker_in_stick(const Motion& motion, const Segmentation& segmentation);
 
 /// What a model leaves on every sample.
 struct SampleErrors {

@@ -128,10 +128,11 @@ double slow_noise_between_slips(const FitContext& context, const std::vector<dou
     squares += data.weight[i] * data.friction[i] * data.friction[i];
     weights += data.weight[i];
   }
-  const double seen = kPartBesideParabola * static_cast<double>(kLongestNoiseStretch);
   const auto& [motion, segmentation] = context.records[0];
-  const double longer = std::max(1.0, static_cast<double>(motion->size()) / seen);
-  const double most = flicker_in_stick(*motion, *segmentation) * std::log(longer);
+  const FlickerInStick flicker = flicker_in_stick(*motion, *segmentation);
+  if (!(flicker.variance > 0)) return 0;
+  const double seen = kPartBesideParabola * flicker.samples;
+  const double most = flicker.variance * std::log(std::max(1.0, static_cast<double>(motion->size()) / seen));
   return std::sqrt(std::min(most, std::min(slow.noise.variance_within(), slow.mean_square) * squares / weights));
 }
 

@@ -45,6 +45,12 @@ double pooled_noise(const std::vector<Remainder>& parts) {
   return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
+double mean_count(const std::vector<Remainder>& parts) {
+  double count = 0;
+  for (const Remainder& part : parts) count += part.count / static_cast<double>(parts.size());
+  return count;
+}
+
 bool is_spoilt(const Motion& motion, const SampleRange& samples) {
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     if (motion.has_fault(i, SampleFault::friction)) return true;
@@ -136,12 +142,16 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
 
 }  // namespace
 
-double flicker_in_stick(const Motion& motion, const Segmentation& segmentation) {
-  const std::vector<Remainder> longer = stick_residuals(motion, segmentation),
-                               shorter =
-                                   stick_residuals(motion, segmentation, kLongestNoiseStretch / kShorterNoiseStretch);
+FlickerInStick flicker_in_stick(const Motion& motion, const Segmentation& segmentation) {
+  const auto longer = stick_residuals(motion, segmentation);
+  const auto shorter = stick_residuals(motion, segmentation, kLongestNoiseStretch / kShorterNoiseStretch);
+  FlickerInStick flicker;
+  flicker.samples = mean_count(longer);
+  const double ratio = flicker.samples / mean_count(shorter);
+  if (!(ratio >= kLeastStretchRatio)) return flicker;
   const double growth = std::pow(pooled_noise(longer), 2) - std::pow(pooled_noise(shorter), 2);
-  return std::max(0.0, growth) / std::log(static_cast<double>(kShorterNoiseStretch));
+  flicker.variance = std::max(0.0, growth) / std::log(ratio);
+  return flicker;
 }
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {

@@ -21,6 +21,8 @@ inline constexpr double kFewestFreeVariances = 5;
 /// Whether noise is 1/f noise shows over stretches so much shorter: a quarter of 200 samples is beyond the memory of an
 /// amplifier that follows within ten, and leaves two octaves.
 inline constexpr std::size_t kShorterNoiseStretch = 4;
+/// An octave between the two; with less, as in short sticks, a growth is what few stretches make of white noise.
+inline constexpr double kLeastStretchRatio = 2;
 
 /// A parabola over a stretch takes away what is slower than a third of it.
 inline constexpr double kPartBesideParabola = 1.0 / 3;

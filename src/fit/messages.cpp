@@ -33,7 +33,7 @@ void add_correlations(Fit& fit) {
 
 /// Errors are those of a law that holds.
 void add_condition(Fit& fit) {
-  if (!well_above_floor(fit) || !(over_floor(fit) > 1)) return;
+  if (!is_conditional(fit)) return;
   fit.messages.push_back(fmt::format(
       "errors and intervals are conditional on a law that does not hold: the held-out error is {:.3g} times "
       "the noise floor",

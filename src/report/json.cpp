@@ -43,13 +43,14 @@ Json fit_json(const Fit& fit, const Motion& motion) {
                             fit.error.max_relative, "held_out_rmse", fit.error.held_out_rmse);
   const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "slow_noise", fit.floor.slow_noise,
                             "source", fit.floor.source);
-  return object(
-      "law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects", fit.model.effect_keys(),
-      "effect_names", fit.model.effect_names(), "parameters", list_of(fit.parameters, parameter), "error", error,
-      "floor_rmse", fit.floor.rmse, "converged", fit.converged, "messages", fit.messages, "floor", floor, "explained",
-      fit.explained, "stick_creep_rmse_mm_s", fit.stick_rmse / kMillimetre, "fastest_mm_s", fit.fastest / kMillimetre,
-      "samples", fit.observations, "cycles", fit.cycles, "correlations", list_of(fit.correlations, correlation),
-      "covariance", covariance_json(fit), "degrees_of_freedom", fit.degrees_of_freedom);
+  return object("law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects",
+                fit.model.effect_keys(), "effect_names", fit.model.effect_names(), "parameters",
+                list_of(fit.parameters, parameter), "error", error, "floor_rmse", fit.floor.rmse, "converged",
+                fit.converged, "conditional", is_conditional(fit), "messages", fit.messages, "floor", floor,
+                "explained", fit.explained, "stick_creep_rmse_mm_s", fit.stick_rmse / kMillimetre, "fastest_mm_s",
+                fit.fastest / kMillimetre, "samples", fit.observations, "cycles", fit.cycles, "correlations",
+                list_of(fit.correlations, correlation), "covariance", covariance_json(fit), "degrees_of_freedom",
+                fit.degrees_of_freedom);
 }
 
 Json spread_json(const SlipSpread& spread) {

@@ -2,12 +2,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 // LAPACK, which Ceres brings: Eigen's own solver for matrices without symmetry takes ten seconds to compile.
 extern "C" void dgeev_(const char* want_left, const char* want_right, const int* n, double* matrix, const int* rows,
                        double* real, double* imaginary, double* left, const int* left_rows, double* right,
-                       const int* right_rows, double* work, const int* work_size, int* info);
+                       const int* right_rows, double* work, const int* work_size, int* info, std::size_t letters_left,
+                       std::size_t letters_right);
 
 namespace tribofit {
 
@@ -20,12 +22,13 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
 }
 
 Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) {
+  if (matrix.size() == 0) return {};
   MatrixXd overwritten = matrix;
   const int n = static_cast<int>(matrix.rows()), unused = 1, work_size = 4 * n;
   VectorXd real(n), imaginary(n), work(work_size);
   int info = 0;
   dgeev_("N", "N", &n, overwritten.data(), &n, real.data(), imaginary.data(), nullptr, &unused, nullptr, &unused,
-         work.data(), &work_size, &info);
+         work.data(), &work_size, &info, 1, 1);
   if (info != 0) return Eigen::VectorXcd::Constant(n, std::numeric_limits<double>::quiet_NaN());
   Eigen::VectorXcd values(n);
   values.real() = real;

@@ -89,7 +89,7 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
   if (!out.reason.empty()) return out;
   const bool by_load = motion.friction_kind == FrictionKind::coefficient && !rig.per_unit_load;
   out.machine = {rig.to_rig(), fit.model, fit.values(), by_load ? rig.load : 1, radius.value, speed};
-  if (well_above_floor(fit) && over_floor(fit) > 1) out.law_over_floor = over_floor(fit);
+  if (is_conditional(fit)) out.law_over_floor = over_floor(fit);
   out.covariance.friction = fit.covariance;
   out.covariance.rig.assign(rig.covariance.begin(), rig.covariance.end());
   const bool finite =

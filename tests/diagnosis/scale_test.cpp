@@ -146,7 +146,8 @@ TEST(SlowNoise, AWrongLawDoesNotRaiseTheNoiseFloor) {
   for (int seed = 1; seed <= kRecords; ++seed) {
     const Floor floor = floor_of(CoulombLaw{}, mu, static_cast<std::uint64_t>(seed));
     EXPECT_NEAR(floor.noise, 0.003, 0.0005) << seed;
-    raised += floor.rmse > 1.1 * floor.noise ? 1 : 0;
+    EXPECT_NEAR(std::sqrt(floor.rmse * floor.rmse - floor.slow_noise * floor.slow_noise), 0.003, 0.0005) << seed;
+    raised += floor.slow_noise > 0 ? 1 : 0;  // all noise is white
   }
   EXPECT_LE(raised, 2);
 }

@@ -141,6 +141,14 @@ TEST(PictureText, IsOneLineOfValidCharacters) {
                      "d"),
             "a b c  d");
   EXPECT_EQ(one_line("\xff'\\"), "\xEF\xBF\xBD'\\");
+  // The longest forms, a half of UTF-16, what is beyond Unicode and a letter that is cut off are none (RFC 3629).
+  const std::string bad = "\xEF\xBF\xBD";
+  EXPECT_EQ(one_line("\xC0\xAF"), bad + bad);
+  EXPECT_EQ(one_line("\xE0\x80\xAF"), bad + bad + bad);
+  EXPECT_EQ(one_line("\xED\xA0\x80"), bad + bad + bad);
+  EXPECT_EQ(one_line("\xF4\x90\x80\x80"), bad + bad + bad + bad);
+  EXPECT_EQ(one_line("v\xCF"), "v" + bad);
+  EXPECT_EQ(one_line("\xCE\xBC \xE2\x82\xAC \xF0\x9F\x98\x80"), "\xCE\xBC \xE2\x82\xAC \xF0\x9F\x98\x80");
 }
 
 TEST(PictureText, IsCutAtWhatIsSetLowAndHigh) {
