@@ -122,7 +122,7 @@ PooledValue pool(std::string name, std::string unit, std::span<const double> val
   out.std_error = std::sqrt(mean.covariance(0, 0));
   out.statistical = mean.statistical(0);
   out.between = n > 1 ? mean.between : kNaN;
-  const double half = (n > 1 ? t_quantile_95(mean.degrees_of_freedom) : 1.96) * out.std_error;
+  const double half = (n > 1 ? t_quantile_95(mean.degrees_of_freedom) : kNormalQuantile95) * out.std_error;
   out.lower95 = out.value - half;
   out.upper95 = out.value + half;
   out.mean = y.mean();

@@ -14,6 +14,7 @@
 #include "instrument_limits.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::diagnosis {
 namespace {
@@ -57,8 +58,8 @@ EffectFinding finding_of(const EffectInfo& info, const FoundBeforeFit& found) {
     parameter.effect = info.key;
     parameter.value = found.values[k].value;
     parameter.std_error = found.values[k].std_error;
-    parameter.lower95 = parameter.value - 1.96 * parameter.std_error;
-    parameter.upper95 = parameter.value + 1.96 * parameter.std_error;
+    parameter.lower95 = parameter.value - kNormalQuantile95 * parameter.std_error;
+    parameter.upper95 = parameter.value + kNormalQuantile95 * parameter.std_error;
     parameter.profile_lower95 = parameter.profile_upper95 = kNotFitted;
     finding.parameters.push_back(parameter);
   }

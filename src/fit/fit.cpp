@@ -19,6 +19,7 @@
 #include "profile.hpp"
 #include "stick.hpp"
 #include "systematic.hpp"
+#include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit {
@@ -168,11 +169,10 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const N
 
 /// Adds an error that all cycles share to those from cycle to cycle.
 void widen(double error, FitParameter& p) {
-  constexpr double kNormal95 = 1.96;
   if (!(error > 0) || !std::isfinite(p.std_error)) return;
   const bool positive = p.lower95 >= 0;
-  p.upper95 = p.value + std::hypot(p.upper95 - p.value, kNormal95 * error);
-  p.lower95 = p.value - std::hypot(p.value - p.lower95, kNormal95 * error);
+  p.upper95 = p.value + std::hypot(p.upper95 - p.value, kNormalQuantile95 * error);
+  p.lower95 = p.value - std::hypot(p.value - p.lower95, kNormalQuantile95 * error);
   if (positive) p.lower95 = std::max(p.lower95, 0.0);
   p.std_error = std::hypot(p.std_error, error);
 }

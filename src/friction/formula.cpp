@@ -12,6 +12,7 @@
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -36,21 +37,15 @@ constexpr std::array<Variable, 8> kVariables = {{{"v", "mm/s", 1e3},
 /// A parameter of this name is the frequency of a line.
 constexpr std::string_view kLineFrequency = "f";
 
-std::string trim(std::string_view text) {
-  const auto begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string_view::npos) return {};
-  const auto end = text.find_last_not_of(" \t\r\n");
-  return std::string(text.substr(begin, end - begin + 1));
-}
-
-std::vector<std::string> split(std::string_view text, char separator) {
+/// Parts between separators that stand in no bracket.
+std::vector<std::string> split_outside_brackets(std::string_view text, char separator) {
   std::vector<std::string> parts;
   std::size_t depth = 0, begin = 0;
   for (std::size_t i = 0; i <= text.size(); ++i) {
     if (i < text.size() && (text[i] == '[' || text[i] == '(')) ++depth;
     if (i < text.size() && (text[i] == ']' || text[i] == ')') && depth > 0) --depth;
     if (i == text.size() || (text[i] == separator && depth == 0)) {
-      parts.push_back(trim(text.substr(begin, i - begin)));
+      parts.emplace_back(trimmed(text.substr(begin, i - begin)));
       begin = i + 1;
     }
   }
@@ -106,11 +101,11 @@ Parameter read_start(const std::string& name, const std::string& value, const st
   if (const auto open = value.find('['); open != std::string::npos) {
     if (value.back() != ']') reject("the bounds of '" + name + "' lack a closing bracket", text);
     bounds = value.substr(open + 1, value.size() - open - 2);
-    number = trim(value.substr(0, open));
+    number = trimmed(value.substr(0, open));
   }
   char* end = nullptr;
   const double plain = std::strtod(number.c_str(), &end);
-  const std::string unit_text = trim(end);
+  const std::string unit_text(trimmed(end));
   if (end == number.c_str() || !std::isfinite(plain)) reject("'" + name + "' has no number as its start", text);
   double factor = 1;
   if (!unit_text.empty()) {
@@ -139,7 +134,7 @@ Parameter read_start(const std::string& name, const std::string& value, const st
     parameter.upper = reach;
   }
   if (!bounds.empty()) {
-    const std::vector<std::string> ends = split(bounds, ',');
+    const std::vector<std::string> ends = split_outside_brackets(bounds, ',');
     char *end_low = nullptr, *end_high = nullptr;
     if (ends.size() == 2) {
       parameter.lower = std::strtod(ends[0].c_str(), &end_low) * factor;
@@ -203,10 +198,10 @@ void refuse_name(const std::string& name, const std::string& text) {
 /// Parameters with their starts: what stands after the semicolon.
 std::vector<Parameter> read_parameters(std::string_view starts, const std::string& text) {
   std::vector<Parameter> parameters;
-  for (const std::string& part : split(starts, ',')) {
+  for (const std::string& part : split_outside_brackets(starts, ',')) {
     if (part.empty()) continue;
     const auto assign = part.find('=');
-    const std::string key = trim(part.substr(0, assign));
+    const std::string key(trimmed(std::string_view(part).substr(0, assign)));
     if (assign == std::string::npos || key.empty()) reject("'" + part + "' is not 'parameter=start'", text);
     for (const Variable& variable : kVariables) {
       if (key == variable.name) reject("'" + key + "' is a variable and cannot be a parameter", text);
@@ -214,7 +209,7 @@ std::vector<Parameter> read_parameters(std::string_view starts, const std::strin
     for (const Parameter& known : parameters) {
       if (known.name == key) reject("the parameter '" + key + "' is given twice", text);
     }
-    parameters.push_back(read_start(key, trim(part.substr(assign + 1)), text));
+    parameters.push_back(read_start(key, std::string(trimmed(std::string_view(part).substr(assign + 1))), text));
   }
   return parameters;
 }
@@ -241,13 +236,13 @@ void check_names(const UsedNames& used, const std::vector<Parameter>& parameters
 
 Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
   Parsed& p = *parsed_;
-  p.text = trim(given);
+  p.text = trimmed(given);
   const auto semicolon = p.text.find(';');
   const std::string definition = p.text.substr(0, semicolon);
   const auto equals = definition.find('=');
   if (equals == std::string::npos) reject("there is no '=' between its name and its expression", p.text);
-  p.name = trim(definition.substr(0, equals));
-  p.expression = trim(definition.substr(equals + 1));
+  p.name = trimmed(definition.substr(0, equals));
+  p.expression = trimmed(definition.substr(equals + 1));
   refuse_assignment(p.expression, p.text);
   refuse_name(p.name, p.text);
   if (semicolon != std::string::npos) {

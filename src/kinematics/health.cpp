@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
@@ -348,8 +349,7 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
   }
   if (!speed_was_stated) {
     item.message = fmt::format("speed taken from the plateau of v_b: omega r = {:.4g} mm/s", 1e3 * plateau);
-    if (radius_known)
-      item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value * 60 / (2 * std::numbers::pi));
+    if (radius_known) item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value / kRpm);
     return item;
   }
   if (motion.kind == RecordKind::spring_slider) {

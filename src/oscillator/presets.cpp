@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
+
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 
@@ -20,8 +21,8 @@ constexpr std::array<Row, 4> kRows = {{{9, 0.521, 0.388, 0.03237, 0.05265, 11.0,
                                        {15, 0.509, 0.318, 0.05214, 0.09533, 16.2, 0.85},
                                        {18, 0.500, 0.355, 0.05377, 0.10580, 12.3, 0.93}}};
 constexpr double kDampingRatio = 0.02;
-constexpr double kLoad = 50;                                       // N
-constexpr double kPublishedSpeed = 4 * 2 * std::numbers::pi / 60;  // 4 rpm in rad/s
+constexpr double kLoad = 50;  // N
+constexpr double kPublishedSpeed = 4 * kRpm;
 
 /// The exponential law of a row as data would show it, up to the speed of a fast slip: three times that of the disc.
 FrictionCurve curve_of(const Row& row) {

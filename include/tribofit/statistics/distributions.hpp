@@ -2,7 +2,10 @@
 
 namespace tribofit {
 
-/// Half-width factor of a two-sided 95 % interval: the 0.975 quantile of t.
+/// Half-width factor of a two-sided 95 % interval of a normal distribution: its 0.975 quantile.
+inline constexpr double kNormalQuantile95 = 1.96;
+
+/// The same where the spread is estimated with so many degrees of freedom: the 0.975 quantile of t.
 double t_quantile_95(double degrees_of_freedom);
 
 /// Two-sided p-value of t; 1 where t is not finite.

@@ -4,6 +4,7 @@
 
 #include "parts.hpp"
 #include "tribofit/fit/identification.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 namespace {
@@ -146,7 +147,8 @@ void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::siz
   if (value == nullptr) return;
   ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
   line.bars = true;
-  line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si, 1.96 * value->std_error / measure.si);
+  line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si,
+           kNormalQuantile95 * value->std_error / measure.si);
 }
 
 /// Speeds in equal ratios are seen apart on a logarithmic axis.
