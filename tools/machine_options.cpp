@@ -110,8 +110,9 @@ void set_law_parameters(const MachineRequest& request, const Law& law, std::vect
   const std::vector<Parameter> parameters = describe(law).parameters;
   for (const auto& [name, text] : request.law_parameters) {
     if (text.empty()) continue;
-    const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                    [&, &of = name](const Parameter& parameter) { return parameter.name == of; });
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&, &wanted = name](const Parameter& parameter) { return parameter.name == wanted; });
     if (found == parameters.end()) {
       std::string list;
       for (const Parameter& known : parameters) list += (list.empty() ? "" : ", ") + flag_of(known.name);

@@ -35,7 +35,7 @@ const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law,
   return found == group.fits.end() ? nullptr : &*found;
 }
 
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of) {
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled) {
   std::vector<double> drops;
   const auto level = [](const ResultFit& fit, std::string_view name) -> const ResultParameter* {
     const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
@@ -43,7 +43,7 @@ ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group,
     return found == fit.parameters.end() ? nullptr : &*found;
   };
   for (const std::size_t k : group.runs) {
-    const ResultFit* fit = runs[k].fit(of.law, of.protocol);
+    const ResultFit* fit = runs[k].fit(pooled.law, pooled.protocol);
     if (fit == nullptr) continue;
     const ResultParameter *mu_s = level(*fit, "mu_s"), *mu_k = level(*fit, "mu_k");
     if (mu_s != nullptr && mu_k != nullptr) drops.push_back(mu_s->value - mu_k->value);

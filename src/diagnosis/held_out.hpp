@@ -23,8 +23,9 @@ class Blocks {
                                        limits::kMostBlocks)),
         of_(blocks_of(observations, count_)) {}
   /// From the block of every cycle.
-  explicit Blocks(std::vector<std::size_t> of)
-      : count_(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1), of_(std::move(of)) {}
+  explicit Blocks(std::vector<std::size_t> block_of_cycle)
+      : count_(block_of_cycle.empty() ? 0 : *std::max_element(block_of_cycle.begin(), block_of_cycle.end()) + 1),
+        of_(std::move(block_of_cycle)) {}
   std::size_t count() const { return count_; }
   std::size_t of(std::size_t cycle) const { return of_[cycle]; }
 

@@ -117,14 +117,14 @@ void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit
 
 void add_systematic(const Instruments& instruments, const NormalForce& load, const Eigen::VectorXd& per_delay,
                     RigFit& fit) {
-  const auto of = [](const std::optional<Declared>& d) { return d ? d->uncertainty : 0.0; };
+  const auto uncertainty = [](const std::optional<Declared>& d) { return d ? d->uncertainty : 0.0; };
   const auto part = [](const std::optional<Declared>& d) {
     return d && d->value != 0 ? d->uncertainty / std::abs(d->value) : 0.0;
   };
   const double scale = std::hypot(load.nominal ? part(instruments.rig.load) : 0, part(instruments.force_sensor.gain),
                                   part(instruments.vibrometer.gain));
-  const double delay = of(instruments.vibrometer.delay);
-  const double below = fit.mass_below_declared ? of(instruments.force_sensor.mass_below) : 0;
+  const double delay = uncertainty(instruments.vibrometer.delay);
+  const double below = fit.mass_below_declared ? uncertainty(instruments.force_sensor.mass_below) : 0;
   fit.mass.systematic = std::hypot(scale * fit.mass.value, delay * per_delay(0), below);
   fit.damping.systematic = std::hypot(scale * fit.damping.value, delay * per_delay(1));
   fit.stiffness.systematic = std::hypot(scale * fit.stiffness.value, delay * per_delay(2));

@@ -112,9 +112,9 @@ struct ClockDrift {
 ClockDrift clock_drift(const std::vector<double>& times, const std::vector<double>& delays) {
   const std::size_t third = delays.size() / 3;
   if (third < kFewestPeriods) return {};
-  const auto part = [&](const std::vector<double>& of, std::size_t begin) {
-    return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(begin),
-                               of.begin() + static_cast<std::ptrdiff_t>(begin + third));
+  const auto part = [&](const std::vector<double>& values, std::size_t begin) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                               values.begin() + static_cast<std::ptrdiff_t>(begin + third));
   };
   const std::size_t last = delays.size() - third;
   const double before = median(part(delays, 0)), after = median(part(delays, last));

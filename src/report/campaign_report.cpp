@@ -28,35 +28,35 @@ void limit_tables(Report& report) {
   }
 }
 
-ReportSection runs_section(const DrawnCampaign& of) {
+ReportSection runs_section(const DrawnCampaign& campaign) {
   ReportSection section{"runs", "The runs", {}};
-  for (const std::string& law : joint_laws(of.groups)) section.add(scatter_chart(of, law));
-  ReportTable runs = runs_table(of.friction_unit());
-  runs.caption = fmt::format("{} runs", of.results.size());
+  for (const std::string& law : joint_laws(campaign.groups)) section.add(scatter_chart(campaign, law));
+  ReportTable runs = runs_table(campaign.friction_unit());
+  runs.caption = fmt::format("{} runs", campaign.results.size());
   std::size_t next = 0;
-  for (std::size_t k = 0; k < of.results.size(); ++k) {
-    const bool there = next < of.runs.size() && of.runs[next].position == k;
-    runs.rows.push_back(there ? run_row(of.runs[next++]) : run_row(of.results.missing(k)));
+  for (std::size_t k = 0; k < campaign.results.size(); ++k) {
+    const bool there = next < campaign.runs.size() && campaign.runs[next].position == k;
+    runs.rows.push_back(there ? run_row(campaign.runs[next++]) : run_row(campaign.results.missing(k)));
   }
   section.add(std::move(runs));
   ReportTable warnings("Warnings of the runs", "summary.json");
   warnings.text({"run", "warning"});
-  for (const RunResult& r : of.runs) {
+  for (const RunResult& r : campaign.runs) {
     for (const std::string& warning : r.warnings) warnings.rows.push_back({r.run.name, warning});
   }
   section.add(std::move(warnings));
   return section;
 }
 
-std::string lead_of(const DrawnCampaign& of, std::size_t fitted, const Trends& trends) {
+std::string lead_of(const DrawnCampaign& campaign, std::size_t fitted, const Trends& trends) {
   constexpr std::size_t kLong = 300;
-  std::string text = fmt::format("{} of {} runs fitted, under {} condition{}.", fitted, of.results.size(),
-                                 of.groups.size(), of.groups.size() == 1 ? "" : "s");
-  if (of.earlier != nullptr) {
-    const EarlierComparison::Agreement agreement = of.earlier->agreement();
+  std::string text = fmt::format("{} of {} runs fitted, under {} condition{}.", fitted, campaign.results.size(),
+                                 campaign.groups.size(), campaign.groups.size() == 1 ? "" : "s");
+  if (campaign.earlier != nullptr) {
+    const EarlierComparison::Agreement agreement = campaign.earlier->agreement();
     if (agreement.values > 0) {
       text += fmt::format(" {} of {} values of {} lie in our 95 % intervals.", agreement.inside, agreement.values,
-                          of.earlier_name());
+                          campaign.earlier_name());
     }
   }
   if (significant_trends(trends).empty()) return text;
@@ -71,27 +71,27 @@ std::string lead_of(const DrawnCampaign& of, std::size_t fitted, const Trends& t
 
 Report report_of(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
                  const std::optional<ComparisonReport>& comparison, const ReportOptions& options) {
-  const DrawnCampaign of(results, runs, pooled, comparison);
+  const DrawnCampaign campaign(results, runs, pooled, comparison);
   const std::string folder = results.traces().empty() ? results.folder() : results.traces();
   const std::string input = options.inputs.empty() ? folder : options.inputs.front();
   const auto fitted = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
-  Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(of, fitted, pooled.trends));
+  Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(campaign, fitted, pooled.trends));
   report.facts = {{"runs", std::to_string(results.size())},
                   {"fitted", std::to_string(fitted)},
                   {"failed", std::to_string(runs.size() - fitted)},
                   {"missing", std::to_string(results.size() - runs.size())},
-                  {"conditions", std::to_string(of.groups.size())}};
+                  {"conditions", std::to_string(campaign.groups.size())}};
   constexpr std::size_t kMostWarnings = 200;
   report.warnings = pooled.trends.warnings;
   for (std::size_t k = 0; k < std::min(results.problems().size(), kMostWarnings); ++k) {
     report.warnings.push_back(results.problems()[k]);
   }
-  if (comparison) report.add({comparison_section(comparison->values, of.groups)});
-  const Statements statements = comparison ? comparison->statements : statements_of(results, runs, of.groups);
+  if (comparison) report.add({comparison_section(comparison->values, campaign.groups)});
+  const Statements statements = comparison ? comparison->statements : statements_of(results, runs, campaign.groups);
   report.add(
-      {motion_figures(of), law_figures(of), statements_section(statements, of.groups), pooled_section(pooled),
-       trends_section(pooled.trends), runs_section(of),
+      {motion_figures(campaign), law_figures(campaign), statements_section(statements, campaign.groups),
+       pooled_section(pooled), trends_section(pooled.trends), runs_section(campaign),
        run_section(command_line(options, {}, input), " Checksums of the traces stand in the results of the runs.")});
   limit_tables(report);
   return report;

@@ -126,9 +126,9 @@ MotionMeasures measure_motion(const Motion& motion, const Segmentation& s) {
     add_portrait(motion, cycle, points);
   }
   for (const Turn& turn : turns_of(motion, s)) {
-    const TurnMeasures of = over_turn(motion, turn);
-    squares.push_back(of.square);
-    for (std::size_t h = 0; h < kHarmonics; ++h) harmonics[h].push_back(of.amplitude[h]);
+    const TurnMeasures measures = over_turn(motion, turn);
+    squares.push_back(measures.square);
+    for (std::size_t h = 0; h < kHarmonics; ++h) harmonics[h].push_back(measures.amplitude[h]);
   }
   const double f = s.frequency.value;
   const Estimate period{1 / f, s.frequency.std_error / (f * f), s.frequency.degrees_of_freedom};

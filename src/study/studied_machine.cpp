@@ -9,7 +9,7 @@
 
 namespace tribofit {
 
-double std_error_of(const StudiedMachine& of, std::string_view variable) {
+double std_error_of(const StudiedMachine& studied, std::string_view variable) {
   const auto from = [](const std::vector<double>& covariance, std::size_t k) {
     const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
     const bool known = k < n && covariance[k * n + k] > 0;
@@ -17,24 +17,25 @@ double std_error_of(const StudiedMachine& of, std::string_view variable) {
   };
   constexpr std::array<std::string_view, 3> kRig = {"mass", "damping", "stiffness"};
   for (std::size_t k = 0; k < kRig.size(); ++k) {
-    if (variable == kRig[k]) return from(of.covariance.rig, k);
+    if (variable == kRig[k]) return from(studied.covariance.rig, k);
   }
-  const auto& slots = of.machine.model.parameters();
+  const auto& slots = studied.machine.model.parameters();
   for (std::size_t k = 0; k < slots.size(); ++k) {
     const std::string name = (slots[k].effect.empty() ? "" : slots[k].effect + ".") + slots[k].parameter.name;
-    if (variable == name) return from(of.covariance.friction, k);
+    if (variable == name) return from(studied.covariance.friction, k);
   }
   return std::nan("");
 }
 
-BlockMotion measured_motion(const StudiedMachine& of, double disc_velocity) {
-  if (!of.record || !(std::abs(disc_velocity / of.machine.disc_velocity() - 1) < kSameSpeed)) return {};
-  return block_motion(of.record->motion, of.record->segmentation, of.machine.load / of.machine.rig.stiffness);
+BlockMotion measured_motion(const StudiedMachine& studied, double disc_velocity) {
+  if (!studied.record || !(std::abs(disc_velocity / studied.machine.disc_velocity() - 1) < kSameSpeed)) return {};
+  return block_motion(studied.record->motion, studied.record->segmentation,
+                      studied.machine.load / studied.machine.rig.stiffness);
 }
 
-const Estimate* measured_value(const StudiedMachine& of, const MeasureInfo& measure) {
-  if (!of.record) return nullptr;
-  const Segmentation& s = of.record->segmentation;
+const Estimate* measured_value(const StudiedMachine& studied, const MeasureInfo& measure) {
+  if (!studied.record) return nullptr;
+  const Segmentation& s = studied.record->segmentation;
   const Estimate* value = measure.name == "frequency"    ? &s.frequency
                           : measure.name == "stick-time" ? &s.stick_time
                           : measure.name == "peak-speed" ? &s.amplitude

@@ -183,14 +183,14 @@ double portrait_distance(const std::vector<Estimate>& measured, const Prediction
   return n > 0 ? std::sqrt(squares / n) : kNone;
 }
 
-std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& of, const Sensors& sensors, const Motion& motion,
-                                            std::size_t count, const TwinOptions& options,
+std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified, const Sensors& sensors,
+                                            const Motion& motion, std::size_t count, const TwinOptions& options,
                                             const std::function<void()>& done, BlockMotion& shown) {
-  const std::vector<Machine> machines = draws_of(of.machine, of.covariance, count, options.seed);
+  const std::vector<Machine> machines = draws_of(identified.machine, identified.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
     try {
-      out[k] = simulated_measures(machines[k], of.scatter, sensors, motion, options.seed * 1000003 + k,
+      out[k] = simulated_measures(machines[k], identified.scatter, sensors, motion, options.seed * 1000003 + k,
                                   k == 0 ? &shown : nullptr);
     } catch (const InputError&) {  // numbers that cannot be simulated: one prediction less
     }

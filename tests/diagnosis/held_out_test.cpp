@@ -39,9 +39,9 @@ Linearised draw(const Problem& problem, boost::random::mt19937_64& engine) {
 }
 
 Blocks blocks_of(std::size_t cycles, std::size_t count) {
-  std::vector<std::size_t> of;
-  for (std::size_t c = 0; c < cycles; ++c) of.push_back(c * count / cycles);
-  return Blocks(std::move(of));
+  std::vector<std::size_t> block_of_cycle;
+  for (std::size_t c = 0; c < cycles; ++c) block_of_cycle.push_back(c * count / cycles);
+  return Blocks(std::move(block_of_cycle));
 }
 
 /// Least squares over the cycles kept, by QR of the stacked rows.

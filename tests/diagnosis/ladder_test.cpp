@@ -288,7 +288,7 @@ Fit fit_with(const std::vector<Effect>& effects, double held_out) {
   return fit;
 }
 
-const EffectFinding& of(const std::vector<EffectFinding>& findings, const std::string& key) {
+const EffectFinding& finding_of(const std::vector<EffectFinding>& findings, const std::string& key) {
   for (const EffectFinding& finding : findings) {
     if (finding.key == key) return finding;
   }
@@ -314,22 +314,22 @@ TEST(Findings, SayWhatBecameOfEveryCandidate) {
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, fits, 0.003);
   ASSERT_EQ(found.size(), all.size());
 
-  const EffectFinding& lag = of(found, "frictional-lag");
+  const EffectFinding& lag = finding_of(found, "frictional-lag");
   EXPECT_EQ(lag.status, EffectStatus::found);
   EXPECT_DOUBLE_EQ(lag.held_out_rmse, 0.005);
   EXPECT_NEAR(lag.error_reduction, (0.010 * 0.010 - 0.005 * 0.005) / (0.010 * 0.010 - 0.003 * 0.003), 1e-12);
   ASSERT_EQ(lag.parameters.size(), 1u);
   EXPECT_EQ(lag.parameters[0].value, 42) << "of the final fit, not of the trial";
 
-  EXPECT_EQ(of(found, "channel-delay").status, EffectStatus::equivalent);
-  EXPECT_THAT(of(found, "channel-delay").reason, HasSubstr("frictional-lag"));
-  EXPECT_EQ(of(found, "viscous").status, EffectStatus::unsupported);
-  EXPECT_THAT(of(found, "viscous").reason, HasSubstr("plausible"));
-  EXPECT_EQ(of(found, "drift").status, EffectStatus::unsupported);
-  EXPECT_THAT(of(found, "drift").reason, HasSubstr("0.4"));
-  EXPECT_EQ(of(found, "runout").status, EffectStatus::untestable);
-  EXPECT_EQ(of(found, "runout").reason, all[4].untestable);
-  EXPECT_EQ(of(found, "heating").status, EffectStatus::superseded) << "it passed beside the base law only";
+  EXPECT_EQ(finding_of(found, "channel-delay").status, EffectStatus::equivalent);
+  EXPECT_THAT(finding_of(found, "channel-delay").reason, HasSubstr("frictional-lag"));
+  EXPECT_EQ(finding_of(found, "viscous").status, EffectStatus::unsupported);
+  EXPECT_THAT(finding_of(found, "viscous").reason, HasSubstr("plausible"));
+  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::unsupported);
+  EXPECT_THAT(finding_of(found, "drift").reason, HasSubstr("0.4"));
+  EXPECT_EQ(finding_of(found, "runout").status, EffectStatus::untestable);
+  EXPECT_EQ(finding_of(found, "runout").reason, all[4].untestable);
+  EXPECT_EQ(finding_of(found, "heating").status, EffectStatus::superseded) << "it passed beside the base law only";
 }
 
 TEST(Findings, AWithdrawnEffectIsNotFound) {
@@ -340,8 +340,8 @@ TEST(Findings, AWithdrawnEffectIsNotFound) {
   ladder.last = {result(all, 0, 1e-9, true), result(all, 1, 0.5, false)};
   ladder.withdrawn = {0};
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
-  EXPECT_EQ(of(found, "run-in").status, EffectStatus::unsupported);
-  EXPECT_THAT(of(found, "run-in").reason, HasSubstr("name would be wrong"));
+  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::unsupported);
+  EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("name would be wrong"));
 }
 
 /// Beside a base law that leaves twice the squares of the noise.
@@ -362,12 +362,12 @@ TEST(Findings, WhatMayExplainMuchAndIsNotProvenIsPossible) {
   ladder.last[3].plausible = ladder.last[4].plausible = false;
   ladder.last[4].trial.at_bound.assign(ladder.last[4].trial.model.parameters().size(), true);
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
-  EXPECT_EQ(of(found, "viscous").status, EffectStatus::possible);
-  EXPECT_THAT(of(found, "viscous").reason, HasSubstr(all[0].info.experiment)) << "what would prove it";
-  EXPECT_EQ(of(found, "drift").status, EffectStatus::unsupported);
-  EXPECT_EQ(of(found, "run-in").status, EffectStatus::unsupported) << "what it explains may well be chance";
-  EXPECT_EQ(of(found, "heating").status, EffectStatus::unsupported);
-  EXPECT_EQ(of(found, "asymmetry").status, EffectStatus::possible) << "its bounds alone are against it";
+  EXPECT_EQ(finding_of(found, "viscous").status, EffectStatus::possible);
+  EXPECT_THAT(finding_of(found, "viscous").reason, HasSubstr(all[0].info.experiment)) << "what would prove it";
+  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::unsupported) << "what it explains may well be chance";
+  EXPECT_EQ(finding_of(found, "heating").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "asymmetry").status, EffectStatus::possible) << "its bounds alone are against it";
 }
 
 TEST(Findings, TheFormOnTheLadderStandsForItsEffect) {

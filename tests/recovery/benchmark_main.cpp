@@ -40,9 +40,9 @@ std::string names(const std::vector<Name>& all) {
 }
 
 std::string line(const Outcome& o) {
-  if (!o.failure.empty()) return fmt::format("THREW {:<34} {}", o.of.name, o.failure);
+  if (!o.failure.empty()) return fmt::format("THREW {:<34} {}", o.tested.name, o.failure);
   return fmt::format("{:<5} {:<34} {:<8} {} ({}{}){}; error {:.5f} -> {:.5f}, floor {:.5f}; {:.1f} s",
-                     o.right ? "ok" : "MISS", o.of.name, to_string(o.naming), names(o.names),
+                     o.right ? "ok" : "MISS", o.tested.name, to_string(o.naming), names(o.names),
                      tribofit::to_string(o.verdict), o.remaining.empty() ? "" : ", remaining over " + o.remaining,
                      o.partners.empty() ? "" : (o.split ? "; split: " : "; NOT SPLIT: ") + names(o.after), o.first,
                      o.last, o.floor, o.seconds);
@@ -51,7 +51,7 @@ std::string line(const Outcome& o) {
 json to_json(const Outcome& o) {
   json named = json::array(), hidden = json::array(), parameters = json::array();
   for (const Name& name : o.names) named.push_back({{"added", name.added}, {"equivalent", name.equivalent}});
-  for (const Ingredient& what : o.of.hidden) hidden.push_back({{"key", what.key}, {"values", what.values}});
+  for (const Ingredient& what : o.tested.hidden) hidden.push_back({{"key", what.key}, {"values", what.values}});
   for (const Recovered& p : o.parameters) {
     parameters.push_back({{"effect", p.key},
                           {"name", p.parameter},
@@ -59,18 +59,18 @@ json to_json(const Outcome& o) {
                           {"value", p.value},
                           {"ci95", {p.lower95, p.upper95}}});
   }
-  return {{"case", o.of.name},
-          {"kind", to_string(o.of.kind)},
-          {"setting", to_string(o.of.setting)},
-          {"record_kind", o.of.record_kind},
-          {"seed", o.of.seed},
+  return {{"case", o.tested.name},
+          {"kind", to_string(o.tested.kind)},
+          {"setting", to_string(o.tested.setting)},
+          {"record_kind", o.tested.record_kind},
+          {"seed", o.tested.seed},
           {"hidden", hidden},
-          {"law", tribofit::to_string(o.of.law)},
-          {"radius_mm", o.of.radius * 1e3},
-          {"noise_colour", o.of.colour},
-          {"noise_flicker", o.of.flicker},
-          {"scatter", o.of.scatter},
-          {"wander", o.of.wander},
+          {"law", tribofit::to_string(o.tested.law)},
+          {"radius_mm", o.tested.radius * 1e3},
+          {"noise_colour", o.tested.colour},
+          {"noise_flicker", o.tested.flicker},
+          {"scatter", o.tested.scatter},
+          {"wander", o.tested.wander},
           {"named", named},
           {"naming", to_string(o.naming)},
           {"right", o.right},

@@ -30,7 +30,7 @@ bool is_fitted(const Case& c) {
 }
 
 struct Count {
-  int covered = 0, of = 0;
+  int covered = 0, asked = 0;
 };
 
 TEST(EffectCoverage, NominalIntervalsOfEffectsCoverTheTruth) {
@@ -57,19 +57,20 @@ TEST(EffectCoverage, NominalIntervalsOfEffectsCoverTheTruth) {
     for (const int hit : covered[i]) {
       for (Count* count : {&all, &effects[cases[i].hidden[0].key]}) {
         count->covered += hit;
-        ++count->of;
+        ++count->asked;
       }
     }
   }
   for (const auto& [key, count] : effects) {
-    std::printf("%-24s %3d of %3d  %5.1f %%\n", key.c_str(), count.covered, count.of, 100.0 * count.covered / count.of);
+    std::printf("%-24s %3d of %3d  %5.1f %%\n", key.c_str(), count.covered, count.asked,
+                100.0 * count.covered / count.asked);
     // 0.85 with three standard deviations of chance.
-    EXPECT_GE(count.covered, 0.85 * count.of - 3 * std::sqrt(0.85 * 0.15 * count.of)) << key;
+    EXPECT_GE(count.covered, 0.85 * count.asked - 3 * std::sqrt(0.85 * 0.15 * count.asked)) << key;
   }
-  const double share = static_cast<double>(all.covered) / all.of;
-  std::printf("%-24s %3d of %3d  %5.1f %%\n", "all", all.covered, all.of, 100 * share);
+  const double share = static_cast<double>(all.covered) / all.asked;
+  std::printf("%-24s %3d of %3d  %5.1f %%\n", "all", all.covered, all.asked, 100 * share);
   // 0.93 with three standard deviations of chance.
-  EXPECT_GT(share, 0.93 - 3 * std::sqrt(0.93 * 0.07 / all.of));
+  EXPECT_GT(share, 0.93 - 3 * std::sqrt(0.93 * 0.07 / all.asked));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ Naming judge(const Case& c, Outcome& out) {
 }
 
 bool is_right(const Outcome& out) {
-  switch (out.of.kind) {
+  switch (out.tested.kind) {
     case Kind::single:
     case Kind::pair:
     case Kind::triple:
@@ -97,9 +97,9 @@ bool is_right(const Outcome& out) {
     case Kind::nothing:
       return out.names.empty() && out.verdict == Verdict::sufficient;
     case Kind::base_law:
-      return out.names.empty() && out.verdict == Verdict::sufficient && out.law == out.of.law;
+      return out.names.empty() && out.verdict == Verdict::sufficient && out.law == out.tested.law;
     case Kind::alien:
-      return out.verdict == Verdict::unexplained && out.remaining == out.of.variable;
+      return out.verdict == Verdict::unexplained && out.remaining == out.tested.variable;
     case Kind::unknowable:
       return out.names.empty() && (out.status == "untestable" || out.status == "equivalent");
   }
@@ -107,7 +107,7 @@ bool is_right(const Outcome& out) {
 }
 
 void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
-  for (const Ingredient& what : out.of.hidden) {
+  for (const Ingredient& what : out.tested.hidden) {
     const EffectFinding* found = finding(diagnosis, what.key);
     if (found == nullptr || found->status != EffectStatus::found) continue;
     for (const std::size_t k : what.main_parameters) {
@@ -208,7 +208,7 @@ void try_pair(const Case& c, Outcome& out) {
 
 Outcome run_case(const Case& c, bool experiments) {
   Outcome out;
-  out.of = c;
+  out.tested = c;
   try {
     const Simulated simulated = simulate_case(c);
     const double begin = processor_time();

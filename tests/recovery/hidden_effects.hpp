@@ -185,7 +185,7 @@ std::string_view to_string(Naming naming);
 
 /// What came of a case.
 struct Outcome {
-  Case of;
+  Case tested;
   std::vector<Name> names;  ///< rungs beyond the base law, and effects of the motion that were found
   tribofit::Verdict verdict = tribofit::Verdict::sufficient;
   tribofit::Law law = tribofit::ExponentialLaw{};

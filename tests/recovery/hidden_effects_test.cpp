@@ -32,10 +32,10 @@ std::string names(const Outcome& o) {
 std::size_t count_right(const std::vector<Outcome>& outcomes) {
   std::size_t right = 0;
   for (const Outcome& o : outcomes) {
-    EXPECT_EQ(o.failure, "") << o.of.name;
+    EXPECT_EQ(o.failure, "") << o.tested.name;
     right += o.right ? 1u : 0u;
     if (!o.right) {
-      std::printf("%-32s %s, %s\n", o.of.name.c_str(), names(o).c_str(),
+      std::printf("%-32s %s, %s\n", o.tested.name.c_str(), names(o).c_str(),
                   std::string(tribofit::to_string(o.verdict)).c_str());
     }
   }
@@ -82,7 +82,7 @@ TEST(HiddenEffects, AreNamed) {
 
 TEST(HiddenEffects, NothingIsNamedWhereNothingIsHidden) {
   const std::vector<Outcome> outcomes = run_cases(slice(Kind::nothing, kSlice), 0);
-  for (const Outcome& o : outcomes) EXPECT_TRUE(o.names.empty()) << o.of.name << ": " << names(o);
+  for (const Outcome& o : outcomes) EXPECT_TRUE(o.names.empty()) << o.tested.name << ": " << names(o);
   // The verdict may call scatter a structure now and then.
   EXPECT_GE(count_right(outcomes), outcomes.size() - 1);
 }
@@ -96,7 +96,7 @@ TEST(HiddenEffects, AreNamedInOtherKindsOfRecord) {
 /// Sliding with white, AR(1) and 1/f noise in turn.
 TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
   for (const Outcome& o : run_cases(plan_record_kinds({"steps", "ramps", "sines", "reversals"}, 3, 0), 0)) {
-    EXPECT_TRUE(o.right) << o.of.name << ": " << names(o);
+    EXPECT_TRUE(o.right) << o.tested.name << ": " << names(o);
   }
 }
 
@@ -152,9 +152,9 @@ TEST(HiddenEffects, TheNextExperimentTellsWhatLooksAlike) {
   for (const Outcome& o : outcomes) {
     if (o.naming != Naming::group) continue;
     for (const std::string& partner : o.partners) {
-      EXPECT_NE(o.experiment.find(partner), std::string::npos) << o.of.name << ": " << o.experiment;
+      EXPECT_NE(o.experiment.find(partner), std::string::npos) << o.tested.name << ": " << o.experiment;
     }
-    EXPECT_NE(o.experiment.find(tribofit::discriminating_experiment(o.of.hidden[0].key, o.of.partner)),
+    EXPECT_NE(o.experiment.find(tribofit::discriminating_experiment(o.tested.hidden[0].key, o.tested.partner)),
               std::string::npos);
   }
 }

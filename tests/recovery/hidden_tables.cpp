@@ -49,7 +49,7 @@ std::string singles_table(const Outcomes& singles) {
   std::string text =
       "| hidden | n | alone | in a group of at most 4 | beside another | wrong | missed | mean group | "
       "error within 1.15 | parameter within 10 % | inside 95 % |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
-  for (const Outcomes& g : by_group(singles)) add_row(text, fmt::format("`{}`", g[0]->of.group), g);
+  for (const Outcomes& g : by_group(singles)) add_row(text, fmt::format("`{}`", g[0]->tested.group), g);
   add_row(text, "all", singles);
   return text;
 }
@@ -63,7 +63,7 @@ std::string pairs_table(const Outcomes& pairs) {
                    count(g, is_right), count(g, Naming::beside), count(g, Naming::partly), count(g, Naming::wrong),
                    count(g, Naming::missed), percent(count(g, is_low), g.size()));
   };
-  for (const Outcomes& g : by_group(pairs)) row(fmt::format("`{}`", g[0]->of.group), g);
+  for (const Outcomes& g : by_group(pairs)) row(fmt::format("`{}`", g[0]->tested.group), g);
   row("all", pairs);
   return text;
 }
@@ -78,7 +78,7 @@ std::string confusion_table(const Outcomes& singles) {
   std::vector<std::string> order;
   std::map<std::string, Row> rows;
   for (const Outcome* o : singles) {
-    const std::string& key = o->of.hidden[0].key;
+    const std::string& key = o->tested.hidden[0].key;
     if (rows.count(key) == 0) order.push_back(key);
     Row& row = rows[key];
     ++row.n;
@@ -103,15 +103,15 @@ std::string twins_table(const Outcomes& singles) {
       "|---|---|--:|--:|--:|--:|--:|\n";
   std::vector<std::string> seen;
   for (const Outcome* first : singles) {
-    const std::string& key = first->of.hidden[0].key;
+    const std::string& key = first->tested.hidden[0].key;
     if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
     seen.push_back(key);
-    Outcomes of;
-    std::copy_if(singles.begin(), singles.end(), std::back_inserter(of),
-                 [&](const Outcome* o) { return o->of.hidden[0].key == key; });
+    Outcomes asked;
+    std::copy_if(singles.begin(), singles.end(), std::back_inserter(asked),
+                 [&](const Outcome* o) { return o->tested.hidden[0].key == key; });
     for (const LookAlike& twin : look_alikes(key)) {
       std::size_t grouped = 0, wide = 0, instead = 0;
-      for (const Outcome* o : of) {
+      for (const Outcome* o : asked) {
         for (const Name& name : o->names) {
           const auto in = [&](const std::string& k) {
             return name.added == k ||
@@ -125,8 +125,8 @@ std::string twins_table(const Outcomes& singles) {
           }
         }
       }
-      fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} | {} | {} | {} |\n", key, twin.key, of.size(),
-                     count(of, Naming::alone), grouped, wide, instead);
+      fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} | {} | {} | {} |\n", key, twin.key,
+                     asked.size(), count(asked, Naming::alone), grouped, wide, instead);
     }
   }
   return text;
@@ -138,7 +138,7 @@ std::string experiments_table(const Outcomes& tried) {
   for (const Outcome* o : tried) {
     std::string partners;
     for (const std::string& partner : o->partners) partners += (partners.empty() ? "`" : ", `") + partner + "`";
-    auto& [n, split] = groups[{o->of.hidden[0].key, partners}];
+    auto& [n, split] = groups[{o->tested.hidden[0].key, partners}];
     ++n;
     split += o->split ? 1u : 0u;
   }
@@ -154,9 +154,9 @@ std::string nothing_table(const Outcomes& empties) {
   std::string text =
       "| records with nothing hidden | n | something named | rate | at most (95 %) | named |\n"
       "|---|--:|--:|--:|--:|---|\n";
-  const auto row = [&](const std::string& name, auto&& of) {
+  const auto row = [&](const std::string& name, auto&& belongs) {
     Outcomes g;
-    std::copy_if(empties.begin(), empties.end(), std::back_inserter(g), of);
+    std::copy_if(empties.begin(), empties.end(), std::back_inserter(g), belongs);
     if (g.empty()) return;
     const std::size_t alarms = g.size() - count(g, is_right);
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {:.1f} % | {} |\n", name, g.size(), alarms,
@@ -166,13 +166,13 @@ std::string nothing_table(const Outcomes& empties) {
     for (const double wander : {0.0, 0.7}) {
       row(fmt::format("{} noise, {} scatter", colour > 0 ? "AR(1) 0.9" : "white",
                       wander > 0 ? "wandering" : "independent"),
-          [&](const Outcome* o) { return o->of.colour == colour && o->of.wander == wander; });
+          [&](const Outcome* o) { return o->tested.colour == colour && o->tested.wander == wander; });
     }
   }
   std::set<Setting> settings;
-  for (const Outcome* o : empties) settings.insert(o->of.setting);
+  for (const Outcome* o : empties) settings.insert(o->tested.setting);
   for (const Setting setting : settings) {
-    row(std::string(to_string(setting)), [&](const Outcome* o) { return o->of.setting == setting; });
+    row(std::string(to_string(setting)), [&](const Outcome* o) { return o->tested.setting == setting; });
   }
   row("all", [](const Outcome*) { return true; });
   return text;
@@ -188,7 +188,7 @@ std::string others_table(const Outcomes& outcomes) {
       ++verdicts[std::string(to_string(o->verdict))];
       ++variables[o->remaining.empty() ? "none" : o->remaining];
     }
-    fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} | {} | {} |\n", g[0]->of.group, g.size(),
+    fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} | {} | {} |\n", g[0]->tested.group, g.size(),
                    count(g, is_right), count(g, [](const Outcome* o) { return !o->names.empty(); }), list(verdicts),
                    list(variables));
   }
@@ -198,25 +198,25 @@ std::string others_table(const Outcomes& outcomes) {
 /// By what is not the effect: is one radius, law or noise worse than the others?
 std::string conditions_table(const Outcomes& outcomes) {
   std::string text = "| condition | n | named |\n|---|--:|--:|\n";
-  const auto row = [&](const std::string& name, auto&& of) {
+  const auto row = [&](const std::string& name, auto&& belongs) {
     Outcomes g;
-    std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(g), of);
+    std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(g), belongs);
     if (g.empty()) return;
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, g.size(),
                    percent(count(g, is_right), g.size()));
   };
   for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
-    row(std::string(to_string(law)), [&](const Outcome* o) { return o->of.law == law; });
+    row(std::string(to_string(law)), [&](const Outcome* o) { return o->tested.law == law; });
   }
   for (const double radius : {0.009, 0.012, 0.015, 0.018}) {
-    row(fmt::format("{:g} mm", radius * 1e3), [&](const Outcome* o) { return o->of.radius == radius; });
+    row(fmt::format("{:g} mm", radius * 1e3), [&](const Outcome* o) { return o->tested.radius == radius; });
   }
-  row("white noise", [](const Outcome* o) { return o->of.colour == 0; });
-  row("AR(1) 0.9 noise", [](const Outcome* o) { return o->of.colour > 0; });
-  row("independent scatter", [](const Outcome* o) { return o->of.wander == 0; });
-  row("wandering scatter", [](const Outcome* o) { return o->of.wander > 0; });
-  row("scatter below 0.01", [](const Outcome* o) { return o->of.scatter < 0.01; });
-  row("scatter 0.01 to 0.02", [](const Outcome* o) { return o->of.scatter >= 0.01; });
+  row("white noise", [](const Outcome* o) { return o->tested.colour == 0; });
+  row("AR(1) 0.9 noise", [](const Outcome* o) { return o->tested.colour > 0; });
+  row("independent scatter", [](const Outcome* o) { return o->tested.wander == 0; });
+  row("wandering scatter", [](const Outcome* o) { return o->tested.wander > 0; });
+  row("scatter below 0.01", [](const Outcome* o) { return o->tested.scatter < 0.01; });
+  row("scatter 0.01 to 0.02", [](const Outcome* o) { return o->tested.scatter >= 0.01; });
   return text;
 }
 
@@ -228,8 +228,8 @@ std::string summary(const std::vector<Outcome>& all) {
   const auto row = [&](const char* name, std::size_t n, const std::string& figure) {
     if (n > 0) fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, n, figure);
   };
-  const auto share = [&](const char* name, const Outcomes& of, const auto& what) {
-    row(name, of.size(), percent(count(of, what), of.size()));
+  const auto share = [&](const char* name, const Outcomes& asked, const auto& what) {
+    row(name, asked.size(), percent(count(asked, what), asked.size()));
   };
   share("single effects named, alone or in a group of at most 4", singles, is_right);
   share("single effects named alone", singles, [](const Outcome* o) { return o->naming == Naming::alone; });
@@ -241,7 +241,8 @@ std::string summary(const std::vector<Outcome>& all) {
   share("effects of no catalogue called unexplained over the right variable", aliens, is_right);
   share("ageing at one constant speed called untestable", unknowable, is_right);
   Outcomes named;
-  for (const Outcomes& of : {singles, pairs}) std::copy_if(of.begin(), of.end(), std::back_inserter(named), is_right);
+  for (const Outcomes& asked : {singles, pairs})
+    std::copy_if(asked.begin(), asked.end(), std::back_inserter(named), is_right);
   share("held-out error within 1.15 times what the true law leaves, where named", named, is_low);
   const Parameters p = parameters(named);
   row("main parameters within 10 %", p.n, percent(p.close, p.n));
@@ -269,8 +270,8 @@ std::string summary(const std::vector<Outcome>& all) {
 
 std::string tables(const std::vector<Outcome>& all) {
   std::string text = summary(all);
-  const auto section = [&](const char* title, const Outcomes& of, auto&& table) {
-    if (!of.empty()) fmt::format_to(std::back_inserter(text), "\n**{}**\n\n{}", title, table(of));
+  const auto section = [&](const char* title, const Outcomes& asked, auto&& table) {
+    if (!asked.empty()) fmt::format_to(std::back_inserter(text), "\n**{}**\n\n{}", title, table(asked));
   };
   const Outcomes singles = of_kind(all, Kind::single);
   section("One effect hidden", singles, singles_table);

@@ -21,7 +21,7 @@ using Outcomes = std::vector<const Outcome*>;
 inline Outcomes of_kind(const std::vector<Outcome>& all, Kind kind) {
   Outcomes found;
   for (const Outcome& o : all) {
-    if (o.of.kind == kind) found.push_back(&o);
+    if (o.tested.kind == kind) found.push_back(&o);
   }
   return found;
 }
@@ -31,7 +31,7 @@ inline std::vector<Outcomes> by_group(const Outcomes& outcomes) {
   std::vector<Outcomes> groups;
   std::map<std::string, std::size_t> at;
   for (const Outcome* o : outcomes) {
-    const auto [entry, is_new] = at.emplace(o->of.group, groups.size());
+    const auto [entry, is_new] = at.emplace(o->tested.group, groups.size());
     if (is_new) groups.emplace_back();
     groups[entry->second].push_back(o);
   }

@@ -76,22 +76,22 @@ void set_noise(Case& c, Noise noise, std::size_t number) {
 }
 
 /// Case `number` of a kind; without an effect nothing is hidden in it.
-Case make_case(const RecordKind& kind, const Recipe* of, std::size_t size, std::size_t number, std::uint64_t seed) {
-  const std::string group = fmt::format("{}/{}", kind.name, of == nullptr ? "nothing" : of->effect.key);
+Case make_case(const RecordKind& kind, const Recipe* recipe, std::size_t size, std::size_t number, std::uint64_t seed) {
+  const std::string group = fmt::format("{}/{}", kind.name, recipe == nullptr ? "nothing" : recipe->effect.key);
   const std::uint64_t own = hash(fmt::format("{}:{}", group, number), seed);
   Random random(own);
   constexpr Setting kEmpty[] = {Setting::fast, Setting::slow, Setting::fast, Setting::slow, Setting::load_swings};
   const bool slides = kind.programme != Programme::stick_slip;
-  Setting setting = of != nullptr ? of->setting : kEmpty[number % std::size(kEmpty)];
+  Setting setting = recipe != nullptr ? recipe->setting : kEmpty[number % std::size(kEmpty)];
   if (slides && setting != Setting::load_swings && setting != Setting::temperature_swings) setting = Setting::fast;
-  Case c = draw_case(group, number, of == nullptr ? Kind::nothing : Kind::single, setting, own, random);
+  Case c = draw_case(group, number, recipe == nullptr ? Kind::nothing : Kind::single, setting, own, random);
   c.record_kind = kind.name;
   c.programme = kind.programme;
   set_noise(c, kind.noise, number);
   if (slides) let_slide(c);
-  if (of != nullptr) {
-    const std::vector<double>& sizes = of->effect.hidden.sizes;
-    c.hidden = {ingredient(of->effect, sizes[size % sizes.size()], random)};
+  if (recipe != nullptr) {
+    const std::vector<double>& sizes = recipe->effect.hidden.sizes;
+    c.hidden = {ingredient(recipe->effect, sizes[size % sizes.size()], random)};
     if (slides) scale(c.hidden[0], sliding_scales());
   }
   return slowed(std::move(c), kind.slowness);

@@ -14,7 +14,7 @@ std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
       "inside 95 % |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|\n";
   const auto row = [&](const std::string& name, const Outcomes& all) {
     Outcomes empty, loaded;
-    for (const Outcome* o : all) (o->of.kind == Kind::nothing ? empty : loaded).push_back(o);
+    for (const Outcome* o : all) (o->tested.kind == Kind::nothing ? empty : loaded).push_back(o);
     const std::size_t alarms = empty.size() - count(empty, is_right);
     const Parameters p = parameters(loaded);
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name,
@@ -27,11 +27,14 @@ std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
   std::map<std::string, Outcomes> kinds;
   Outcomes all;
   for (const Outcome& o : outcomes) {
-    kinds[o.of.record_kind].push_back(&o);
-    kinds[o.of.flicker ? "with 1/f noise" : o.of.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(&o);
+    kinds[o.tested.record_kind].push_back(&o);
+    kinds[o.tested.flicker      ? "with 1/f noise"
+          : o.tested.colour > 0 ? "with AR(1) noise"
+                                : "with white noise"]
+        .push_back(&o);
     all.push_back(&o);
   }
-  for (const auto& [name, of] : kinds) row(name, of);
+  for (const auto& [name, cases] : kinds) row(name, cases);
   row("all", all);
   return text;
 }
@@ -48,7 +51,7 @@ std::string groups_table(const std::vector<Outcome>& outcomes) {
                    percent(count(g, is_right), g.size()), count(g, wrong(Naming::beside)),
                    count(g, wrong(Naming::wrong)), count(g, wrong(Naming::missed)));
   };
-  for (const Outcomes& g : by_group(all)) row(g[0]->of.group, g);
+  for (const Outcomes& g : by_group(all)) row(g[0]->tested.group, g);
   row("all", all);
   return text;
 }
@@ -65,9 +68,9 @@ struct Coverage {
   }
 };
 
-void add_coverage(std::string& text, const std::string& name, const Coverage& of) {
-  fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} |\n", name, of.n, of.covered,
-                 percent(of.covered, of.n));
+void add_coverage(std::string& text, const std::string& name, const Coverage& coverage) {
+  fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} |\n", name, coverage.n, coverage.covered,
+                 percent(coverage.covered, coverage.n));
 }
 
 std::string noise_of(const Case& c) {
@@ -87,15 +90,15 @@ std::string coverage_table(const std::vector<Outcome>& outcomes) {
   for (const Outcome& o : outcomes) {
     for (const Recovered& p : o.parameters) {
       all.add(p);
-      by_count[o.of.hidden.size()].add(p);
-      by_noise[noise_of(o.of)].add(p);
+      by_count[o.tested.hidden.size()].add(p);
+      by_noise[noise_of(o.tested)].add(p);
       by_parameter[fmt::format("`{}` {}", p.key, p.parameter)].add(p);
     }
   }
   std::string text = "| 95 % intervals after naming | n | hold the truth | |\n|---|--:|--:|--:|\n";
-  for (const auto& [count, of] : by_count) add_coverage(text, fmt::format("{} hidden", count), of);
-  for (const auto& [name, of] : by_noise) add_coverage(text, name, of);
-  for (const auto& [name, of] : by_parameter) add_coverage(text, name, of);
+  for (const auto& [count, coverage] : by_count) add_coverage(text, fmt::format("{} hidden", count), coverage);
+  for (const auto& [name, coverage] : by_noise) add_coverage(text, name, coverage);
+  for (const auto& [name, coverage] : by_parameter) add_coverage(text, name, coverage);
   add_coverage(text, "all", all);
   return text;
 }

@@ -89,9 +89,9 @@ TEST(Scale, GoesTheWayItIsSaid) {
 
 TEST(Scale, IsThereWhateverTheData) {
   const double most = std::numeric_limits<double>::max();
-  for (const Extent& of : {extent(5, 5), extent(0, 0), Extent(false), extent(-most, most), extent(1e17, 1e17 + 16),
-                           extent(1, std::nextafter(1.0, 2.0)), extent(0, 5e-324)}) {
-    const Scale scale = scale_of({}, of, 0.05, 5);
+  for (const Extent& range : {extent(5, 5), extent(0, 0), Extent(false), extent(-most, most), extent(1e17, 1e17 + 16),
+                              extent(1, std::nextafter(1.0, 2.0)), extent(0, 5e-324)}) {
+    const Scale scale = scale_of({}, range, 0.05, 5);
     EXPECT_LE(scale.tics.size(), 12u);
   }
   EXPECT_LE(scale_of({.logarithmic = true}, extent(5e-324, most, true), 0, 5).tics.size(), 12u);

@@ -41,10 +41,10 @@ const ChartLine& line_of(const Chart& chart, const std::string& name) {
 }
 
 StudiedMachine studied(const Machine& machine) {
-  StudiedMachine of;
-  of.machine = machine;
-  of.source = "given values";
-  return of;
+  StudiedMachine out;
+  out.machine = machine;
+  out.source = "given values";
+  return out;
 }
 
 /// What every chart must keep: names used once, series of one length, a unit on every axis that counts nothing.

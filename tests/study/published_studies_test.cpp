@@ -147,9 +147,9 @@ TEST(Creak, PortraitsAreThePublishedOnes) {
 
 TEST(Creak, ClaimsAreConfirmedOrRefuted) {
   const std::vector<Swept> sweeps = sweeps_of_creak(creak_machine_with_both_figures());
-  const auto measure = [&](std::size_t sweep, double Settled::*of) {
+  const auto measure = [&](std::size_t sweep, double Settled::*member) {
     std::vector<double> values;
-    for (const Settled& settled : sweeps[sweep].settled) values.push_back(settled.*of);
+    for (const Settled& settled : sweeps[sweep].settled) values.push_back(settled.*member);
     return values;
   };
   constexpr std::size_t kStiffness = 0, kMass = 1, kRatio = 2, kDecay = 3, kSpeed = 4;

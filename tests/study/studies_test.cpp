@@ -96,10 +96,10 @@ TEST(SpeedStudy, DoesNotDependOnThreads) {
   options.draws = 20;
   options.threads = 1;
   const Machine machine = published_machine();
-  const StudiedMachine of{machine, options.covariance, "test", {}, 0};
-  const std::string one = study_json(of, study_speed(machine, options));
+  const StudiedMachine studied{machine, options.covariance, "test", {}, 0};
+  const std::string one = study_json(studied, study_speed(machine, options));
   options.threads = 4;
-  EXPECT_EQ(study_json(of, study_speed(machine, options)), one);
+  EXPECT_EQ(study_json(studied, study_speed(machine, options)), one);
 }
 
 TEST(Portraits, HoldTheStartAndASettledCycle) {

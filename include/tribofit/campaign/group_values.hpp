@@ -28,7 +28,7 @@ const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law,
 
 /// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means; not known for a
 /// law without these levels.
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& of);
+ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled);
 
 /// Amplitude of the fundamental of v_r over the runs of a group [mm/s]; none where no run has figures.
 std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,

@@ -15,23 +15,24 @@
 namespace tribofit {
 
 /// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.
-std::string render_study(const StudiedMachine& of, const SpeedStudy& study, const TerminalOptions& options = {});
-std::string render_study(const StudiedMachine& of, const std::vector<Portrait>& study,
+std::string render_study(const StudiedMachine& studied, const SpeedStudy& study, const TerminalOptions& options = {});
+std::string render_study(const StudiedMachine& studied, const std::vector<Portrait>& study,
                          const TerminalOptions& options = {});
-std::string render_study(const StudiedMachine& of, const Response& study, const TerminalOptions& options = {});
-std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+std::string render_study(const StudiedMachine& studied, const Response& study, const TerminalOptions& options = {});
+std::string render_study(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
                          const TerminalOptions& options = {});
 /// A map as rows of values of one measure, thinned to what a terminal shows. rows: as computed, y rising.
-std::string render_map(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+std::string render_map(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                        const MeasureInfo& measure, const TerminalOptions& options = {});
 
 /// {"tool", "study": {"kind", "machine", "parameters", ...}}; units are in the names. What is not known is null.
-std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const JsonOptions& options = {});
-std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& study, const JsonOptions& options = {});
-std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options = {});
-std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, const JsonOptions& options = {});
+std::string study_json(const StudiedMachine& studied, const std::vector<Portrait>& study,
                        const JsonOptions& options = {});
-std::string map_json(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+std::string study_json(const StudiedMachine& studied, const Response& study, const JsonOptions& options = {});
+std::string study_json(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
+                       const JsonOptions& options = {});
+std::string map_json(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                      const JsonOptions& options = {});
 
 /// Reports of studies, options.arguments behind the kind. Speed: each measure over speed, up and down, with the
@@ -39,11 +40,12 @@ std::string map_json(const StudiedMachine& of, const MapRequest& request, const 
 /// motion, beside the record where the machine comes from one; of many speeds eight are drawn, all are listed.
 /// Response: A(omega) and the spectra. Sensitivity: each measure over each number of the machine, and the elasticities
 /// as bars. Map: each measure in colours; of many cells the largest of each block is drawn.
-Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options = {});
-Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, const ReportOptions& options = {});
-Report report_of(const StudiedMachine& of, const Response& study, const ReportOptions& options = {});
-Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study, const ReportOptions& options = {});
-Report report_of(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+Report report_of(const StudiedMachine& studied, const SpeedStudy& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& studied, const Response& study, const ReportOptions& options = {});
+Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
+                 const ReportOptions& options = {});
+Report report_of(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                  const ReportOptions& options = {});
 
 /// Tables of a study in a folder, made where it is not there: speed.csv; phase_1.csv ... with the start and cycle_1.csv

@@ -28,12 +28,12 @@ struct StudiedMachine {
 };
 
 /// Standard error of a variable of an identified machine [SI]; NaN where none is known.
-double std_error_of(const StudiedMachine& of, std::string_view variable);
+double std_error_of(const StudiedMachine& studied, std::string_view variable);
 
 /// Three cycles of its record where that was made at this speed of the disc [m/s]; empty elsewhere.
-BlockMotion measured_motion(const StudiedMachine& of, double disc_velocity);
+BlockMotion measured_motion(const StudiedMachine& studied, double disc_velocity);
 
 /// What the record says of a measure at its own speed [SI]; null where it does not.
-const Estimate* measured_value(const StudiedMachine& of, const MeasureInfo& measure);
+const Estimate* measured_value(const StudiedMachine& studied, const MeasureInfo& measure);
 
 }  // namespace tribofit

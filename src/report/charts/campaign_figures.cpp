@@ -27,8 +27,8 @@ std::string with_subscript(const std::string& name) {
 /// conditions, and earlier values beside them.
 class MeansChart {
  public:
-  MeansChart(const DrawnCampaign& of, const OverConditions& over, std::string id, std::string title)
-      : of_(of), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
+  MeansChart(const DrawnCampaign& campaign, const OverConditions& over, std::string id, std::string title)
+      : of_(campaign), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
     chart_.note = "Means over repeats; bars: one standard error.";
     chart_.x = {.quantity = over.quantity(), .unit = over.unit(), .names = over.names()};
     chart_.panels.clear();
@@ -88,15 +88,15 @@ class MeansChart {
 };
 
 /// Fig 9 of [D]: both protocols, as the joint one has neither bias.
-Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
-  MeansChart chart(of, over, "fig09-static-kinetic", "Static and kinetic friction and their difference");
-  const auto kinds = kinds_of_levels(of.groups);
+Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
+  MeansChart chart(campaign, over, "fig09-static-kinetic", "Static and kinetic friction and their difference");
+  const auto kinds = kinds_of_levels(campaign.groups);
   const auto add_kinds = [&](auto value) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const std::string &law = kinds[k].first, &protocol = kinds[k].second;
       chart.add(protocol == "published" ? "per-cycle extremes" : law + " law", k, [&](std::size_t g) {
-        const PooledGroup::OfFit* fit = fit_of(of.groups[g], law, protocol);
-        return fit == nullptr ? Maybe{} : value(of.groups[g], *fit);
+        const PooledGroup::OfFit* fit = fit_of(campaign.groups[g], law, protocol);
+        return fit == nullptr ? Maybe{} : value(campaign.groups[g], *fit);
       });
     }
   };
@@ -104,24 +104,24 @@ Chart levels_chart(const DrawnCampaign& of, const OverConditions& over) {
     add_kinds([&](const PooledGroup&, const auto& fit) { return pooled_mean(fit.parameters, name); });
     chart.earlier(name);
   };
-  const std::string unit = of.friction_unit();
+  const std::string unit = campaign.friction_unit();
   chart.panel("mu_{s}", unit);
   add_level("mu_s");
   chart.panel("mu_{k}", unit);
   add_level("mu_k");
   chart.panel("mu_{s} - mu_{k}", unit);
-  add_kinds([&](const PooledGroup& group, const auto& fit) { return Maybe{drop_of(of.runs, group, fit)}; });
+  add_kinds([&](const PooledGroup& group, const auto& fit) { return Maybe{drop_of(campaign.runs, group, fit)}; });
   return chart.chart(560);
 }
 
 /// What the laws have besides mu_s and mu_k (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
-Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over) {
-  MeansChart chart(of, over, "table4-decay", "Other parameters of the laws");
+Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions& over) {
+  MeansChart chart(campaign, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::string> names;
-  for (const OtherParameter& other : other_parameters(of.groups)) {
+  for (const OtherParameter& other : other_parameters(campaign.groups)) {
     const auto value_by = [&](const char* protocol) {
       return [&, protocol](std::size_t g) {
-        const PooledGroup::OfFit* own = fit_of(of.groups[g], other.law, protocol);
+        const PooledGroup::OfFit* own = fit_of(campaign.groups[g], other.law, protocol);
         return own == nullptr ? Maybe{} : pooled_mean(own->parameters, other.name);
       };
     };
@@ -135,20 +135,20 @@ Chart other_parameters_chart(const DrawnCampaign& of, const OverConditions& over
 
 /// A chart with a panel for each of the groups shown.
 template <class AddLine>
-Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std::string& title, const ChartAxis& x,
-                       const ChartAxis& y, AddLine&& add) {
+Chart panels_of_groups(const DrawnCampaign& campaign, const std::string& id, const std::string& title,
+                       const ChartAxis& x, const ChartAxis& y, AddLine&& add) {
   Chart chart{.id = id, .title = title, .x = x, .panels = {}};
-  for (const std::size_t g : of.shown) {
-    const auto drawn = first_figures(of.results, of.runs, of.groups[g]);
+  for (const std::size_t g : campaign.shown) {
+    const auto drawn = first_figures(campaign.results, campaign.runs, campaign.groups[g]);
     if (!drawn) continue;
-    ChartLine line{conditions_text(of.groups[g]), {}, {}, stroke_of(chart.panels.size())};
+    ChartLine line{conditions_text(campaign.groups[g]), {}, {}, stroke_of(chart.panels.size())};
     line.stroke.dash = Dash::solid;  // each has a panel of its own
     add(drawn->figures, line);
     if (line.x.empty()) continue;
     line.panel = chart.panels.size();
     chart.panels.push_back({.axis = y});
-    chart.note +=
-        (chart.note.empty() ? "From top to bottom: " : "; ") + conditions_text(of.groups[g]) + " (" + drawn->run + ")";
+    chart.note += (chart.note.empty() ? "From top to bottom: " : "; ") + conditions_text(campaign.groups[g]) + " (" +
+                  drawn->run + ")";
     chart.lines.push_back(std::move(line));
   }
   if (!chart.note.empty()) chart.note += ".";
@@ -156,17 +156,17 @@ Chart panels_of_groups(const DrawnCampaign& of, const std::string& id, const std
   return chart;
 }
 
-Chart cycles_chart(const DrawnCampaign& of, const char* id, const char* title, ChartAxis y,
+Chart cycles_chart(const DrawnCampaign& campaign, const char* id, const char* title, ChartAxis y,
                    std::vector<double> RunFigures::*channel) {
-  return panels_of_groups(of, id, title, {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7}, y,
+  return panels_of_groups(campaign, id, title, {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7}, y,
                           [&](const RunFigures& f, ChartLine& line) {
                             for (const double t : f.time) line.x.push_back(t - f.time.front());
                             line.y = f.*channel;
                           });
 }
 
-Chart spectrum_chart(const DrawnCampaign& of) {
-  return panels_of_groups(of, "fig07-spectrum", "Amplitude spectrum of the relative velocity",
+Chart spectrum_chart(const DrawnCampaign& campaign) {
+  return panels_of_groups(campaign, "fig07-spectrum", "Amplitude spectrum of the relative velocity",
                           {.quantity = "frequency", .unit = "Hz", .from_zero = true},
                           {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true},
                           [](const RunFigures& f, ChartLine& line) {
@@ -237,56 +237,58 @@ std::string DrawnCampaign::earlier_name() const {
   return earlier == nullptr ? "" : std::filesystem::path(earlier->path).filename().string();
 }
 
-ReportSection motion_figures(const DrawnCampaign& of) {
+ReportSection motion_figures(const DrawnCampaign& campaign) {
   ReportSection section{"motion", "Motion and friction under each of the conditions", {}};
-  const OverConditions over(of.groups);
-  section.add(MeansChart(of, over, "fig05-rms-velocity", "RMS velocity of the block")
+  const OverConditions over(campaign.groups);
+  section.add(MeansChart(campaign, over, "fig05-rms-velocity", "RMS velocity of the block")
                   .panel("RMS of v_{b}", "mm/s")
                   .measure("RMS of v_b", "rms_velocity")
                   .chart(340));
-  section.add(cycles_chart(of, "fig06-velocity", "Relative velocity over three cycles",
+  section.add(cycles_chart(campaign, "fig06-velocity", "Relative velocity over three cycles",
                            {.quantity = "v_{r}", .unit = "mm/s"}, &RunFigures::velocity));
-  section.add(spectrum_chart(of));
+  section.add(spectrum_chart(campaign));
   const std::string own = "this campaign";
-  section.add(MeansChart(of, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
-                  .panel("frequency", "Hz")
-                  .measure(own, "frequency")
-                  .earlier("frequency")
-                  .panel("fundamental", "mm/s")
-                  .add(own, 0, [&](std::size_t g) { return fundamental_of(of.results, of.runs, of.groups[g]); })
-                  .panel("peak of v_{r}", "mm/s")
-                  .measure(own, "amplitude")
-                  .earlier("amplitude")
-                  .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."));
-  section.add(cycles_chart(of, "fig08-friction", "Friction over three cycles",
-                           {.quantity = "mu", .unit = of.friction_unit()}, &RunFigures::friction));
-  section.add(levels_chart(of, over));
-  section.add(other_parameters_chart(of, over));
+  section.add(
+      MeansChart(campaign, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
+          .panel("frequency", "Hz")
+          .measure(own, "frequency")
+          .earlier("frequency")
+          .panel("fundamental", "mm/s")
+          .add(own, 0,
+               [&](std::size_t g) { return fundamental_of(campaign.results, campaign.runs, campaign.groups[g]); })
+          .panel("peak of v_{r}", "mm/s")
+          .measure(own, "amplitude")
+          .earlier("amplitude")
+          .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."));
+  section.add(cycles_chart(campaign, "fig08-friction", "Friction over three cycles",
+                           {.quantity = "mu", .unit = campaign.friction_unit()}, &RunFigures::friction));
+  section.add(levels_chart(campaign, over));
+  section.add(other_parameters_chart(campaign, over));
   return section;
 }
 
-ReportSection law_figures(const DrawnCampaign& of) {
+ReportSection law_figures(const DrawnCampaign& campaign) {
   ReportSection section{"laws", "Measured and fitted friction, and the relative error", {}};
-  if (of.shown.size() < of.groups.size()) {
-    section.soft(
-        fmt::format("Runs of {} of {} conditions are drawn; the tables have all.", of.shown.size(), of.groups.size()));
+  if (campaign.shown.size() < campaign.groups.size()) {
+    section.soft(fmt::format("Runs of {} of {} conditions are drawn; the tables have all.", campaign.shown.size(),
+                             campaign.groups.size()));
   }
-  for (std::size_t k = 0; k < of.shown.size(); ++k) {
-    const auto drawn = first_figures(of.results, of.runs, of.groups[of.shown[k]]);
+  for (std::size_t k = 0; k < campaign.shown.size(); ++k) {
+    const auto drawn = first_figures(campaign.results, campaign.runs, campaign.groups[campaign.shown[k]]);
     if (!drawn || drawn->figures.errors.empty()) continue;
-    Chart friction = friction_chart(drawn->figures, of.friction_unit()), error = error_chart(drawn->figures);
+    Chart friction = friction_chart(drawn->figures, campaign.friction_unit()), error = error_chart(drawn->figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
-    friction.title = "Friction over velocity, " + conditions_text(of.groups[of.shown[k]]);
+    friction.title = "Friction over velocity, " + conditions_text(campaign.groups[campaign.shown[k]]);
     friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + drawn->run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
-    error.title = "Relative error (Eq 5), " + conditions_text(of.groups[of.shown[k]]);
+    error.title = "Relative error (Eq 5), " + conditions_text(campaign.groups[campaign.shown[k]]);
     section.add(std::move(friction));
     section.add(std::move(error));
   }
   return section;
 }
 
-Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
+Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
   constexpr std::size_t kMostPoints = 300;
   Chart chart{
       .id = "scatter-" + law,
@@ -297,12 +299,12 @@ Chart scatter_chart(const DrawnCampaign& of, const std::string& law) {
       .panels = {}};
   for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
     std::string name, unit;
-    for (std::size_t k = 0; k < of.shown.size(); ++k) {
-      ChartLine& line = chart.line(conditions_text(of.groups[of.shown[k]]), marked(k, false), p);
+    for (std::size_t k = 0; k < campaign.shown.size(); ++k) {
+      ChartLine& line = chart.line(conditions_text(campaign.groups[campaign.shown[k]]), marked(k, false), p);
       line.bars = true;
-      const std::vector<std::size_t>& runs = of.groups[of.shown[k]].runs;
+      const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
-        const RunResult& run = of.runs[runs[i]];
+        const RunResult& run = campaign.runs[runs[i]];
         const ResultFit* fit = run.fit(law, "joint");
         if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;
         const ResultParameter& value = fit->parameters[p];

@@ -25,11 +25,11 @@ struct DrawnCampaign {
 };
 
 /// Fig 5 to 9 of [D]: a section of charts.
-ReportSection motion_figures(const DrawnCampaign& of);
+ReportSection motion_figures(const DrawnCampaign& campaign);
 /// Fig 10 to 12 of [D].
-ReportSection law_figures(const DrawnCampaign& of);
+ReportSection law_figures(const DrawnCampaign& campaign);
 
 /// The parameters of every run, beside those of its repeats: what repeats scatter by.
-Chart scatter_chart(const DrawnCampaign& of, const std::string& law);
+Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law);
 
 }  // namespace tribofit

@@ -151,9 +151,9 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
 
 }  // namespace
 
-DrawnTrace::DrawnTrace(const Identification& of, const std::vector<const Fit*>& beside,
+DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
                        const std::vector<const Fit*>& laws, std::string prefix, double part, std::size_t record)
-    : trace(of), models(beside), curves(laws), id(std::move(prefix)), share(part) {
+    : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
   for (const Fit* model : models) predictions.push_back(predict(*model, trace.motion, trace.segmentation, record));

@@ -20,8 +20,8 @@ struct DrawnTrace {
   std::vector<SlipBranch> pieces;                ///< of the slips
   double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
 
-  DrawnTrace(const Identification& of, const std::vector<const Fit*>& beside, const std::vector<const Fit*>& laws,
-             std::string prefix, double part = 1, std::size_t record = 0);
+  DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
+             const std::vector<const Fit*>& laws, std::string prefix, double part = 1, std::size_t record = 0);
   /// Points that a series of this trace may have where a trace alone has `whole`.
   std::size_t bins(std::size_t whole) const;
 };

@@ -17,7 +17,7 @@ ChartAxis axis_for(const MapAxis& axis) {
           .high = axis.values.back() / axis.variable.si};
 }
 
-Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRows& rows, std::size_t measure) {
+Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
   const Variable &across = request.x.variable, &up = request.y.variable;
   Chart chart =
@@ -37,7 +37,7 @@ Chart map_chart(const StudiedMachine& of, const MapRequest& request, const MapRo
   for (const auto& [at_x, at_y] : edge_of_stick_slip(request, rows, every)) {
     edge.add(at_x / across.si, at_y / up.si);
   }
-  const double x = value_of(of.machine, across.name) / across.si, y = value_of(of.machine, up.name) / up.si;
+  const double x = value_of(studied.machine, across.name) / across.si, y = value_of(studied.machine, up.name) / up.si;
   if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {
     chart.lines.push_back({"the machine", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
   }
@@ -73,7 +73,7 @@ ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
 
 }  // namespace
 
-std::string render_map(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+std::string render_map(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                        const MeasureInfo& measure, const TerminalOptions& options) {
   const auto& all = measures();
   const auto k = static_cast<std::size_t>(
@@ -92,7 +92,7 @@ std::string render_map(const StudiedMachine& of, const MapRequest& request, cons
       row.push_back(cell.regime == Regime::sliding ? "slides" : significant(cell.values[k] / measure.si, 3));
     }
   }
-  TerminalText text = machine_text(of, options);
+  TerminalText text = machine_text(studied, options);
   text.table(table);
   const std::size_t unsettled = count_of(rows, Regime::not_settled);
   text.line(fmt::format("{} cells", request.x.values.size() * rows.size()) +
@@ -100,7 +100,7 @@ std::string render_map(const StudiedMachine& of, const MapRequest& request, cons
   return ended(std::move(text), "to see the speeds at which stick vanishes", "speed", options);
 }
 
-std::string map_json(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+std::string map_json(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                      const JsonOptions& options) {
   const auto axis = [](const MapAxis& a) {
     return object("name", a.variable.name, "unit", a.variable.unit, "values",
@@ -115,12 +115,12 @@ std::string map_json(const StudiedMachine& of, const MapRequest& request, const 
         grid([&](const MapCell& cell) { return number(cell.values[k] / measures()[k].si); });
   }
   const Json regimes = grid([](const MapCell& cell) { return Json(to_string(cell.regime)); });
-  return study_text(of, "map",
+  return study_text(studied, "map",
                     object("x", axis(request.x), "y", axis(request.y), "regimes", regimes, "measures", by_measure),
                     options);
 }
 
-Report report_of(const StudiedMachine& of, const MapRequest& request, const MapRows& rows,
+Report report_of(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                  const ReportOptions& options) {
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
   std::string lead = capitalised(fmt::format("{} and {} over {} x {} cells.", request.x.variable.name,
@@ -129,10 +129,10 @@ Report report_of(const StudiedMachine& of, const MapRequest& request, const MapR
     lead += " Where a colour stands for several cells, it is that of the largest value among them; --csv writes all.";
   }
   ReportSection section{"maps", "Maps", {}};
-  for (std::size_t k = 0; k < measures().size(); ++k) section.add(map_chart(of, request, rows, k));
+  for (std::size_t k = 0; k < measures().size(); ++k) section.add(map_chart(studied, request, rows, k));
   section.add(extremes_table(request, rows));
   section.add(regimes_table(rows));
-  return study_report(of, "map", "Map of the motion", std::move(lead), {std::move(section)}, options);
+  return study_report(studied, "map", "Map of the motion", std::move(lead), {std::move(section)}, options);
 }
 
 }  // namespace tribofit

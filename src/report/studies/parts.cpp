@@ -32,15 +32,15 @@ std::string friction_sentence(const Machine& m) {
   return fmt::format("{}", fmt::join(parameters, ", "));
 }
 
-std::string sharpness_text(const StudiedMachine& of) {
-  return fmt::format("smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * of.sharpness, 4));
+std::string sharpness_text(const StudiedMachine& studied) {
+  return fmt::format("smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * studied.sharpness, 4));
 }
 
-ReportTable machine_table(const StudiedMachine& of) {
+ReportTable machine_table(const StudiedMachine& studied) {
   ReportTable table("Numbers of the machine");
   table.text({"number"}).numbers({"value", "std error"}).text({"unit", "meaning"});
-  for (const Variable& v : variables_of(of.machine)) {
-    const double value = value_of(of.machine, v.name) / v.si, error = std_error_of(of, v.name) / v.si;
+  for (const Variable& v : variables_of(studied.machine)) {
+    const double value = value_of(studied.machine, v.name) / v.si, error = std_error_of(studied, v.name) / v.si;
     const bool known = std::isfinite(error);
     table.rows.push_back({v.name, known ? fixed(value, places_for(error)) : significant(value, 5),
                           known ? fixed(error, places_for(error)) : "-", v.unit == "1" ? "" : v.unit, v.meaning});
@@ -49,48 +49,49 @@ ReportTable machine_table(const StudiedMachine& of) {
 }
 
 /// The numbers of rig and drive, then the law.
-Facts facts_of(const StudiedMachine& of, const std::string& kind, const ReportOptions& options) {
-  Facts facts = {{"machine", of.source}};
+Facts facts_of(const StudiedMachine& studied, const std::string& kind, const ReportOptions& options) {
+  Facts facts = {{"machine", studied.source}};
   for (const char* name : {"mass", "stiffness", "damping-ratio", "load", "radius", "speed", "velocity"}) {
-    const Variable v = variable_named(of.machine, name);
+    const Variable v = variable_named(studied.machine, name);
     facts.emplace_back(name == std::string("velocity") ? "omega r" : v.name,
-                       significant(value_of(of.machine, v.name) / v.si, 4) + unit_behind(v.unit));
+                       significant(value_of(studied.machine, v.name) / v.si, 4) + unit_behind(v.unit));
   }
-  facts.emplace_back("natural frequency", significant(of.machine.natural_hertz(), 4) + " Hz");
-  facts.emplace_back("law", of.machine.model.name() + (of.sharpness > 0 ? ", " + sharpness_text(of) : ""));
-  facts.emplace_back("friction", friction_sentence(of.machine));
+  facts.emplace_back("natural frequency", significant(studied.machine.natural_hertz(), 4) + " Hz");
+  facts.emplace_back("law",
+                     studied.machine.model.name() + (studied.sharpness > 0 ? ", " + sharpness_text(studied) : ""));
+  facts.emplace_back("friction", friction_sentence(studied.machine));
   facts.emplace_back("study", kind);
-  if (of.record || !options.inputs.empty()) {
-    facts.emplace_back("record", of.record ? of.record->path : options.inputs.front());
+  if (studied.record || !options.inputs.empty()) {
+    facts.emplace_back("record", studied.record ? studied.record->path : options.inputs.front());
   }
   return facts;
 }
 
-Json machine_json(const StudiedMachine& of) {
-  const Machine& m = of.machine;
+Json machine_json(const StudiedMachine& studied) {
+  const Machine& m = studied.machine;
   Json parameters = Json::array();
   for (std::size_t k = 0; k < m.parameters.size(); ++k) {
     const FrictionModel::Slot& slot = m.model.parameters()[k];
     parameters.push_back(object("name", slot.parameter.name, "value", m.parameters[k] / slot.parameter.si, "unit",
                                 slot.parameter.unit, "effect", text_or_null(slot.effect)));
   }
-  return object("source", of.source, "mass_kg", m.rig.mass, "damping_N_s_per_mm", 1e-3 * m.rig.damping,
+  return object("source", studied.source, "mass_kg", m.rig.mass, "damping_N_s_per_mm", 1e-3 * m.rig.damping,
                 "stiffness_N_per_mm", 1e-3 * m.rig.stiffness, "damping_ratio", m.rig.damping_ratio(), "load_N", m.load,
                 "radius_mm", m.radius / kMillimetre, "speed_rpm", m.speed / kRpm, "velocity_mm_s",
                 m.disc_velocity() / kMillimetre, "law", to_string(m.model.law()), "effects", m.model.effect_names(),
-                "parameters", parameters, "sharpness_s_per_mm", positive_or_null(1e-3 * of.sharpness), "warnings",
-                of.warnings, "notes", of.notes);
+                "parameters", parameters, "sharpness_s_per_mm", positive_or_null(1e-3 * studied.sharpness), "warnings",
+                studied.warnings, "notes", studied.notes);
 }
 
 }  // namespace
 
-TerminalText machine_text(const StudiedMachine& of, const TerminalOptions& options) {
+TerminalText machine_text(const StudiedMachine& studied, const TerminalOptions& options) {
   TerminalText text(options);
-  for (const std::string& warning : of.warnings) text.warning(warning);
-  text.raw(fmt::format("{}: {}\n", of.source, of.machine.model.name()));
-  text.lines({rig_sentence(of.machine), friction_sentence(of.machine)});
-  if (of.sharpness > 0) text.line(sharpness_text(of));
-  text.lines(of.notes);
+  for (const std::string& warning : studied.warnings) text.warning(warning);
+  text.raw(fmt::format("{}: {}\n", studied.source, studied.machine.model.name()));
+  text.lines({rig_sentence(studied.machine), friction_sentence(studied.machine)});
+  if (studied.sharpness > 0) text.line(sharpness_text(studied));
+  text.lines(studied.notes);
   return text;
 }
 
@@ -101,25 +102,26 @@ std::string ended(TerminalText text, const std::string& purpose, const std::stri
   return text.take();
 }
 
-Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
+Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
                     std::vector<ReportSection> sections, const ReportOptions& options) {
   Report report = titled_report("study", title, "Study", std::move(lead));
-  report.warnings = of.warnings;
-  report.facts = facts_of(of, kind, options);
+  report.warnings = studied.warnings;
+  report.facts = facts_of(studied, kind, options);
   report.add(std::move(sections));
-  ReportSection machine{"machine", "The machine", {machine_table(of)}};
-  for (const std::string& note : of.notes) machine.soft("Note: " + note);
+  ReportSection machine{"machine", "The machine", {machine_table(studied)}};
+  for (const std::string& note : studied.notes) machine.soft("Note: " + note);
   std::vector<std::string> inputs = options.inputs;
-  if (inputs.empty() && of.record) inputs = {of.record->path};
+  if (inputs.empty() && studied.record) inputs = {studied.record->path};
   const std::string checksum =
-      of.record ? fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", of.record->checksum) : "";
+      studied.record ? fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", studied.record->checksum)
+                     : "";
   report.add(
       {std::move(machine), run_section(command_line(words_of({"study", kind}, options.arguments), inputs), checksum)});
   return report;
 }
 
-std::string study_text(const StudiedMachine& of, const char* kind, const Json& body, const JsonOptions& options) {
-  Json study = object("kind", kind, "machine", machine_json(of));
+std::string study_text(const StudiedMachine& studied, const char* kind, const Json& body, const JsonOptions& options) {
+  Json study = object("kind", kind, "machine", machine_json(studied));
   study.update(body);
   return text_of(object("tool", tool_json(options), "study", std::move(study)));
 }

@@ -17,7 +17,7 @@ namespace tribofit {
 /// of it.
 
 /// How the text of every study begins: warnings, and the numbers of the machine.
-TerminalText machine_text(const StudiedMachine& of, const TerminalOptions& options);
+TerminalText machine_text(const StudiedMachine& studied, const TerminalOptions& options);
 
 /// How it ends: the study of another kind as the next command. `more`: options behind the kind.
 std::string ended(TerminalText text, const std::string& purpose, const std::string& kind,
@@ -25,11 +25,11 @@ std::string ended(TerminalText text, const std::string& purpose, const std::stri
 
 /// The page of a study: facts and warnings of the machine, the sections of the study, every number of the machine with
 /// its standard error, and how to run the study again. kind: "speed", "phase", ...; lead: what a reader must know.
-Report study_report(const StudiedMachine& of, const std::string& kind, const std::string& title, std::string lead,
+Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
                     std::vector<ReportSection> sections, const ReportOptions& options);
 
 /// Its JSON: {"tool", "study": {"kind", "machine", members of `body`}}.
-std::string study_text(const StudiedMachine& of, const char* kind, const Json& body, const JsonOptions& options);
+std::string study_text(const StudiedMachine& studied, const char* kind, const Json& body, const JsonOptions& options);
 
 /// The regime and the measures of a motion, under the names of the columns in CSV.
 Json settled_json(const Settled& settled);

@@ -16,7 +16,7 @@ std::string speed_text(const Portrait& portrait) {
   return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
 }
 
-Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
+Chart portrait_chart(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
   Chart chart = portrait_plane(
       fmt::format("phase-{}", number),
       fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
@@ -25,7 +25,7 @@ Chart portrait_chart(const StudiedMachine& of, const Portrait& portrait, std::si
   if (portrait.cycle.size() > 0) {
     add_loop({"settled cycle", portrait.cycle}, kCycleBins, {.colour = Colour::black, .width = 2}, chart, true);
   }
-  const BlockMotion measured = measured_motion(of, portrait.velocity);
+  const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
     add_loop({fmt::format("measured, {} cycles", measured.cycles), measured}, kCycleBins,
              {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
@@ -63,11 +63,11 @@ Chart time_chart(const Portrait& portrait, std::size_t number) {
 }
 
 /// The block at one speed, and as it was measured where it was.
-Animation animation_of(const StudiedMachine& of, const Portrait& portrait, std::size_t number) {
+Animation animation_of(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
   Animation out{.id = fmt::format("block-{}", number),
                 .title = "The block on its disc at " + speed_text(portrait),
                 .disc_velocity = portrait.velocity / kMillimetre};
-  const BlockMotion measured = measured_motion(of, portrait.velocity);
+  const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
     out.blocks.push_back(animated({"measured", measured}));
     out.note = "Measured (three cycles) beside simulated (one settled cycle).";
@@ -125,8 +125,9 @@ void write_motion(WholeFolder& files, const std::string& name, const SimulatedMo
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& of, const std::vector<Portrait>& study, const TerminalOptions& options) {
-  TerminalText text = machine_text(of, options);
+std::string render_study(const StudiedMachine& studied, const std::vector<Portrait>& study,
+                         const TerminalOptions& options) {
+  TerminalText text = machine_text(studied, options);
   text.table(portraits_table(study));
   for (const Portrait& portrait : study) text.line(seen_sentence(portrait.settled), 2, 4);
   if (!options.csv_written) {
@@ -136,12 +137,12 @@ std::string render_study(const StudiedMachine& of, const std::vector<Portrait>& 
   return ended(std::move(text), "to see the speed at which stick vanishes", "speed", options);
 }
 
-std::string study_json(const StudiedMachine& of, const std::vector<Portrait>& study, const JsonOptions& options) {
+std::string study_json(const StudiedMachine& studied, const std::vector<Portrait>& study, const JsonOptions& options) {
   const auto portrait = [](const Portrait& p) {
     return object("velocity_mm_s", p.velocity / kMillimetre, "settled", explained_json(p.settled), "start",
                   motion_json(p.start), "cycle", p.cycle.size() > 0 ? motion_json(p.cycle) : Json());
   };
-  return study_text(of, "phase", object("portraits", list_of(study, portrait)), options);
+  return study_text(studied, "phase", object("portraits", list_of(study, portrait)), options);
 }
 
 void write_study(const std::string& folder, const std::vector<Portrait>& study) {
@@ -157,7 +158,7 @@ void write_study(const std::string& folder, const std::vector<Portrait>& study) 
   files.commit();
 }
 
-Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, const ReportOptions& options) {
+Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& study, const ReportOptions& options) {
   std::vector<const Portrait*> drawn;
   for (const std::size_t i : thinned(study.size(), kDrawn)) drawn.push_back(&study[i]);
   ReportSection portraits{"phase", "Displacement and velocity", {}};
@@ -167,13 +168,13 @@ Report report_of(const StudiedMachine& of, const std::vector<Portrait>& study, c
   }
   if (drawn.size() > 1) portraits.add(all_portraits(drawn));
   for (std::size_t k = 0; k < drawn.size(); ++k) {
-    portraits.add(portrait_chart(of, *drawn[k], k + 1));
+    portraits.add(portrait_chart(studied, *drawn[k], k + 1));
     times.add(time_chart(*drawn[k], k + 1));
-    if (drawn[k]->cycle.size() > 0) moving.add(animation_of(of, *drawn[k], k + 1));
+    if (drawn[k]->cycle.size() > 0) moving.add(animation_of(studied, *drawn[k], k + 1));
   }
   portraits.add(portraits_table(study));
   Report report =
-      study_report(of, "phase", "Phase portraits", regimes_sentence(study), {portraits, moving, times}, options);
+      study_report(studied, "phase", "Phase portraits", regimes_sentence(study), {portraits, moving, times}, options);
   for (const Portrait& portrait : study) {
     const std::string seen = seen_sentence(portrait.settled);
     if (!seen.empty()) report.warnings.push_back(speed_text(portrait) + ": " + seen);

@@ -87,9 +87,9 @@ Chart spectrum_chart(const Response& study, const char* id, const char* title, C
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& of, const Response& study, const TerminalOptions& options) {
+std::string render_study(const StudiedMachine& studied, const Response& study, const TerminalOptions& options) {
   constexpr std::size_t kHarmonics = 8;
-  TerminalText text = machine_text(of, options);
+  TerminalText text = machine_text(studied, options);
   text.heading("Response to a force");
   text.line(fmt::format("natural frequency {} Hz, damped {} Hz; response frequency {} Hz",
                         significant(study.natural_frequency, 5), significant(study.damped_natural_frequency, 5),
@@ -101,13 +101,13 @@ std::string render_study(const StudiedMachine& of, const Response& study, const 
   return ended(std::move(text), "to see portraits of the motion", "phase", options);
 }
 
-std::string study_json(const StudiedMachine& of, const Response& study, const JsonOptions& options) {
+std::string study_json(const StudiedMachine& studied, const Response& study, const JsonOptions& options) {
   Json curve = Json::array();
   for (std::size_t i = 0; i < study.frequency.size(); ++i) {
     curve.push_back(interval_json(study.frequency[i], study.amplitude[i] / kMillimetre));
   }
   return study_text(
-      of, "response",
+      studied, "response",
       object("natural_frequency_hz", study.natural_frequency, "damped_natural_frequency_hz",
              study.damped_natural_frequency, "force_N", study.force, "settled", explained_json(study.settled),
              "harmonics", list_of(study.harmonics, harmonic_json), "curve_hz_mm", curve),
@@ -123,7 +123,7 @@ void write_study(const std::string& folder, const Response& study) {
   files.commit();
 }
 
-Report report_of(const StudiedMachine& of, const Response& study, const ReportOptions& options) {
+Report report_of(const StudiedMachine& studied, const Response& study, const ReportOptions& options) {
   const std::string frequency = study.harmonics.empty() ? "none: " + std::string(to_string(study.settled.regime))
                                                         : significant(study.settled.frequency, 5) + " Hz";
   std::string lead = fmt::format("Natural frequency {} Hz, damped {} Hz; response frequency {}. {}.",
@@ -140,7 +140,8 @@ Report report_of(const StudiedMachine& of, const Response& study, const ReportOp
                                {.quantity = "displacement", .unit = "mm"}, &ResponseLine::displacement, kMillimetre));
     section.add(harmonics_table(study));
   }
-  Report report = study_report(of, "response", "Response to a force", std::move(lead), {std::move(section)}, options);
+  Report report =
+      study_report(studied, "response", "Response to a force", std::move(lead), {std::move(section)}, options);
   const std::string seen = seen_sentence(study.settled);
   if (!seen.empty()) report.warnings.push_back(seen);
   return report;

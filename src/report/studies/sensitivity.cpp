@@ -72,9 +72,9 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity>& study,
+std::string render_study(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
                          const TerminalOptions& options) {
-  TerminalText text = machine_text(of, options);
+  TerminalText text = machine_text(studied, options);
   text.table(elasticity_table(study));
   text.heading("What matters most");
   for (std::size_t k = 0; k < measures().size(); ++k) {
@@ -85,7 +85,8 @@ std::string render_study(const StudiedMachine& of, const std::vector<Sensitivity
                {"--x", "stiffness", "--y", "mass", "--csv", "map/"});
 }
 
-std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>& study, const JsonOptions& options) {
+std::string study_json(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
+                       const JsonOptions& options) {
   const auto variable = [](const Sensitivity& one) {
     Json elasticities = Json::object(), sweep = Json::array();
     for (std::size_t k = 0; k < one.elasticities.size(); ++k) {
@@ -103,7 +104,7 @@ std::string study_json(const StudiedMachine& of, const std::vector<Sensitivity>&
   for (std::size_t k = 0; k < measures().size(); ++k) {
     order[measures()[k].name] = list_of(ranked(study, k), [&](std::size_t i) { return Json(study[i].variable.name); });
   }
-  return study_text(of, "sensitivity", object("variables", list_of(study, variable), "ranked", order), options);
+  return study_text(studied, "sensitivity", object("variables", list_of(study, variable), "ranked", order), options);
 }
 
 void write_study(const std::string& folder, const std::vector<Sensitivity>& study) {
@@ -122,7 +123,7 @@ void write_study(const std::string& folder, const std::vector<Sensitivity>& stud
   files.commit();
 }
 
-Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study, const ReportOptions& options) {
+Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& study, const ReportOptions& options) {
   std::vector<std::string> lead;
   ReportSection bars{"elasticities", "Ranked elasticities", {}}, sweeps{"sweeps", "Each measure over each number", {}};
   for (std::size_t k = 0; k < measures().size(); ++k) {
@@ -134,7 +135,7 @@ Report report_of(const StudiedMachine& of, const std::vector<Sensitivity>& study
                                study[order.front()].variable.name, with_sign(study[order.front()].elasticities[k], 3)));
   }
   bars.add(elasticity_table(study));
-  return study_report(of, "sensitivity", "Which number matters",
+  return study_report(studied, "sensitivity", "Which number matters",
                       lead.empty() ? "At this machine no measure has an elasticity."
                                    : capitalised(fmt::format("{}.", fmt::join(lead, "; "))),
                       {std::move(bars), std::move(sweeps)}, options);

@@ -20,12 +20,12 @@ Json range_json(const Range& range, double unit) {
 }
 
 /// Where sliding gains or loses its stability, where stick vanishes and comes back, with their 95 % ranges.
-std::vector<std::string> critical_sentences(const StudiedMachine& of, const SpeedStudy& study) {
+std::vector<std::string> critical_sentences(const StudiedMachine& studied, const SpeedStudy& study) {
   const CriticalSpeed& c = study.critical;
   std::vector<std::string> out;
   const auto add = [&](const char* what, double value, const Range& range) {
     if (std::isnan(value)) return;
-    std::string sentence = fmt::format("{} {}", what, velocity_text(value, of.machine));
+    std::string sentence = fmt::format("{} {}", what, velocity_text(value, studied.machine));
     if (!std::isnan(range.lower95)) sentence += ",  " + range_text(range, kMillimetre) + " mm/s (95 %)";
     out.push_back(std::move(sentence));
   };
@@ -65,9 +65,9 @@ std::string bistable_sentence(const CriticalSpeed& c) {
 }
 
 /// The measures of the machine at its own speed, with their 95 % ranges.
-ReportTable own_table(const StudiedMachine& of, const SpeedStudy& study) {
-  ReportTable table(
-      fmt::format("At {}: {}", velocity_text(of.machine.disc_velocity(), of.machine), to_string(study.own.regime)));
+ReportTable own_table(const StudiedMachine& studied, const SpeedStudy& study) {
+  ReportTable table(fmt::format("At {}: {}", velocity_text(studied.machine.disc_velocity(), studied.machine),
+                                to_string(study.own.regime)));
   table.text({"measure"}).numbers({"value", "95 % interval"}).text({"unit"}).text({"meaning"}, 1);
   for (std::size_t k = 0; k < measures().size(); ++k) {
     const MeasureInfo& measure = measures()[k];
@@ -142,12 +142,12 @@ void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t
 }
 
 /// What the record says at its own speed; nothing where it does not.
-void add_measured(const StudiedMachine& of, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
-  const Estimate* value = measured_value(of, measure);
+void add_measured(const StudiedMachine& studied, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  const Estimate* value = measured_value(studied, measure);
   if (value == nullptr) return;
   ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
   line.bars = true;
-  line.add(of.machine.disc_velocity() / kMillimetre, value->value / measure.si,
+  line.add(studied.machine.disc_velocity() / kMillimetre, value->value / measure.si,
            kNormalQuantile95 * value->std_error / measure.si);
 }
 
@@ -159,7 +159,7 @@ ChartAxis speed_axis(const SpeedStudy& study) {
   return {.quantity = "speed of the disc", .unit = "mm/s", .logarithmic = wide};
 }
 
-Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const char* id, const char* title,
+Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const char* id, const char* title,
                  const std::vector<std::string>& names) {
   Chart chart{.id = id,
               .title = title,
@@ -171,9 +171,9 @@ Chart over_speed(const StudiedMachine& of, const SpeedStudy& study, const char* 
     const std::size_t panel = chart.panels.size();
     chart.panels.push_back({{.quantity = measure.name, .unit = measure.unit, .from_zero = true}});
     add_sweeps(study, measure, panel, chart);
-    add_measured(of, measure, panel, chart);
+    add_measured(studied, measure, panel, chart);
     if (name == "frequency") {
-      chart.marks.push_back({of.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
+      chart.marks.push_back({studied.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
     }
     if (name == "stick-time") {
       add_range(study.vanishes_range, panel, chart);
@@ -199,19 +199,19 @@ Chart growth_chart(const SpeedStudy& study) {
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& of, const SpeedStudy& study, const TerminalOptions& options) {
+std::string render_study(const StudiedMachine& studied, const SpeedStudy& study, const TerminalOptions& options) {
   constexpr std::size_t kSpeeds = 20;
-  TerminalText text = machine_text(of, options);
-  text.table(own_table(of, study));
+  TerminalText text = machine_text(studied, options);
+  text.table(own_table(studied, study));
   text.line(seen_sentence(study.own), 2, 4);
   text.heading("Critical speed");
-  text.lines(critical_sentences(of, study), 2, 4);
+  text.lines(critical_sentences(studied, study), 2, 4);
   text.line(bistable_sentence(study.critical));
   text.table(speed_table(study, kSpeeds));
   return ended(std::move(text), "to see which number matters", "sensitivity", options);
 }
 
-std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const JsonOptions& options) {
+std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, const JsonOptions& options) {
   Json points = Json::array();
   for (std::size_t i = 0; i < study.velocity.size(); ++i) {
     points.push_back(object("velocity_mm_s", study.velocity[i] / kMillimetre, "growth_rate_1_s", study.growth_rate[i],
@@ -229,7 +229,7 @@ std::string study_json(const StudiedMachine& of, const SpeedStudy& study, const 
              c.stick_returns / kMillimetre, "stick_returns_ci95_mm_s", range_json(study.returns_range, kMillimetre),
              "searched_mm_s", interval_json(c.lowest / kMillimetre, c.highest / kMillimetre), "nothing_sticks",
              c.below_range, "always_sticks", c.above_range);
-  return study_text(of, "speed", object("own", own, "critical_speed", critical, "points", points), options);
+  return study_text(studied, "speed", object("own", own, "critical_speed", critical, "points", points), options);
 }
 
 void write_study(const std::string& folder, const SpeedStudy& study) {
@@ -243,25 +243,25 @@ void write_study(const std::string& folder, const SpeedStudy& study) {
   files.commit();
 }
 
-Report report_of(const StudiedMachine& of, const SpeedStudy& study, const ReportOptions& options) {
+Report report_of(const StudiedMachine& studied, const SpeedStudy& study, const ReportOptions& options) {
   std::vector<std::string> lead;
-  for (const std::string& sentence : critical_sentences(of, study)) lead.push_back(capitalised(sentence) + ".");
+  for (const std::string& sentence : critical_sentences(studied, study)) lead.push_back(capitalised(sentence) + ".");
   const std::string between = bistable_sentence(study.critical);
   if (!between.empty()) lead.push_back(between);
   ReportSection section{"speed", "Over the speed of the disc", {}};
-  Chart motion = over_speed(of, study, "speed-motion", "Frequency, stick and amplitude over speed",
+  Chart motion = over_speed(studied, study, "speed-motion", "Frequency, stick and amplitude over speed",
                             {"frequency", "stick-time", "peak-to-peak"});
   motion.note = "Where the two ways differ, both motions go on where they have begun.";
   section.add(std::move(motion));
-  section.add(over_speed(of, study, "speed-energy", "Energy before break-away and fastest slip over speed",
+  section.add(over_speed(studied, study, "speed-energy", "Energy before break-away and fastest slip over speed",
                          {"energy", "peak-speed"}));
   section.add(growth_chart(study));
-  section.add(own_table(of, study));
+  section.add(own_table(studied, study));
   constexpr std::size_t kMostRows = 200;
   ReportTable table = speed_table(study, kMostRows);
   table.folded = true;
   section.add(std::move(table));
-  Report report = study_report(of, "speed", "Motion over speed", fmt::format("{}", fmt::join(lead, " ")),
+  Report report = study_report(studied, "speed", "Motion over speed", fmt::format("{}", fmt::join(lead, " ")),
                                {std::move(section)}, options);
   if (study.own.regime == Regime::not_settled) report.warnings.push_back(seen_sentence(study.own));
   return report;
