@@ -109,9 +109,9 @@ std::optional<RecordKind> kind_from(const Settings& s) {
     throw UsageError(fmt::format("{} says --kind {}, and --kind {} another", option, to_string(kind), s.kind));
   };
   if (s.never_sticks) refuse_beside("--never-sticks", RecordKind::sliding);
-  const bool of_motion = !s.damping.empty() || !s.rubs_on.empty();
-  if (of_motion) refuse_beside("--damping or --rubs-on", RecordKind::motion_only);
-  if (of_motion || s.kind == to_string(RecordKind::motion_only)) return RecordKind::motion_only;
+  const bool is_motion_only = !s.damping.empty() || !s.rubs_on.empty();
+  if (is_motion_only) refuse_beside("--damping or --rubs-on", RecordKind::motion_only);
+  if (is_motion_only || s.kind == to_string(RecordKind::motion_only)) return RecordKind::motion_only;
   // With a displacement the other columns show whether it is the motion alone.
   if (names_position(s)) return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
   if (!s.stiffness.empty()) refuse_beside("--stiffness", RecordKind::spring_slider);

@@ -148,7 +148,7 @@ std::string citation(const std::vector<std::string>& what) {
 void add_cite(const Command& app) {
   const Command verb = app.add_verb("cite", "How to cite tribofit, its method, and the sources of laws and effects");
   verb.footer(
-      "A result that --json wrote is told in a paragraph for a paper, with the sources of what it uses.\n\n"
+      "A result that --json wrote is summarised in a paragraph for a paper, with the sources of what it uses.\n\n"
       "Examples:\n"
       "  identify cite\n"
       "  identify cite exponential runout\n"

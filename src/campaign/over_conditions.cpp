@@ -50,15 +50,15 @@ std::string without(const PooledGroup& group, Condition Conditions::*which) {
 
 OverConditions::OverConditions(std::span<const PooledGroup> groups) {
   std::size_t most = 1;
-  const NumericCondition* chosen = nullptr;
+  const NumericCondition* most_varied = nullptr;
   for (const NumericCondition& condition : kNumeric) {
     const std::size_t count = count_of_values(groups, condition.which);
-    if (count > most) most = count, chosen = &condition;
+    if (count > most) most = count, most_varied = &condition;
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    x_.push_back(chosen != nullptr ? (groups[g].conditions.*(chosen->which)).value / chosen->si
-                                   : static_cast<double>(g));
-    const std::string name = chosen != nullptr ? without(groups[g], chosen->which) : "";
+    x_.push_back(most_varied != nullptr ? (groups[g].conditions.*(most_varied->which)).value / most_varied->si
+                                        : static_cast<double>(g));
+    const std::string name = most_varied != nullptr ? without(groups[g], most_varied->which) : "";
     auto found = std::find_if(series_.begin(), series_.end(), [&](const Series& s) { return s.name == name; });
     if (found == series_.end()) found = series_.insert(series_.end(), {name, {}, {}});
     found->groups.push_back(g);
@@ -67,9 +67,9 @@ OverConditions::OverConditions(std::span<const PooledGroup> groups) {
     std::stable_sort(one.groups.begin(), one.groups.end(), [&](std::size_t a, std::size_t b) { return x_[a] < x_[b]; });
     for (const std::size_t g : one.groups) one.x.push_back(x_[g]);
   }
-  if (chosen != nullptr) {
-    quantity_ = chosen->quantity;
-    unit_ = chosen->unit;
+  if (most_varied != nullptr) {
+    quantity_ = most_varied->quantity;
+    unit_ = most_varied->unit;
     return;
   }
   for (const PooledGroup& group : groups) names_.push_back(conditions_text(group));

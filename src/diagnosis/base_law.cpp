@@ -18,10 +18,10 @@ bool bends(const DiagnosisContext& context, const Trial& trial) {
 
 CompetingLaws base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects) {
   CompetingLaws out;
-  const bool chosen = given.size() == 1;
+  const bool is_given = given.size() == 1;
   for (const Law& law : law_catalogue()) {
     const bool known = std::find(given.begin(), given.end(), law) != given.end();
-    if (!chosen && !known && !constant_in_slip(law)) out.others.push_back(law);
+    if (!is_given && !known && !constant_in_slip(law)) out.others.push_back(law);
   }
   const bool sticks = std::any_of(records.begin(), records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;

@@ -10,8 +10,8 @@
 namespace tribofit {
 namespace {
 
-/// Share of the error above the floor from which a variable is worth naming; p value up to which it, or a confirmation,
-/// is not chance; share that is "most".
+/// Share of the error above the noise floor from which a variable is worth naming; p value up to which it, or a
+/// confirmation, is not chance; share that is "most".
 constexpr double kWorthNaming = 0.05, kSignificant = 0.05, kMost = 0.5;
 
 bool is_named(const Share& s) {

@@ -30,7 +30,7 @@ const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key
 enum class FloorComparison { unknown, below, at, above };
 FloorComparison against_floor(double held_out_rmse, double floor_rmse);
 
-/// Share of the squares of the base law above the floor that is gone at a rung; NaN where none is above it.
+/// Share of the squares of the base law above the noise floor that is gone at a rung; NaN where none is above it.
 double removed_at(const Diagnosis& diagnosis, std::size_t rung);
 
 /// The last rung predicts the run that took no part better than the base law, and not by chance.

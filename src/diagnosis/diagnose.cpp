@@ -209,7 +209,7 @@ bool is_most_left(const std::vector<Fit>& fits, double floor) {
   return fits.size() > 1 && clear && last * last - floor * floor > limits::kMostLeft * (first * first - floor * floor);
 }
 
-/// Far above the floor, an error that goes with no variable of these data is not explained either.
+/// Far above the noise floor, an error that no recorded variable explains is not explained either.
 void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
   const bool added = fits.size() > 1;
   diagnosis.verdict = structured ? Verdict::unexplained : added ? Verdict::effect_found : Verdict::sufficient;
@@ -224,7 +224,7 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
     diagnosis.messages.push_back("the effects found explain less than half of the error above the noise floor");
     return;
   }
-  // Few cycles that wander say little of a floor, and as little of an error.
+  // Few cycles that wander say little of a noise floor, and as little of an error.
   if (!(error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse)) return;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(

@@ -25,14 +25,14 @@ bool contains(const std::vector<std::size_t>& list, std::size_t value) {
 }
 
 /// The last time a candidate was judged, with the step beside which it was.
-struct LastJudged {
+struct LastResult {
   const CandidateResult* judged = nullptr;
   std::size_t step = 0;  ///< it stood beside this step of the ladder
   bool ever_passed = false;
 };
 
-LastJudged last_judged(const Ladder& ladder, std::size_t candidate) {
-  LastJudged out;
+LastResult last_result(const Ladder& ladder, std::size_t candidate) {
+  LastResult out;
   const auto look = [&](const std::vector<CandidateResult>& list, std::size_t step) {
     for (const CandidateResult& judged : list) {
       if (judged.candidate != candidate || !judged.trial.usable) continue;
@@ -127,7 +127,7 @@ struct FindingInputs {
   double above;                  ///< mean square of the base law above the noise floor
 };
 
-/// Share of the squares above the floor that a fall of the RMSE takes away; squares: after the fall.
+/// Share of the squares above the noise floor that a fall of the RMSE takes away; squares: after the fall.
 double reduction(const FindingInputs& in, double before, double squares) {
   return std::clamp((before * before - squares) / in.above, -1.0, 1.0);
 }
@@ -147,7 +147,7 @@ void describe_from_the_start(const FindingInputs& in, EffectFinding& finding) {
 }
 
 /// Error and parameters of a candidate where it was judged last.
-void describe_last_trial(const FindingInputs& in, const LastJudged& last, EffectFinding& finding) {
+void describe_last_trial(const FindingInputs& in, const LastResult& last, EffectFinding& finding) {
   // Whitened squares fall as the squares themselves do.
   const double before = in.fits[last.step].error.held_out_rmse;
   const auto in_stick = [](const Trial& trial) { return trial.stick.rigid - trial.stick.left; };
@@ -176,7 +176,7 @@ bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judge
 /// What stands against a candidate beside the last step of the ladder is chance alone, though it would take away much
 /// of what is left above the noise floor (at the noise floor nothing is left). Or its bounds alone, also at the noise
 /// floor: another effect may take its place there.
-bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last) {
+bool is_possible(const FindingInputs& in, std::size_t k, const LastResult& last) {
   if (last.judged == nullptr || last.step + 1 != in.ladder.steps.size()) return false;
   const CandidateResult& judged = *last.judged;
   if (!(judged.size > limits::kLeastPossible) || !(judged.fall > 0)) return false;
@@ -187,7 +187,7 @@ bool is_possible(const FindingInputs& in, std::size_t k, const LastJudged& last)
 }
 
 /// Status and reason of a candidate that may not be on the ladder.
-void say_why_not(const FindingInputs& in, std::size_t k, const LastJudged& last, EffectFinding& finding) {
+void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last, EffectFinding& finding) {
   finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::unsupported;
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
                    : last.judged != nullptr ? why_not(*last.judged, in.all[k], in.context.fine.observations)
@@ -245,7 +245,7 @@ EffectFinding finding_of(const FindingInputs& in, std::size_t k) {
     finding.status = EffectStatus::untestable;
     finding.reason = why;
   } else {
-    const LastJudged last = last_judged(in.ladder, k);
+    const LastResult last = last_result(in.ladder, k);
     if (last.judged != nullptr) describe_last_trial(in, last, finding);
     say_why_not(in, k, last, finding);
     describe_place(in, k, finding);

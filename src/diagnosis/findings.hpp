@@ -15,7 +15,7 @@ std::vector<EffectFinding> findings_of(const DiagnosisContext& context, const La
                                        const std::vector<Candidate>& all, const std::vector<Fit>& fits, double floor);
 
 /// Shares of the probes, largest first; those that chance would make too are left out.
-/// above: the squares above the floor.
+/// above: the squares above the noise floor.
 std::vector<Share> shares_of(const std::vector<Probe>& probes, double above);
 
 /// Adds the share that goes with the stick, where the last rung explains how the block moves there.

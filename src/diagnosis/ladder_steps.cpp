@@ -55,13 +55,13 @@ void put_in_order(const DiagnosisContext& context, Ladder& ladder, const std::ve
 std::vector<const CandidateResult*> rivals_of(const LadderStep& step, const Trial& full,
                                               const std::vector<Candidate>& candidates) {
   const std::vector<std::string> present = full.model.effect_keys();
-  const auto chosen = std::find_if(step.judged.begin(), step.judged.end(),
-                                   [&](const CandidateResult& j) { return j.candidate == *step.added; });
+  const auto added = std::find_if(step.judged.begin(), step.judged.end(),
+                                  [&](const CandidateResult& j) { return j.candidate == *step.added; });
   std::vector<const CandidateResult*> rivals;
   for (const CandidateResult& judged : step.judged) {
     const std::string& key = candidates[judged.candidate].info.key;
     const bool is_present = std::find(present.begin(), present.end(), key) != present.end();
-    const bool near = chosen == step.judged.end() || judged.fall > limits::kRivalPart * chosen->fall;
+    const bool near = added == step.judged.end() || judged.fall > limits::kRivalPart * added->fall;
     if (judged.trial.usable && judged.plausible && !is_present && near) rivals.push_back(&judged);
   }
   return rivals;

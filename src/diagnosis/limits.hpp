@@ -62,8 +62,8 @@ inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles
 /// known the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond
 /// three standard deviations, with some room for the models themselves being approximations.
 inline constexpr double kDistinguishable = 40;
-/// The same of two laws where slow noise is counted, which leaves such models no room. More: in 1/f noise a law with a parameter
-/// less is taken though what it leaves is beyond the noise (twelve speeds, nothing hidden).
+/// The same of two laws where slow noise is counted, which leaves such models no room. More: in 1/f noise a law with a
+/// parameter less is taken though what it leaves is beyond the noise (twelve speeds, nothing hidden).
 inline constexpr double kDistinguishableInSlowNoise = 10;
 inline constexpr double kDistinguishableSize = 0.003;  ///< and by this part of the squares of the noise
 inline constexpr double kSizeOfParameter = 0.02;       ///< a longer ladder must earn as much for each parameter more
@@ -106,7 +106,7 @@ inline constexpr double kChanceOfShare = 0.05;      ///< for a share that is onl
 inline constexpr double kLeastStructure = 0.05;     ///< of the squares of the noise: smaller structure does not matter
 inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
 inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
-inline constexpr double kMostLeft = 0.5;     ///< of the squares above the floor: what was found is the smaller part
+inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part
 inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is no chance
 inline constexpr int kHarmonicsOfAngle = 6;  ///< of a turn: a disc's faults are low ones, and more cost evidence
 inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering

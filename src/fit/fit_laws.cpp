@@ -46,7 +46,7 @@ std::size_t best_of(const std::vector<Fit>& fits) {
   return best;
 }
 
-/// One noise floor a trace, that of the best fit: the floor is a property of the data.
+/// One noise floor a trace, that of the best fit: it is a property of the data.
 void share_floor(std::vector<Fit>& fits, std::size_t best) {
   const Floor floor = fits[best].floor;
   for (Fit& fit : fits) {

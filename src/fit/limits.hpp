@@ -33,11 +33,12 @@ inline constexpr std::size_t kEnoughLevels = 2000;
 
 // ---- how good a fit is
 
-/// Held-out error over the noise floor up to which what remains is called noise: floors are known to some per cent, and
-/// every parameter costs a little on held-out cycles. Lower: true laws of short records count as lacking something.
+/// Held-out error over the noise floor up to which what remains is called noise: noise floors are known to some per
+/// cent, and every parameter costs a little on held-out cycles. Lower: true laws of short records count as lacking
+/// something.
 inline constexpr double kAtFloor = 1.15;
-/// The same ratio from which a fit is well above the floor, so that means that agree may hide what it misses, and from
-/// which it says no more than "far above".
+/// The same ratio from which a fit is well above the noise floor, so that means that agree may hide what it misses, and
+/// from which it says no more than "far above".
 inline constexpr double kWellAbove = 1.25, kFarAboveFloor = 100;
 
 /// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.

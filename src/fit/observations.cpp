@@ -71,7 +71,7 @@ double mean_about(const std::vector<double>& x, std::size_t i, std::size_t half)
 }
 
 /// A slip that does not begin in stick goes on from the one before it (a reversal, the next piece of a record that
-/// never sticks): its memory starts in steady state that many values earlier. What was measured is not told to it.
+/// never sticks): its memory starts in steady state that many values earlier. It does not see what was measured.
 void go_on_from(const Observations::SlipObservation& before, Observations::SlipObservation& slip, Observations& out) {
   constexpr std::size_t kValues = 20;  // a memory of the slip's own time has decayed over them
   slip.lead_begin = out.lead_time.size();

@@ -42,16 +42,16 @@ BalanceSolution solve_balance(const Balance& balance, std::vector<BalanceColumn>
                               const Eigen::Vector3d& theta) {
   BalanceSolution out;
   out.columns = std::move(columns);
-  const Eigen::MatrixXd chosen = selection(out.columns, theta);
-  const Eigen::MatrixXd noise = chosen.transpose() * balance.noise * chosen;
-  const Eigen::Index p = chosen.cols(), n = Eigen::Index(balance.blocks.size());
+  const Eigen::MatrixXd selected = selection(out.columns, theta);
+  const Eigen::MatrixXd noise = selected.transpose() * balance.noise * selected;
+  const Eigen::Index p = selected.cols(), n = Eigen::Index(balance.blocks.size());
   std::vector<Eigen::MatrixXd> products;
   std::vector<Eigen::VectorXd> sides;
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(p, p), raw = total;
   Eigen::VectorXd side = Eigen::VectorXd::Zero(p);
   double squares = 0, rows = 0;
   for (const Eigen::MatrixXd& block : balance.blocks) {
-    const Eigen::MatrixXd x = block * chosen;
+    const Eigen::MatrixXd x = block * selected;
     const auto freedom = static_cast<double>(block.rows() - 2);
     products.push_back(x.transpose() * x - freedom * noise);
     sides.push_back(x.transpose() * block.col(kForce));
@@ -69,7 +69,8 @@ BalanceSolution solve_balance(const Balance& balance, std::vector<BalanceColumn>
   if (out.columns.back() != kJerk) {
     Eigen::VectorXd late = Eigen::VectorXd::Zero(p);
     const Eigen::MatrixXd slope = selection({kJerk}, out.values.head(3));
-    for (const Eigen::MatrixXd& block : balance.blocks) late -= chosen.transpose() * block.transpose() * block * slope;
+    for (const Eigen::MatrixXd& block : balance.blocks)
+      late -= selected.transpose() * block.transpose() * block * slope;
     out.per_delay = inverse * late;
   }
   out.influence.resize(n, p);

@@ -30,7 +30,7 @@ SpectralLines strongest_ringing(const Observations& observations, std::span<cons
 /// Below this a steady line has less than half a period in a slip: it moves slips as a whole, as slow noise does [Hz].
 double lowest_steady_line(const Observations& observations);
 
-/// Below this a ring has too few periods in a slip to be told from the shape of the law [Hz].
+/// Below this a ring has too few periods in a slip to be distinguished from the shape of the law [Hz].
 double lowest_ringing(const Observations& observations);
 
 /// Samples per second of the observations, at the least [Hz].

@@ -292,11 +292,12 @@ class Assembler {
 
   void set_velocity() {
     const bool block = run_.has(Channel::v_b), relative = run_.has(Channel::v_r);
-    const bool of_spring = run_.kind == RecordKind::spring_slider, of_motion = run_.kind == RecordKind::motion_only;
+    const bool is_spring_slider = run_.kind == RecordKind::spring_slider,
+               is_motion_only = run_.kind == RecordKind::motion_only;
     trace_.velocity_kind = VelocityKind::relative;
-    if (of_spring || run_.kind == RecordKind::force_only) return;     // follows from the pull, or not at all
-    if (of_motion || (run_.has_position() && !block && !relative)) {  // kinematics/ makes it of the displacement
-      if (!of_motion && !run_.has(Channel::x_d)) trace_.velocity_kind = VelocityKind::block;
+    if (is_spring_slider || run_.kind == RecordKind::force_only) return;   // follows from the pull, or not at all
+    if (is_motion_only || (run_.has_position() && !block && !relative)) {  // kinematics/ makes it of the displacement
+      if (!is_motion_only && !run_.has(Channel::x_d)) trace_.velocity_kind = VelocityKind::block;
       trace_.block_position = std::move(run_[Channel::x_b]);
       trace_.drive_position = std::move(run_[Channel::x_d]);
       return;

@@ -230,14 +230,14 @@ class Finder {
       return request && !request->column.empty() && !request->ignored();
     };
     const bool any_named = std::any_of(order.begin(), order.end(), named);
-    bool chosen = false;
+    bool is_found = false;
     for (const Channel channel : order) {
       auto& taken = taken_[index_of(channel)];
       if (!taken) continue;
-      if (chosen || (any_named && !named(channel))) {
+      if (is_found || (any_named && !named(channel))) {
         taken.reset();
       } else {
-        chosen = true;
+        is_found = true;
       }
     }
   }

@@ -55,7 +55,7 @@ std::vector<std::size_t> find_gappy_rows(const RawTable& table, const std::vecto
   return rows;
 }
 
-void leave_out(const std::vector<std::size_t>& rows, FileRecord& recording) {
+void exclude(const std::vector<std::size_t>& rows, FileRecord& recording) {
   if (rows.empty()) return;
   constexpr std::size_t most_shown = 12;
   std::vector<std::string> places;

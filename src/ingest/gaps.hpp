@@ -12,8 +12,8 @@ namespace tribofit {
 std::vector<std::size_t> find_gappy_rows(const RawTable& table, const std::vector<Column>& used,
                                          const FileRecord& recording);
 
-/// Leaves rows out of the channels, lines and stated steps, and warns with their number and places. The time must be
+/// Excludes rows from the channels, lines and stated steps, and warns with their number and places. The time must be
 /// known: what remains has gaps.
-void leave_out(const std::vector<std::size_t>& rows, FileRecord& recording);
+void exclude(const std::vector<std::size_t>& rows, FileRecord& recording);
 
 }  // namespace tribofit

@@ -157,7 +157,7 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
   recognise_points(plan, recording);
   if (!recording.has(Channel::time) && !recording.is_points()) set_time(recording, *plan.sampling);
-  leave_out(gappy, recording);
+  exclude(gappy, recording);
   if (recording.is_points()) {
     set_points(recording);
     return recording;

@@ -232,7 +232,7 @@ inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
 /// Samples of markers that are not repeated exactly: a slip of more samples is a slip.
 inline constexpr std::size_t kWidestSpike = 2;
 /// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
-/// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the floor.
+/// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the noise floor.
 inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;
 /// Part of the range by which the other channel changes where a lone sample is a slip: friction falls by most of it.
 inline constexpr double kSlipOfSamples = 0.3;

@@ -204,7 +204,7 @@ OrderFit fit_best_order(const std::vector<Level>& levels, Design design, double 
 }
 
 // Levels far from the fit are not used in the next one.
-void leave_out_far(std::vector<Level>& levels, const OrderFit& best) {
+void exclude_far(std::vector<Level>& levels, const OrderFit& best) {
   std::vector<double> deviation;
   for (const Level& level : levels) deviation.push_back(std::abs(level.value - best.design.row(level).dot(best.fit.x)));
   const double limit = std::max(5 * kSigmaPerMad * median(deviation), 1e-12 * std::abs(best.fit.x(0)));
@@ -275,7 +275,7 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plate
   for (int pass = 0; pass < 4; ++pass) {
     best = fit_best_order(levels, {0, span.middle, span.half, creep > 0}, omega, span.turns(omega));
     if (best.order == 0) return estimate;
-    leave_out_far(levels, best);
+    exclude_far(levels, best);
   }
   const Residuals residuals = residuals_of(levels, best);
   const double fewest = std::max(static_cast<double>(kFewestPlateaus), 0.7 * static_cast<double>(levels.size()));

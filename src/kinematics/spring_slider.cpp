@@ -81,7 +81,7 @@ Stretches stretches_of(const std::vector<bool>& slips, std::size_t reach) {
 /// Where the slider slips throughout a stretch: pull, slope and bend as means over it with the same weights, of which
 /// the force balance holds exactly. Stretches with a part of a stick show no law of sliding, and take no part; where
 /// most of the slips are such, all stays as it is. Errors of the velocity stay those of the wider window, by which
-/// stick is told from slip.
+/// stick is distinguished from slip.
 void smooth_alike(const LocalDerivatives& pull, const std::vector<double>& raw, std::size_t half, double unit,
                   Trace& trace) {
   if (!trace.spring.velocity.known()) return;
@@ -160,10 +160,10 @@ std::vector<SampleSpan> unsure_samples(const Trace& trace) {
   const std::vector<double>&v = trace.velocity_std_error, &friction = trace.friction_std_error;
   if (v.empty()) return spans;
   const double limit = kUnsure * usual_error(v);
-  const bool of_motion = trace.kind == RecordKind::motion_only;
-  const double of_friction = of_motion ? kUnsure * usual_error(friction) : 0;
+  const bool is_motion_only = trace.kind == RecordKind::motion_only;
+  const double most_unsure = is_motion_only ? kUnsure * usual_error(friction) : 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    if (v[i] <= limit && (!of_motion || friction[i] <= of_friction)) continue;
+    if (v[i] <= limit && (!is_motion_only || friction[i] <= most_unsure)) continue;
     const std::size_t begin = i - std::min(i, kBesideUnsure), end = std::min(v.size(), i + kBesideUnsure + 1);
     if (!spans.empty() && spans.back().end >= begin) {
       spans.back().end = end;

@@ -94,7 +94,7 @@ void add_header(const DiagnosedTraces& result, TerminalText& text) {
   add_remarks(result, text);
 }
 
-/// Rungs and noise floor: name, room for a bar, held-out error, and how much of what is above the floor is gone.
+/// Rungs and noise floor: name, room for a bar, held-out error, and how much of what is above the noise floor is gone.
 ReportTable ladder_table(const DiagnosedTraces& result, bool with_errors) {
   const Diagnosis& d = result.diagnosis;
   const std::string unit = level_unit(result);

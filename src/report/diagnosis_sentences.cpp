@@ -154,7 +154,7 @@ std::string command(const std::vector<std::string>& words, const ReportOptions& 
   return command_line(words, inputs);
 }
 
-/// The law found is none of those that `identify` fits unless it is told.
+/// The law found is none of those that `identify` fits without --law.
 bool must_name_law(const Law& law, const ReportOptions& options) {
   const std::vector<Law> fitted = IdentifyOptions().laws;
   return std::find(fitted.begin(), fitted.end(), law) == fitted.end() && !has_option(options.arguments, "--law");

@@ -14,15 +14,15 @@ SampleRange whole(const Cycle& cycle) {
   return {cycle.stick.size() > 0 ? cycle.stick.begin : cycle.slip.begin, cycle.slip.end};
 }
 
-void exclude_cycles(const Selection::Cycles& chosen, const Motion& motion, Segmentation& segmentation) {
+void exclude_cycles(const Selection::Cycles& selected, const Motion& motion, Segmentation& segmentation) {
   if (segmentation.kind != MotionKind::stick_slip) {
     segmentation.notes.push_back("there are no cycles of stick and slip to choose from: all of the motion takes part");
     return;
   }
   const auto& cycles = segmentation.cycles;
   if (cycles.empty()) return;
-  const std::size_t begin = chosen.first < cycles.size() ? whole(cycles[chosen.first]).begin : motion.size();
-  const std::size_t end = chosen.last < cycles.size() ? whole(cycles[chosen.last]).end : motion.size();
+  const std::size_t begin = selected.first < cycles.size() ? whole(cycles[selected.first]).begin : motion.size();
+  const std::size_t end = selected.last < cycles.size() ? whole(cycles[selected.last]).end : motion.size();
   segmentation.left_out.push_back({0, begin});
   segmentation.left_out.push_back({std::max(begin, end), motion.size()});
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that data flow downwards only: a room includes itself and rooms above it, never below.
+"""Checks that data flow downwards only: a module includes itself and modules above it, never below.
 
-The room `statistics` knows numbers only: it includes no other room, and every room may include it.
+The module `statistics` knows numbers only: it includes no other module, and every module may include it.
 Public headers include the standard library and tribofit only, so that using the library needs no other package.
 
 usage: layering.py REPOSITORY      exit status 1 and one line per offence when the order is broken
@@ -15,12 +15,12 @@ import sys
 import contract
 
 # In the order in which data flow. The pipeline is no directory but include/tribofit/pipeline.hpp and src/pipeline.cpp: it
-# calls the rooms above it for one trace; what deals with many traces or with its results lies below it.
-ROOMS = ["ingest", "statistics", "kinematics", "segmentation", "friction", "oscillator", "fit", "diagnosis", "study", "pipeline",
+# calls the modules above it for one trace; what deals with many traces or with its results lies below it.
+MODULES = ["ingest", "statistics", "kinematics", "segmentation", "friction", "oscillator", "fit", "diagnosis", "study", "pipeline",
          "campaign", "report", "workbench"]
-# Numbers in, numbers out: it includes no other room, and so any room may include it, those above it too.
+# Numbers in, numbers out: it includes no other module, and so any module may include it, those above it too.
 FOUNDATION = "statistics"
-# What a room must know nothing of, as it would appear in an #include.
+# What a module must know nothing of, as it would appear in an #include.
 STRANGERS = {
     "friction": {"CSV": r"(libfccp/)?csv\.h"},
     "report": {"Ceres": r"ceres/.*", "the integrator": r"boost/numeric/odeint.*"},
@@ -30,31 +30,31 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 SOURCE_SUFFIXES = {".hpp", ".cpp", ".h", ".inc"}
 
 
-def room_of_include(target):
-    """The room a header belongs to, None for what is not ours."""
+def module_of_include(target):
+    """The module a header belongs to, None for what is not ours."""
     if target == "tribofit/pipeline.hpp":
         return "pipeline"
     parts = target.removeprefix("tribofit/").split("/")
-    return parts[0] if len(parts) > 1 and parts[0] in ROOMS else None
+    return parts[0] if len(parts) > 1 and parts[0] in MODULES else None
 
 
-def offences_of_file(path, room, public):
+def offences_of_file(path, module, public):
     offences = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         match = INCLUDE.match(line)
         if not match:
             continue
         target = match.group(1)
-        other = room_of_include(target)
-        if other and room == FOUNDATION != other:
-            offences.append(f"{path}:{number}: {room} includes {target}, but knows no other room")
-        elif other and other != FOUNDATION and ROOMS.index(other) > ROOMS.index(room):
-            offences.append(f"{path}:{number}: {room} includes {target}, which lies below it")
+        other = module_of_include(target)
+        if other and module == FOUNDATION != other:
+            offences.append(f"{path}:{number}: {module} includes {target}, but knows no other module")
+        elif other and other != FOUNDATION and MODULES.index(other) > MODULES.index(module):
+            offences.append(f"{path}:{number}: {module} includes {target}, which lies below it")
         if public and not PUBLIC.fullmatch(target):
             offences.append(f"{path}:{number}: a public header includes {target}, which users may not have")
-        for stranger, pattern in STRANGERS.get(room, {}).items():
+        for stranger, pattern in STRANGERS.get(module, {}).items():
             if re.fullmatch(pattern, target):
-                offences.append(f"{path}:{number}: {room} includes {target}, but must know nothing of {stranger}")
+                offences.append(f"{path}:{number}: {module} includes {target}, but must know nothing of {stranger}")
     return offences
 
 
@@ -64,8 +64,8 @@ def offences(repository):
         for path in sorted(base.glob("pipeline.*")):
             found += offences_of_file(path, "pipeline", public)
         for directory in sorted(entry for entry in base.iterdir() if entry.is_dir()):
-            if directory.name not in ROOMS:
-                found.append(f"{directory}: not a room; the rooms are {', '.join(ROOMS)}")
+            if directory.name not in MODULES:
+                found.append(f"{directory}: not a module; the modules are {', '.join(MODULES)}")
                 continue
             for path in sorted(directory.rglob("*")):
                 if path.suffix in SOURCE_SUFFIXES:
@@ -74,7 +74,7 @@ def offences(repository):
 
 
 def with_file(name, text):
-    """A tree of rooms without includes and one more file."""
+    """A tree of modules without includes and one more file."""
     return {"include/tribofit/fit/fit.hpp": "", "src/fit/fit.cpp": "", name: text}
 
 

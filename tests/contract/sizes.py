@@ -88,7 +88,7 @@ TREES = [  # files, number of offences
     ({"src/fit/a.cpp": "struct A {\n  void f() {\n" + body(60, "    ") + "  }\n};\n"}, 1),
     ({"src/fit/a.cpp": "class A {\n" + body(100) + "};\n"}, 0),
     ({"src/fit/a.cpp": "int f(int);\nclass A {\n" + body(100) + "};\n"}, 0),
-    ({"src/fit/a.cpp": "TEST(Room, Case) {\n" + body(60) + "}\n"}, 1),
+    ({"src/fit/a.cpp": "TEST(Suite, Case) {\n" + body(60) + "}\n"}, 1),
     ({"src/report/a.js": "function f(x) {\n" + body(60) + "}\n"}, 1),
     ({"src/report/a.js": "const f = (x) => {\n" + body(60) + "};\n"}, 1),
     ({"tests/a.py": "def f(x):\n" + "    x += 1\n" * 60}, 1),

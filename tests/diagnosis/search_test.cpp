@@ -172,8 +172,8 @@ TEST(Probes, NothingStandsOutWhereNothingIsHidden) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const std::vector<Probe> probes = probes_of(plain(seed));
     for (const Probe& probe : probes) {
-      const bool told = probe.p_value * static_cast<double>(probes.size()) < 0.01 && probe.size > 0.05;
-      EXPECT_FALSE(told) << probe.variable << ' ' << seed;
+      const bool stands_out = probe.p_value * static_cast<double>(probes.size()) < 0.01 && probe.size > 0.05;
+      EXPECT_FALSE(stands_out) << probe.variable << ' ' << seed;
     }
   }
 }

@@ -54,11 +54,11 @@ async function open(address, width) {
   return { page, complaints, close: () => context.close() };
 }
 
-const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.bench === "settled" &&
+const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.workbench === "settled" &&
   document.documentElement.dataset.drawn === "all");
 /** Does something and waits for the picture of the model it leads to. */
 async function change(page, action) {
-  await page.evaluate(() => { document.documentElement.dataset.bench = "waiting"; });
+  await page.evaluate(() => { document.documentElement.dataset.workbench = "waiting"; });
   await action();
   await settled(page);
 }
@@ -66,7 +66,7 @@ const shownError = async (page) => Number.parseFloat(await page.textContent("#sh
 
 /** The row of the model shown is marked, has its error, and its bar is as much shorter as the error is smaller. */
 async function checkLadder(page, before, after) {
-  const rows = await page.evaluate(() => [...document.querySelectorAll("#bench-rungs tbody tr")].map((row) => ({
+  const rows = await page.evaluate(() => [...document.querySelectorAll("#workbench-rungs tbody tr")].map((row) => ({
     current: row.className === "current", model: row.querySelector("button").textContent,
     error: Number.parseFloat(row.cells[2].textContent), bar: row.querySelector(".bar").getBoundingClientRect().width })));
   const [shown, ...others] = rows.filter((row) => row.current), bare = rows.find((row) => row.error === before);
@@ -88,13 +88,13 @@ async function watchTheErrorFall(address, width) {
   await page.screenshot({ path: join(folder, `lag-${width}.png`), fullPage: false });
 
   // The command shown gives the same number.
-  const command = await page.textContent("#bench-command");
+  const command = await page.textContent("#workbench-command");
   execFileSync("sh", ["-c", `${command.replace(/^identify/, `'${identify}'`)} --quiet --json same.json`], { cwd: folder });
   const fit = JSON.parse(readFileSync(join(folder, "same.json"), "utf8")).fits[0];
   assert.equal(Number(fit.error.held_out_rmse.toPrecision(4)), after);
 
   // Back by a click, with the same number.
-  await change(page, () => page.locator("#bench-rungs button").first().click());
+  await change(page, () => page.locator("#workbench-rungs button").first().click());
   assert.equal(await shownError(page), before);
   assert.equal(await page.isChecked("#effect-frictional-lag"), false);
 
@@ -104,27 +104,27 @@ async function watchTheErrorFall(address, width) {
     await page.focus("#slide-start-mu_s");
     await page.keyboard.press("ArrowRight");
   });
-  assert.match(await page.textContent("#bench-command"), /--start mu_s=/);
+  assert.match(await page.textContent("#workbench-command"), /--start mu_s=/);
   await change(page, () => page.fill("#upper-mu_s", "0.45").then(() => page.keyboard.press("Enter")));
-  assert.match(await page.textContent("#bench-command"), /--bounds mu_s=/);
+  assert.match(await page.textContent("#workbench-command"), /--bounds mu_s=/);
   assert.match(await page.textContent(".parameter[data-name=mu_s] [data-value]"), /at its bound/);
   await change(page, () => page.click(".parameter[data-name=mu_s] button"));
-  assert.doesNotMatch(await page.textContent("#bench-command"), /--bounds|--start/);
+  assert.doesNotMatch(await page.textContent("#workbench-command"), /--bounds|--start/);
   await change(page, () => page.fill("#cycles-to", "20").then(() => page.keyboard.press("Enter")));
-  assert.match(await page.textContent("#bench-command"), /--cycles 0\.\.20/);
+  assert.match(await page.textContent("#workbench-command"), /--cycles 0\.\.20/);
   await page.fill("#exclude-from", "1");
   await page.fill("#exclude-to", "1.2");
   await change(page, () => page.click("#exclude"));
-  assert.match(await page.textContent("#bench-command"), /--exclude 1s\.\.1\.2s/);
+  assert.match(await page.textContent("#workbench-command"), /--exclude 1s\.\.1\.2s/);
 
   // A formula that does not parse is refused with its reason, and the page lives on. The browser notes the refusal.
-  await page.fill("#bench-formula", "hump = a*exp(-v; a=0.02");
+  await page.fill("#workbench-formula", "hump = a*exp(-v; a=0.02");
   await page.click("#apply-formula");
-  await page.waitForSelector("#bench-trouble:not([hidden])");
-  assert.match(await page.textContent("#bench-trouble"), /formula/);
-  await page.fill("#bench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
+  await page.waitForSelector("#workbench-trouble:not([hidden])");
+  assert.match(await page.textContent("#workbench-trouble"), /formula/);
+  await page.fill("#workbench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
   await change(page, () => page.click("#apply-formula"));
-  assert.equal(await page.isHidden("#bench-trouble"), true);
+  assert.equal(await page.isHidden("#workbench-trouble"), true);
   const unexpected = complaints.filter((text) => !/422/.test(text));
   assert.deepEqual(unexpected, [], `complaints at ${width} px`);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
@@ -145,15 +145,15 @@ async function twoAtOnce(address) {
 
 async function diagnose(address) {
   const { page, complaints, close } = await open(address, 1280);
-  await page.click("#bench-diagnose");
+  await page.click("#workbench-diagnose");
   await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "running");
-  await page.click("#bench-cancel");
+  await page.click("#workbench-cancel");
   await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "cancelled");
-  await page.click("#bench-diagnose");
+  await page.click("#workbench-diagnose");
   await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "done", null, { timeout: 120000 });
   await change(page, () => page.click("#take-finding"));
   assert.match(await page.textContent("#shown-model"), /lag/);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#bench-save")]);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#workbench-save")]);
   const file = join(folder, "session.json");
   await download.saveAs(file);
   assert.ok(JSON.parse(readFileSync(file, "utf8")).rungs.length > 3);
@@ -179,8 +179,8 @@ async function stopInMidFit({ server, address, ended }) {
   assert.ok(performance.now() - begin < 2000, "the server took more than two seconds to end");
   const inMidFit = await request.response() === null;
   await page.check("#effect-viscous");
-  await page.waitForSelector("#bench-trouble:not([hidden])");
-  assert.match(await page.textContent("#bench-trouble"), /does not answer/);
+  await page.waitForSelector("#workbench-trouble:not([hidden])");
+  assert.match(await page.textContent("#workbench-trouble"), /does not answer/);
   await close();
   return inMidFit;
 }
@@ -198,7 +198,7 @@ for (let more = 0; more < 2 && !inMidFit; ++more) inMidFit = await stopInMidFit(
 assert.ok(inMidFit, "the fit was over before the server ended, three times");
 const again = await explore("--session", "session.json");
 const { page: restored, close: closeRestored } = await open(again.address, 1280);
-assert.ok(await restored.locator("#bench-rungs tbody tr").count() > 3);
+assert.ok(await restored.locator("#workbench-rungs tbody tr").count() > 3);
 await closeRestored();
 again.server.kill("SIGINT");
 assert.equal(await again.ended, 0);

@@ -36,21 +36,21 @@ std::size_t size_of(const Name& name) {
 /// The ladder beyond the base law. Effects that show in the motion and not in the error count as named when they were
 /// found there, those that correct the plateau as one group.
 std::vector<Name> names_of(const Diagnosis& diagnosis) {
-  std::vector<EffectInfo> of_motion;
+  std::vector<EffectInfo> kinematic_effects;
   for (const Effect& effect : effect_catalogue()) {
-    if (is_kinematic(effect)) of_motion.push_back(describe(effect));
+    if (is_kinematic(effect)) kinematic_effects.push_back(describe(effect));
   }
   std::vector<Name> names;
   for (const Rung& rung : diagnosis.ladder) {
-    const bool counted_below =
-        std::any_of(of_motion.begin(), of_motion.end(), [&](const EffectInfo& info) { return info.key == rung.added; });
+    const bool counted_below = std::any_of(kinematic_effects.begin(), kinematic_effects.end(),
+                                           [&](const EffectInfo& info) { return info.key == rung.added; });
     if (!rung.added.empty() && !counted_below) names.push_back({rung.added, rung.equivalent});
   }
-  for (const EffectInfo& info : of_motion) {
+  for (const EffectInfo& info : kinematic_effects) {
     const EffectFinding* found = finding(diagnosis, info.key);
     if (found == nullptr || found->status != EffectStatus::found) continue;
     Name name{info.key, {}};
-    for (const EffectInfo& other : of_motion) {
+    for (const EffectInfo& other : kinematic_effects) {
       const EffectFinding* twin = finding(diagnosis, other.key);
       const bool both_of_plateau =
           info.plateau_correction != PlateauCorrection::none && other.plateau_correction != PlateauCorrection::none;
@@ -191,7 +191,7 @@ void try_experiment(const Case& c, Outcome& out) {
   if (group == out.names.end()) return;
   Experiment experiment;
   for (const std::string& other : group->equivalent) {
-    experiment += telling_experiment(group->added, other);
+    experiment += discriminating_runs(group->added, other);
     if (other != key) out.partners.push_back(other);
   }
   if (group->added != key) out.partners.push_back(group->added);
@@ -201,7 +201,7 @@ void try_experiment(const Case& c, Outcome& out) {
 /// The experiment for a pair, whether or not the first record leaves it a group.
 void try_pair(const Case& c, Outcome& out) {
   out.partners = {c.partner};
-  out.split = splits(c, telling_experiment(c.hidden.front().key, c.partner), out);
+  out.split = splits(c, discriminating_runs(c.hidden.front().key, c.partner), out);
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ Experiment& operator+=(Experiment& all, const Experiment& more);
 
 /// The experiment that discriminating_experiment() of the catalogue names for two effects; empty where it names none.
 /// The order of the keys does not matter.
-Experiment telling_experiment(std::string_view key_a, std::string_view key_b);
+Experiment discriminating_runs(std::string_view key_a, std::string_view key_b);
 
 /// Every pair that has one.
 std::vector<std::pair<std::string, std::string>> look_alike_pairs();
@@ -206,7 +206,7 @@ struct Outcome {
 };
 
 /// Simulates, diagnoses on one thread and judges. Never throws: what is thrown is in `failure`.
-/// experiments: where a single effect was named in a group, the telling runs are simulated too.
+/// experiments: where a single effect was named in a group, the discriminating runs are simulated too.
 Outcome run_case(const Case& c, bool experiments = false);
 
 /// The diagnosis alone, as run_case() does it.

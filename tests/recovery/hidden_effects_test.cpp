@@ -163,7 +163,7 @@ TEST(HiddenEffects, EveryTestOfTheCatalogueIsSimulated) {
   for (const tribofit::Effect& effect : tribofit::effect_catalogue()) {
     const std::string key = tribofit::describe(effect).key;
     for (const tribofit::LookAlike& twin : tribofit::look_alikes(key)) {
-      EXPECT_FALSE(telling_experiment(key, twin.key).empty()) << key << " and " << twin.key;
+      EXPECT_FALSE(discriminating_runs(key, twin.key).empty()) << key << " and " << twin.key;
     }
   }
 }

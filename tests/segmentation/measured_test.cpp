@@ -25,7 +25,7 @@ std::filesystem::path shared_dir() {
   return std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared";
 }
 
-// Plain comma-separated numbers under one header line; the ingest room has its own tests.
+// Plain comma-separated numbers under one header line; the ingest module has its own tests.
 Table read_plain(const std::filesystem::path& path) {
   std::ifstream file(path);
   Table table;

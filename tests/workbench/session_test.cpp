@@ -67,7 +67,7 @@ TEST(Session, gives_the_numbers_of_the_command_it_shows) {
   }
 }
 
-/// Whatever the JSON door lets in, the printed command is no wrong usage.
+/// Whatever is accepted as JSON, the printed command is no wrong usage.
 TEST(Session, prints_commands_that_are_accepted) {
   const WorkbenchSession session(lagging().options());
   for (const char* text :

@@ -50,11 +50,11 @@ enum class EffectStatus {
 /// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable".
 std::string_view to_string(EffectStatus status);
 
-/// A share of the error above the floor that goes with one variable.
+/// A share of the error above the noise floor that goes with one variable.
 struct Share {
   std::string variable;  ///< velocity, branch, time, angle, stick-time, load, frequency, stick
-  double share = 0;      ///< of the held-out squares above the floor that a free function of the variable takes away
-  double p_value = 1;    ///< of that fall, over held-out blocks of cycles, corrected for the number of variables
+  double share = 0;  ///< of the held-out squares above the noise floor that a free function of the variable takes away
+  double p_value = 1;  ///< of that fall, over held-out blocks of cycles, corrected for the number of variables
 };
 
 /// What the diagnosis found out about one effect.
@@ -62,7 +62,7 @@ struct EffectFinding {
   std::string key;
   EffectStatus status = EffectStatus::unsupported;
   double held_out_rmse = 0;    ///< with the effect, at the rung where it was judged last [1 or N]; NaN: not fitted
-  double error_reduction = 0;  ///< share of the squares above the floor that it takes away there; NaN: not fitted
+  double error_reduction = 0;  ///< share of the squares above the noise floor that it takes away there; NaN: not fitted
   double p_value = 1;          ///< that it takes away nothing, corrected for the number of candidates; NaN: not fitted
   std::vector<FitParameter> parameters;  ///< of the last model that held it; empty where not fitted
   std::string reason;                    ///< one sentence
@@ -98,11 +98,11 @@ struct Confirmation {
 /// (Bonferroni): of the fall of the squares (F test whose noise is that between cycles), of the held-out losses cycle
 /// by cycle (paired, with a long-run variance; not for spectral lines), and for what goes with the stick time of the
 /// levels of break-away. It is the one that is reported. No p-value is smaller than slow noise makes it: what the level
-/// of friction does from cycle to cycle beside the model is taken for 1/f noise or an autoregression (slow_noise()), and
-/// counts in the F test as it would move the effect. The best one is added, with those that do as well as its group,
-/// until none is left; effects that became redundant are dropped. Both base laws climb a ladder of their own; another
-/// law of the list joins them where it does as well with an effect less. The better or shorter ladder is reported. Free
-/// functions of each variable say where the error is, before and after.
+/// of friction does from cycle to cycle beside the model is taken for 1/f noise or an autoregression (slow_noise()),
+/// and counts in the F test as it would move the effect. The best one is added, with those that do as well as its
+/// group, until none is left; effects that became redundant are dropped. Both base laws climb a ladder of their own;
+/// another law of the list joins them where it does as well with an effect less. The better or shorter ladder is
+/// reported. Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};

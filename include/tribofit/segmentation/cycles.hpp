@@ -95,8 +95,8 @@ struct Selection {
 };
 
 /// Leaves out what `selection` does not take: cycles keep their numbers, and measures of the motion are those of the
-/// whole record; fits, diagnoses and the floor do not see what is left out. A note says how much is left. Where
-/// nothing sticks there are no cycles to be chosen, which a note says, too.
+/// whole record; fits, diagnoses and the noise floor do not see what is left out. A note says how much is left. Where
+/// nothing sticks there are no cycles to be selected, which a note says, too.
 void exclude(const Selection& selection, const Motion& motion, Segmentation& segmentation);
 
 /// Samples of the slips that are selected: those to which a law of sliding is fitted.

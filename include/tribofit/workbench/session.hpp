@@ -102,7 +102,7 @@ class WorkbenchSession {
   /// The command that fits the choice.
   std::string command_of(const WorkbenchChoice& choice) const;
 
-  /// Begins a diagnosis of the part of the record that is chosen, with its formulas as candidates beside the catalogue.
+  /// Begins a diagnosis of the selected part of the record, with its formulas as candidates beside the catalogue.
   /// False where one is running already.
   bool begin_diagnosis(const WorkbenchChoice& choice);
   void cancel_diagnosis();

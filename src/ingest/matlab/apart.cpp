@@ -67,7 +67,7 @@ bool send(int pipe, std::string_view bytes) {
     const auto [answer, bytes] = answer_of(work);
     const std::string head = ByteWriter().number(answer).number(static_cast<std::uint64_t>(bytes.size())).take();
     if (send(pipe, head) && send(pipe, bytes)) status = EXIT_SUCCESS;
-  } catch (...) {  // nobody is left to be told
+  } catch (...) {  // nobody is left to report it to
   }
   ::_exit(status);
 }

@@ -1,4 +1,4 @@
-// The controls of the workbench: law, effects, formula, parameters, part of the record. Each changes bench.choice and says
+// The controls of the workbench: law, effects, formula, parameters, part of the record. Each changes workbench.choice and says
 // changed() (workbench.js).
 
 function field(label, input) {
@@ -6,9 +6,9 @@ function field(label, input) {
 }
 
 function lawChoice() {
-  return make("fieldset", {}, make("legend", {}, "Law"), ...bench.world.laws.map((law) => {
+  return make("fieldset", {}, make("legend", {}, "Law"), ...workbench.world.laws.map((law) => {
     const input = make("input", { type: "radio", name: "law", value: law, id: `law-${law}` });
-    input.onchange = () => { bench.choice.law = law; changed(); };
+    input.onchange = () => { workbench.choice.law = law; changed(); };
     return make("label", { className: "tick" }, input, law);
   }));
 }
@@ -17,8 +17,8 @@ function effectChoice(effect) {
   const input = make("input", { type: "checkbox", name: "effect", value: effect.name, id: `effect-${effect.name}` });
   input.disabled = effect.lacking !== "";
   input.onchange = () => {
-    const others = bench.choice.effects.filter((name) => name !== effect.name);
-    bench.choice.effects = input.checked ? [...others, effect.name] : others;
+    const others = workbench.choice.effects.filter((name) => name !== effect.name);
+    workbench.choice.effects = input.checked ? [...others, effect.name] : others;
     changed();
   };
   return make("label", { className: "tick", title: `${effect.statement}. ${effect.equation}` }, input,
@@ -27,17 +27,17 @@ function effectChoice(effect) {
 
 function effectChoices() {
   const groups = new Map();
-  for (const effect of bench.world.effects) groups.set(effect.group, [...(groups.get(effect.group) || []), effect]);
+  for (const effect of workbench.world.effects) groups.set(effect.group, [...(groups.get(effect.group) || []), effect]);
   const what = { friction: "What the contact does", rig: "What the machine does", measurement: "What the instruments do" };
   return make("fieldset", {}, make("legend", {}, "Effects"), ...[...groups].map(([group, effects], k) =>
     make("details", k === 0 && innerWidth > 800 ? { open: "" } : {}, make("summary", {}, what[group] || group), ...effects.map(effectChoice))));
 }
 
 function formulaChoice() {
-  const text = make("textarea", { id: "bench-formula", rows: "3", spellcheck: "false", maxlength: "2000",
+  const text = make("textarea", { id: "workbench-formula", rows: "3", spellcheck: "false", maxlength: "2000",
     placeholder: "hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s" });
   const apply = () => {
-    bench.choice.formulas = text.value.split("\n").map((line) => line.trim()).filter((line) => line);
+    workbench.choice.formulas = text.value.split("\n").map((line) => line.trim()).filter((line) => line);
     changed();
   };
   text.onkeydown = (event) => { if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply(); };
@@ -53,18 +53,18 @@ function numberField(label, id, value, onchange, step = "any") {
 }
 
 function selectionChoice() {
-  const box = make("fieldset", { id: "bench-selection" });
+  const box = make("fieldset", { id: "workbench-selection" });
   const fill = () => {
-    const last = bench.world.cycles - 1, [from, to] = bench.choice.cycles || [0, last];
+    const last = workbench.world.cycles - 1, [from, to] = workbench.choice.cycles || [0, last];
     const setCycles = (first, final) => {
       const a = Math.max(0, Math.min(first ?? 0, last)), b = Math.max(a, Math.min(final ?? last, last));
-      bench.choice.cycles = a === 0 && b === last ? null : [a, b];
+      workbench.choice.cycles = a === 0 && b === last ? null : [a, b];
       fill();
       changed();
     };
-    const excluded = bench.choice.excluded.map(([a, b], k) => make("li", {}, `${number(a, 5)} s to ${number(b, 5)} s `,
+    const excluded = workbench.choice.excluded.map(([a, b], k) => make("li", {}, `${number(a, 5)} s to ${number(b, 5)} s `,
       make("button", { type: "button", "aria-label": `Take part again: ${a} s to ${b} s`, onclick: () => {
-        bench.choice.excluded.splice(k, 1);
+        workbench.choice.excluded.splice(k, 1);
         fill();
         changed();
       } }, "Take back")));
@@ -76,11 +76,11 @@ function selectionChoice() {
         showTrouble({ problem: "Nothing is left out", why: "a stretch runs from an earlier to a later time in seconds", suggestion: "" });
         return;
       }
-      bench.choice.excluded.push(stretch);
+      workbench.choice.excluded.push(stretch);
       fill();
       changed();
     };
-    const cycles = bench.world.sticks ? [make("div", { className: "row" },
+    const cycles = workbench.world.sticks ? [make("div", { className: "row" },
       numberField("Cycles from", "cycles-from", from, (value) => setCycles(value, to), "1"),
       numberField(`to (of 0 to ${last})`, "cycles-to", to, (value) => setCycles(from, value), "1"))] : [];
     box.replaceChildren(make("legend", {}, "Part of the record"), ...cycles,
@@ -95,8 +95,8 @@ function selectionChoice() {
 
 /** Places from 0 to 1 on a slider over the plausible range of a parameter, by decades where its ends are far apart. */
 function scaleOf(p) {
-  if (!bench.choice.bounds[p.full_name] || !bench.plausible.has(p.full_name)) bench.plausible.set(p.full_name, p.bounds);
-  const [low, high] = bench.plausible.get(p.full_name), decades = low > 0 && high > 100 * low;
+  if (!workbench.choice.bounds[p.full_name] || !workbench.plausible.has(p.full_name)) workbench.plausible.set(p.full_name, p.bounds);
+  const [low, high] = workbench.plausible.get(p.full_name), decades = low > 0 && high > 100 * low;
   const place = (value) => (decades ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
   const valueAt = (part) => {
     if (part <= 0) return low;
@@ -130,12 +130,12 @@ function valueControl(p, scale, { label, id, get, otherwise, set }) {
 
 /** Start and bounds of a parameter. */
 function parameterControl(p) {
-  const name = p.full_name, scale = scaleOf(p), { start, bounds } = bench.choice;
+  const name = p.full_name, scale = scaleOf(p), { start, bounds } = workbench.choice;
   const bound = (which, label, id) => valueControl(p, scale, { label, id: `${id}-${name}`, otherwise: p.bounds[which],
     get: () => (bounds[name] ? bounds[name][which] : null),
     set: (value) => {
       const ends = [...(bounds[name] || p.bounds)];
-      ends[which] = value === null ? bench.plausible.get(name)[which] : value;
+      ends[which] = value === null ? workbench.plausible.get(name)[which] : value;
       if (which === 0) ends[0] = Math.min(ends[0], ends[1]);
       else ends[1] = Math.max(ends[0], ends[1]);
       bounds[name] = ends;
@@ -147,8 +147,8 @@ function parameterControl(p) {
     delete bounds[name];
     changed();
   } }, "From the data");
-  return make("details", { className: "parameter", "data-name": name, ...(bench.unfolded.has(name) ? { open: "" } : {}),
-    ontoggle: (event) => (event.target.open ? bench.unfolded.add(name) : bench.unfolded.delete(name)) },
+  return make("details", { className: "parameter", "data-name": name, ...(workbench.unfolded.has(name) ? { open: "" } : {}),
+    ontoggle: (event) => (event.target.open ? workbench.unfolded.add(name) : workbench.unfolded.delete(name)) },
   make("summary", {}, make("strong", {}, name), " = ", make("span", { "data-value": name }, parameterText(p))),
   valueControl(p, scale, { label: "start", id: `start-${name}`, otherwise: p.start, get: () => start[name] ?? null,
     set: (value) => {
@@ -166,20 +166,20 @@ function parameterText(p) {
 }
 
 const sameNames = (rung) => rung.parameters.map((p) => p.full_name).join() ===
-  [...document.querySelectorAll("#bench-parameters .parameter")].map((element) => element.dataset.name).join();
+  [...document.querySelectorAll("#workbench-parameters .parameter")].map((element) => element.dataset.name).join();
 
 /** New numbers beside controls that may be in use. */
 function updateParameters(rung) {
   for (const p of rung.parameters) {
-    const touched = bench.choice.start[p.full_name] !== undefined || bench.choice.bounds[p.full_name] !== undefined;
+    const touched = workbench.choice.start[p.full_name] !== undefined || workbench.choice.bounds[p.full_name] !== undefined;
     document.querySelector(`.parameter[data-name="${CSS.escape(p.full_name)}"] button`).disabled = !touched;
     document.querySelector(`[data-value="${CSS.escape(p.full_name)}"]`).textContent = parameterText(p);
   }
-  document.getElementById("bench-messages").replaceChildren(...rung.messages.map((text) => make("li", {}, prose(text))));
+  document.getElementById("workbench-messages").replaceChildren(...rung.messages.map((text) => make("li", {}, prose(text))));
 }
 
 function showParameters(rung) {
-  const box = document.getElementById("bench-parameters");
+  const box = document.getElementById("workbench-parameters");
   const inUse = box.contains(document.activeElement) && document.activeElement.type === "range";
   if (!inUse || !sameNames(rung)) {
     const id = box.contains(document.activeElement) ? document.activeElement.id : "";
@@ -191,12 +191,12 @@ function showParameters(rung) {
 
 /** The controls as the choice is. */
 function fillControls() {
-  const { law, effects, formulas } = bench.choice;
+  const { law, effects, formulas } = workbench.choice;
   for (const input of document.querySelectorAll("input[name=law]")) input.checked = input.value === law;
   for (const input of document.querySelectorAll("input[name=effect]")) {
     input.checked = effects.includes(input.value);
     if (input.checked) input.closest("details").open = true;
   }
-  document.getElementById("bench-formula").value = formulas.join("\n");
-  document.getElementById("bench-selection").fill();
+  document.getElementById("workbench-formula").value = formulas.join("\n");
+  document.getElementById("workbench-selection").fill();
 }

@@ -1,7 +1,7 @@
 // The workbench: controls (controls.js) beside the report of the model they choose (include/tribofit/workbench/server.hpp). Every
 // change asks the server for the picture of the new choice; answers that come late are dropped.
 
-const bench = {
+const workbench = {
   token: new URLSearchParams(location.search).get("token") || "",
   page: Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join(""),
   turn: 0, asking: null, settling: 0, polling: 0, choice: null, rung: null, world: null, changedAt: 0,
@@ -13,7 +13,7 @@ async function ask(path, body, signal) {
   let response;
   try {
     response = await fetch(path, { method: body ? "POST" : "GET", signal, cache: "no-store",
-      headers: { "X-Workbench-Token": bench.token, ...(body ? { "Content-Type": "application/json" } : {}) },
+      headers: { "X-Workbench-Token": workbench.token, ...(body ? { "Content-Type": "application/json" } : {}) },
       body: body ? JSON.stringify(body) : undefined });
   } catch (error) {
     if (error.name === "AbortError") throw error;
@@ -28,7 +28,7 @@ async function ask(path, body, signal) {
 // ---- what is shown ----
 
 function showTrouble(trouble) {
-  const box = document.getElementById("bench-trouble");
+  const box = document.getElementById("workbench-trouble");
   const sentence = (text) => (text ? `${prose(text).replace(/[.\s]+$/, "")}. ` : "");
   box.textContent = trouble ? sentence(trouble.problem) + sentence(trouble.why) + sentence(trouble.suggestion) : "";
   box.hidden = !trouble;
@@ -42,9 +42,10 @@ function showStatus(rung) {
   document.getElementById("shown-error").textContent = withUnit(rung.held_out_rmse, rung.unit);
   document.getElementById("shown-about").textContent =
     `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles that took no part in the fit (blocks held out in turn); ` +
-    `${ratio ? `${number(ratio, 3)} floors, ` : ""}${rung.cycles}${rung.cycles < bench.world.cycles ? ` of ${bench.world.cycles}` : ""} cycles; ` +
+    `${ratio ? `${number(ratio, 3)} times the noise floor, ` : ""}` +
+    `${rung.cycles}${rung.cycles < workbench.world.cycles ? ` of ${workbench.world.cycles}` : ""} cycles; ` +
     (rung.full ? "fitted as the command below does it" : "quick fit, being refined");
-  document.getElementById("bench-command").textContent = rung.command;
+  document.getElementById("workbench-command").textContent = rung.command;
 }
 
 function showRungs(rungs) {
@@ -53,7 +54,7 @@ function showRungs(rungs) {
   const rows = rungs.map((rung) => {
     const bar = make("span", { className: "bar", "aria-hidden": "true" });
     bar.style.width = `${(100 * rung.held_out_rmse) / worst}%`;
-    const current = bench.rung && rung.number === bench.rung.number;
+    const current = workbench.rung && rung.number === workbench.rung.number;
     const back = make("button", { type: "button", "aria-current": current ? "true" : null, "data-rung": rung.number,
       onclick: () => goTo(rung.choice) }, rung.name);
     return make("tr", { className: current ? "current" : "" }, make("td", { className: "number" }, String(rung.number + 1)),
@@ -64,7 +65,7 @@ function showRungs(rungs) {
       make("td", { className: "number" }, String(rung.cycles)));
   });
   const head = ["", "Model", "Held-out error", "", "On all data", "Floor", "Cycles"];
-  document.getElementById("bench-rungs").replaceChildren(make("table", {}, make("caption", {}, "Models visited"),
+  document.getElementById("workbench-rungs").replaceChildren(make("table", {}, make("caption", {}, "Models visited"),
     make("thead", {}, make("tr", {}, ...head.map((name) => make("th", { scope: "col" }, name)))), make("tbody", {}, ...rows)));
 }
 
@@ -82,30 +83,30 @@ function partOf(choice) {
 
 /** Shows the picture of the choice; quick at first, then as the command line fits it. */
 async function show(full = false, passing = false) {
-  clearTimeout(bench.settling);
-  if (bench.asking) bench.asking.abort();
-  const asking = new AbortController(), turn = ++bench.turn;
-  bench.asking = asking;
-  if (!full) bench.changedAt = performance.now();
-  document.documentElement.dataset.bench = "asking";
+  clearTimeout(workbench.settling);
+  if (workbench.asking) workbench.asking.abort();
+  const asking = new AbortController(), turn = ++workbench.turn;
+  workbench.asking = asking;
+  if (!full) workbench.changedAt = performance.now();
+  document.documentElement.dataset.workbench = "asking";
   try {
-    const answer = await ask("/api/show", { page: bench.page, turn, full, passing, choice: bench.choice }, asking.signal);
-    if (answer.superseded || turn !== bench.turn) return;
-    bench.rung = answer.rung;
+    const answer = await ask("/api/show", { page: workbench.page, turn, full, passing, choice: workbench.choice }, asking.signal);
+    if (answer.superseded || turn !== workbench.turn) return;
+    workbench.rung = answer.rung;
     showTrouble(null);
     showStatus(answer.rung);
     showRungs(answer.rungs);
     if (!full || !sameNames(answer.rung)) showParameters(answer.rung);
     else updateParameters(answer.rung);
-    showReport(document.getElementById("bench-picture"), answer.report);
-    if (!full) document.documentElement.dataset.answerMs = (performance.now() - bench.changedAt).toFixed(0);
-    document.documentElement.dataset.bench = answer.rung.full ? "settled" : "shown";
-    if (!answer.rung.full) bench.settling = setTimeout(() => show(true), 600);
+    showReport(document.getElementById("workbench-picture"), answer.report);
+    if (!full) document.documentElement.dataset.answerMs = (performance.now() - workbench.changedAt).toFixed(0);
+    document.documentElement.dataset.workbench = answer.rung.full ? "settled" : "shown";
+    if (!answer.rung.full) workbench.settling = setTimeout(() => show(true), 600);
   } catch (trouble) {
-    if (trouble.name === "AbortError" || turn !== bench.turn) return;
+    if (trouble.name === "AbortError" || turn !== workbench.turn) return;
     if (!trouble.problem) throw trouble;
     showTrouble(trouble);
-    document.documentElement.dataset.bench = "failed";
+    document.documentElement.dataset.workbench = "failed";
   }
 }
 
@@ -113,13 +114,13 @@ let changing = 0;
 /** After a change of the choice; a drag changes it many times a second. */
 function changed(passing = false) {
   clearTimeout(changing);
-  clearTimeout(bench.settling);
+  clearTimeout(workbench.settling);
   changing = setTimeout(() => show(false, passing), 25);
 }
 
 function goTo(choice) {
   clearTimeout(changing); // a drag that was under way is of the choice before
-  bench.choice = structuredClone(choice);
+  workbench.choice = structuredClone(choice);
   fillControls();
   show();
 }
@@ -130,15 +131,16 @@ function diagnosisBox() {
   return make("fieldset", {}, make("legend", {}, "Diagnosis"),
     make("p", { className: "soft" }, "Tries every effect of the catalogue and your formulas on blocks of cycles that are held out."),
     make("div", { className: "row" },
-      make("button", { type: "button", id: "bench-diagnose", onclick: beginDiagnosis }, "Diagnose"),
-      make("button", { type: "button", id: "bench-cancel", disabled: "", onclick: () => ask("/api/cancel", {}).catch(showTrouble) }, "Cancel")),
-    make("progress", { id: "bench-progress", max: "1", value: "0", hidden: "", "aria-label": "Progress of the diagnosis" }),
-    make("p", { id: "bench-doing", role: "status" }), make("div", { id: "bench-finding" }));
+      make("button", { type: "button", id: "workbench-diagnose", onclick: beginDiagnosis }, "Diagnose"),
+      make("button", { type: "button", id: "workbench-cancel", disabled: "",
+        onclick: () => ask("/api/cancel", {}).catch(showTrouble) }, "Cancel")),
+    make("progress", { id: "workbench-progress", max: "1", value: "0", hidden: "", "aria-label": "Progress of the diagnosis" }),
+    make("p", { id: "workbench-doing", role: "status" }), make("div", { id: "workbench-finding" }));
 }
 
 async function beginDiagnosis() {
   try {
-    await ask("/api/diagnose", { choice: bench.choice });
+    await ask("/api/diagnose", { choice: workbench.choice });
     followDiagnosis();
   } catch (trouble) {
     showTrouble(trouble);
@@ -146,7 +148,7 @@ async function beginDiagnosis() {
 }
 
 async function followDiagnosis() {
-  clearTimeout(bench.polling);
+  clearTimeout(workbench.polling);
   let state;
   try {
     state = await ask("/api/diagnosis");
@@ -155,19 +157,19 @@ async function followDiagnosis() {
     return;
   }
   const running = state.state === "running";
-  document.getElementById("bench-diagnose").disabled = running;
-  document.getElementById("bench-cancel").disabled = !running;
-  const progress = document.getElementById("bench-progress");
+  document.getElementById("workbench-diagnose").disabled = running;
+  document.getElementById("workbench-cancel").disabled = !running;
+  const progress = document.getElementById("workbench-progress");
   progress.hidden = !running;
   progress.value = state.part;
-  document.getElementById("bench-doing").textContent = running ? prose(state.doing) : prose(state.sentence || "");
+  document.getElementById("workbench-doing").textContent = running ? prose(state.doing) : prose(state.sentence || "");
   document.documentElement.dataset.diagnosis = state.state;
-  if (running) bench.polling = setTimeout(followDiagnosis, 300);
+  if (running) workbench.polling = setTimeout(followDiagnosis, 300);
   else showFinding(state);
 }
 
 function showFinding(state) {
-  const box = document.getElementById("bench-finding");
+  const box = document.getElementById("workbench-finding");
   if (state.state !== "done" || state.ladder.length === 0) {
     box.replaceChildren();
     return;
@@ -183,7 +185,7 @@ async function saveSession() {
   try {
     const session = await ask("/api/session");
     const url = URL.createObjectURL(new Blob([JSON.stringify(session, null, 2)], { type: "application/json" }));
-    make("a", { href: url, download: `${bench.world.trace.path.split("/").pop().replace(/\.[^.]*$/, "")}-session.json` }).click();
+    make("a", { href: url, download: `${workbench.world.trace.path.split("/").pop().replace(/\.[^.]*$/, "")}-session.json` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 10000);
   } catch (trouble) {
     showTrouble(trouble);
@@ -193,41 +195,42 @@ async function saveSession() {
 function commandBox() {
   const copy = async (event) => {
     try {
-      await navigator.clipboard.writeText(document.getElementById("bench-command").textContent);
+      await navigator.clipboard.writeText(document.getElementById("workbench-command").textContent);
       event.target.textContent = "Copied";
     } catch {
-      getSelection().selectAllChildren(document.getElementById("bench-command"));
+      getSelection().selectAllChildren(document.getElementById("workbench-command"));
     }
   };
-  return make("fieldset", {}, make("legend", {}, "The same from the command line"), make("pre", { id: "bench-command" }),
+  return make("fieldset", {}, make("legend", {}, "The same from the command line"), make("pre", { id: "workbench-command" }),
     make("div", { className: "row" }, make("button", { type: "button", onclick: copy }, "Copy"),
-      make("button", { type: "button", id: "bench-save", onclick: saveSession }, "Save session")));
+      make("button", { type: "button", id: "workbench-save", onclick: saveSession }, "Save session")));
 }
 
 // ---- the page ----
 
 function statusBox() {
-  return make("div", { id: "bench-status", role: "status", "aria-live": "polite" },
+  return make("div", { id: "workbench-status", role: "status", "aria-live": "polite" },
     make("div", { id: "shown-model" }), make("div", {}, "held-out error ", make("strong", { id: "shown-error" }, "–")),
     make("div", { id: "shown-about", className: "soft" }));
 }
 
 async function startWorkbench(main) {
   document.body.classList.add("workbench");
-  const controls = make("aside", { id: "bench-controls", "aria-label": "Model" });
-  main.replaceChildren(controls, make("div", { id: "bench-shown" },
-    make("p", { id: "bench-trouble", className: "warning", role: "alert", hidden: "" }),
-    make("section", { id: "bench-rungs", "aria-label": "Ladder of models", className: "scroll", tabindex: "0" }),
-    make("div", { id: "bench-picture" })));
+  const controls = make("aside", { id: "workbench-controls", "aria-label": "Model" });
+  main.replaceChildren(controls, make("div", { id: "workbench-shown" },
+    make("p", { id: "workbench-trouble", className: "warning", role: "alert", hidden: "" }),
+    make("section", { id: "workbench-rungs", "aria-label": "Ladder of models", className: "scroll", tabindex: "0" }),
+    make("div", { id: "workbench-picture" })));
   try {
-    bench.world = await ask("/api/begin");
+    workbench.world = await ask("/api/begin");
   } catch (trouble) {
     showTrouble(trouble);
     return;
   }
-  bench.choice = bench.world.begin;
+  workbench.choice = workbench.world.begin;
   controls.append(statusBox(), lawChoice(), effectChoices(), formulaChoice(),
-    make("fieldset", {}, make("legend", {}, "Parameters: starts and bounds"), make("ul", { id: "bench-messages" }), make("div", { id: "bench-parameters" })),
+    make("fieldset", {}, make("legend", {}, "Parameters: starts and bounds"), make("ul", { id: "workbench-messages" }),
+      make("div", { id: "workbench-parameters" })),
     selectionChoice(), diagnosisBox(), commandBox());
   fillControls();
   await show();

@@ -65,7 +65,7 @@ Declared reading(double truth, double uncertainty, std::mt19937_64& engine) {
 
 }  // namespace
 
-Experiment telling_experiment(std::string_view a, std::string_view b) {
+Experiment discriminating_runs(std::string_view a, std::string_view b) {
   for (const Test& test : tests()) {
     if ((test.a == a && test.b == b) || (test.a == b && test.b == a)) return test.experiment;
   }
