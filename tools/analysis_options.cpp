@@ -115,8 +115,7 @@ std::optional<RecordKind> kind_from(const Settings& s) {
   // With a displacement the other columns show whether it is the motion alone.
   if (names_position(s)) return s.never_sticks ? RecordKind::sliding : find_record_kind(s.kind);
   if (!s.stiffness.empty()) refuse_beside("--stiffness", RecordKind::spring_slider);
-  if (s.never_sticks && !s.stiffness.empty())
-    throw UsageError("--never-sticks and --stiffness say two kinds of record");
+  if (s.never_sticks && !s.stiffness.empty()) throw UsageError("--never-sticks and --stiffness contradict each other");
   if (s.mass.empty() != s.stiffness.empty() && s.stiffness.empty())
     throw UsageError("--mass is that of a spring slider: give --stiffness, too");
   if (!s.stiffness.empty()) return RecordKind::spring_slider;

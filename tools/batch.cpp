@@ -97,21 +97,21 @@ void refuse_overwriting_inputs(const Settings& s, const Campaign& campaign, cons
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
-  if (!s.report.empty() && !s.shard.empty()) throw UsageError("--report goes with `identify merge`");
-  if (!s.json.empty()) throw UsageError("--json goes with one trace at a time; --out has a file for each");
-  if (!s.csv.empty()) throw UsageError("--csv goes with one trace at a time");
+  if (!s.report.empty() && !s.shard.empty()) throw UsageError("--report needs `identify merge`");
+  if (!s.json.empty()) throw UsageError("--json needs one trace at a time; --out has a file for each");
+  if (!s.csv.empty()) throw UsageError("--csv needs one trace at a time");
   if (campaign.runs.size() > 1 && !s.second_file.empty()) {
-    throw UsageError("--with goes with one trace at a time");
+    throw UsageError("--with needs one trace at a time");
   }
   if (campaign.runs.size() > 1 && !s.continued_in.empty()) {
-    throw UsageError("--continue goes with one trace at a time");
+    throw UsageError("--continue needs one trace at a time");
   }
-  if (!s.figures.empty() && !s.shard.empty()) throw UsageError("--figures goes with `identify merge`");
+  if (!s.figures.empty() && !s.shard.empty()) throw UsageError("--figures needs `identify merge`");
   if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
     throw UsageError("--out is the folder of the traces; name another");
   }
   if (!s.shard.empty() && !(s.compare.empty() && s.share.empty() && s.vary.empty())) {
-    throw UsageError("--compare, --share and --vary go with `identify merge`");
+    throw UsageError("--compare, --share and --vary need `identify merge`");
   }
   check_comparison(s, batch.results);
   refuse_overwriting(s, {s.compare});
@@ -145,7 +145,7 @@ void claim_results(const Campaign& campaign, const BatchOptions& batch) {
     const std::string own = campaign.folder.empty() ? "" : fs::weakly_canonical(campaign.folder, ignored).string();
     if (!known || *known == own || batch.again) return;  // a damaged file is written anew
     throw InputError("holds the results of " + (known->empty() ? "other traces" : *known),
-                     "name another folder with --out, or do them anew with --again", {batch.results, 0, ""});
+                     "name another folder with --out, or recompute them with --again", {batch.results, 0, ""});
   }
   for (const Run& run : campaign.runs) {
     if (!fs::exists(result_path(batch.results, run.name), ignored)) continue;

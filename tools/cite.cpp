@@ -118,7 +118,7 @@ std::string paragraph_of_file(const std::string& path, std::vector<std::string>&
   try {
     return paragraph_of(Json::parse(file), names);
   } catch (const Json::exception&) {
-    throw InputError("is no result of one trace",
+    throw InputError("is not the result of one trace",
                      "give a file that 'identify --json' or 'identify diagnose --json' wrote", where);
   }
 }

@@ -228,7 +228,7 @@ ExitStatus run_program(const Program& program, int argc, char** argv,
   CLI::App app(program.description, program.name);
   app.footer(program.footer);
   app.get_formatter()->column_width(kHelpColumn);
-  app.set_version_flag("--version", program.version, "Print the version and leave");
+  app.set_version_flag("--version", program.version, "Print the version and exit");
   ExitStatus status = ExitStatus::done;
   setup(Command(app, status));
   try {

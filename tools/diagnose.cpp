@@ -37,7 +37,7 @@ void check_usage(const Settings& s, const Split& split) {
   if (split.diagnosed.empty())
     throw UsageError("every trace is held back to confirm the finding; leave one to diagnose");
   if (split.diagnosed.size() > 1 && (!s.second_file.empty() || !s.continued_in.empty())) {
-    throw UsageError("--with and --continue go with one trace at a time");
+    throw UsageError("--with and --continue need one trace at a time");
   }
   for (std::size_t k = 0; k < split.diagnosed.size(); ++k) {  // the same evidence may not count twice
     for (std::size_t earlier = 0; earlier < k; ++earlier) {
@@ -85,7 +85,7 @@ std::string reason_of(const DiagnosedTraces& result) {
   return "there are too few cycles to hold any out";
 }
 
-/// Records that take no part, and why.
+/// Records that are not used, and why.
 struct LeftOut {
   std::vector<std::string> reasons;
   bool any_read = false;  ///< one could be read, but not analysed

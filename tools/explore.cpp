@@ -114,7 +114,7 @@ void refuse_beside_session(const std::vector<std::string>& arguments) {
   }
   if (others.empty()) return;
   throw UsageError("--session: the saved session has its own options; leave out " + others +
-                   " (only --port and --threads go with it)");
+                   " (only --port and --threads may be given beside it)");
 }
 
 /// The settings that a saved session was begun with, but for what is given to the server itself now.

@@ -21,14 +21,14 @@ using namespace tribofit;
 namespace {
 
 void check_usage(const Settings& s, const std::vector<Input>& inputs) {
-  if (s.again) throw UsageError("--again goes with a folder of runs, or with --out");
+  if (s.again) throw UsageError("--again needs a folder of runs, or with --out");
   if (!s.share.empty() || !s.vary.empty()) {
-    throw UsageError("--share and --vary go with a folder of runs, or with --out");
+    throw UsageError("--share and --vary need a folder of runs, or with --out");
   }
-  if (!s.compare.empty()) throw UsageError("--compare goes with a folder of runs, or with --out");
+  if (!s.compare.empty()) throw UsageError("--compare needs a folder of runs, or with --out");
   if (inputs.size() > 1) {
     const auto alone = [](bool given, const char* name) {
-      if (given) throw UsageError(std::string(name) + " goes with one trace at a time");
+      if (given) throw UsageError(std::string(name) + " needs one trace at a time");
     };
     alone(!s.json.empty(), "--json");
     alone(!s.csv.empty(), "--csv");

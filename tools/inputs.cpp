@@ -88,8 +88,8 @@ Split keep_for_confirmation(std::vector<Input> inputs, const std::vector<std::st
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (kept[k] && named.empty()) {
       split.notes.push_back(
-          fmt::format("{} repeats the conditions of another run: it takes no part in the diagnosis and "
-                      "confirms the finding",
+          fmt::format("{} repeats the conditions of another run: it is not used in the diagnosis but to "
+                      "confirm the finding",
                       inputs[k].trace.path));
     }
     (kept[k] ? split.kept : split.diagnosed).push_back(std::move(inputs[k]));

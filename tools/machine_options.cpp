@@ -1,6 +1,7 @@
 #include "machine_options.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 
@@ -22,26 +23,26 @@ double given_or(const std::string& text, Quantity quantity, const char* option, 
 }
 
 /// An effect and its parameters in SI, in the order of its info().
-struct ChosenEffect {
+struct RequestedEffect {
   Effect effect;
   std::vector<double> values;
 };
 
 /// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
 /// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
-ChosenEffect read_effect(const std::string& text) {
+RequestedEffect read_effect(const std::string& text) {
   auto colon = text.find(':');
   const std::size_t first_end = std::min(text.find(',', colon), text.size());
   if (colon != std::string::npos && text.find('=', colon) > first_end &&
       !describe(effect_named(text.substr(0, colon))).forms.empty()) {
     colon = first_end;
   }
-  ChosenEffect chosen{effect_named(text.substr(0, colon)), {}};
-  const EffectInfo info = describe(chosen.effect);
+  RequestedEffect requested{effect_named(text.substr(0, colon)), {}};
+  const EffectInfo info = describe(requested.effect);
   std::vector<std::string> names;
   for (const Parameter& parameter : info.parameters) {
     names.push_back(parameter.name);
-    chosen.values.push_back(parameter.start * parameter.si);
+    requested.values.push_back(parameter.start * parameter.si);
   }
   std::size_t begin = colon == std::string::npos ? text.size() : colon + 1;
   while (begin < text.size()) {
@@ -61,10 +62,10 @@ ChosenEffect read_effect(const std::string& text) {
     const auto k = static_cast<std::size_t>(found - names.begin());
     const Parameter& parameter = info.parameters[k];
     const std::optional<Unit> unit = find_unit(parameter.unit);
-    chosen.values[k] = stated_value(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
-                                    info.key + ":" + parameter.name, parameter.unit);
+    requested.values[k] = stated_value(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
+                                       info.key + ":" + parameter.name, parameter.unit);
   }
-  return chosen;
+  return requested;
 }
 
 Law read_law(const std::string& name) {
@@ -76,17 +77,17 @@ Law read_law(const std::string& name) {
 }
 
 /// Effects with their values by key: the model puts them into its own order.
-struct ChosenEffects {
+struct RequestedEffects {
   std::vector<Effect> effects;
   std::map<std::string, std::vector<double>> values;
 };
 
-ChosenEffects chosen_effects(const MachineRequest& request, const Law& law) {
-  ChosenEffects out;
+RequestedEffects requested_effects(const MachineRequest& request, const Law& law) {
+  RequestedEffects out;
   for (const std::string& text : request.effects) {
-    const ChosenEffect chosen = read_effect(text);
-    out.effects.push_back(chosen.effect);
-    out.values[describe(chosen.effect).key] = chosen.values;
+    const RequestedEffect requested = read_effect(text);
+    out.effects.push_back(requested.effect);
+    out.values[describe(requested.effect).key] = requested.values;
   }
   for (const std::string& text : request.formulas) {
     const Formula formula(text);
@@ -176,12 +177,12 @@ RequestedMachine machine_from(const MachineRequest& request) {
   }
   machine.rig = test.rig;
   set_rig(request, machine.rig);
-  const ChosenEffects chosen = chosen_effects(request, law);
-  machine.model = FrictionModel(law, chosen.effects);
+  const RequestedEffects requested = requested_effects(request, law);
+  machine.model = FrictionModel(law, requested.effects);
   machine.parameters = test.friction;
   set_law_parameters(request, law, machine.parameters);
   for (const std::string& key : machine.model.effect_keys()) {
-    const std::vector<double>& values = chosen.values.at(key);
+    const std::vector<double>& values = requested.values.at(key);
     machine.parameters.insert(machine.parameters.end(), values.begin(), values.end());
   }
   return out;
@@ -210,17 +211,18 @@ void add_law_parameters(const Command& verb, const char* group, MachineRequest& 
   }
   for (const Parameter& p : parameters) {
     const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
-    verb.add_option(flag_of(p.name), r.law_parameters[p.name], p.description + unit + " (" + laws[p.name] + ")")
-        .group(group);
+    std::string help = p.description + unit + " (" + laws[p.name] + ")";
+    help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+    verb.add_option(flag_of(p.name), r.law_parameters[p.name], help).group(group);
   }
 }
 
 }  // namespace
 
 void add_machine_options(const Command& verb, MachineRequest& r) {
-  verb.add_option("--radius", r.radius, "friction radius").show_default().group(kRigGroup);
-  verb.add_option("--speed", r.speed, "of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s").group(kRigGroup);
-  verb.add_option("--load", r.load, "normal force, e.g. 50N").group(kRigGroup);
+  verb.add_option("--radius", r.radius, "Friction radius").show_default().group(kRigGroup);
+  verb.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s").group(kRigGroup);
+  verb.add_option("--load", r.load, "Normal force, e.g. 50N").group(kRigGroup);
   add_machine_numbers(verb, r);
 }
 
@@ -229,17 +231,17 @@ void add_machine_numbers(const Command& verb, MachineRequest& r) {
     return verb.add_option(flag, value, help).group(name);
   };
   const char* rig = kRigGroup;
-  group(rig, "--mass", r.mass, "moving mass, e.g. 0.85kg");
-  group(rig, "--stiffness", r.stiffness, "of the spring, e.g. 16.2N/mm");
-  group(rig, "--damping", r.damping, "of the block on its spring, e.g. 0.0047Ns/mm");
-  group(rig, "--damping-ratio", r.damping_ratio, "the same as c/(2 sqrt(k m)), e.g. 0.02");
+  group(rig, "--mass", r.mass, "Moving mass, e.g. 0.85kg");
+  group(rig, "--stiffness", r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
+  group(rig, "--damping", r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
+  group(rig, "--damping-ratio", r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
   const char* law = "Friction (default: the published values at the nearest radius)";
-  group(law, "--law", r.law, list_of_laws() + " (default the first)");
+  group(law, "--law", r.law, "Law of friction: " + list_of_laws() + " (default the first)");
   add_law_parameters(verb, law, r);
   group(law, "--effect", r.effects,
         "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
       .one_value_each();
   group(law, "--formula", r.formulas,
-        "a term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
+        "A term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
       .one_value_each();
 }

@@ -31,7 +31,7 @@ void check_report(const Settings& s) {
 /// Usage error: pictures that cannot be drawn here, or whose folder is another output.
 void check_figures(const Settings& s) {
   if (s.figures.empty()) {
-    if (!s.picture_format.empty()) throw UsageError("--format goes with --figures FOLDER");
+    if (!s.picture_format.empty()) throw UsageError("--format needs --figures FOLDER");
     return;
   }
   if (s.figures == s.json || s.figures == s.report) {

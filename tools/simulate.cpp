@@ -334,35 +334,35 @@ void add_options(const Command& verb, SimulateRequest& r) {
     return verb.add_option(flag, value, help).group(name);
   };
   verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
-  verb.add_option("--duration", r.duration, "of the record").show_default();
-  verb.add_option("--rate", r.rate, "samples per second").show_default();
-  verb.add_option("--seed", r.seed_text, "of noise and scatter").show_default();
-  verb.add_flag("--quiet", r.quiet, "print nothing");
+  verb.add_option("--duration", r.duration, "Duration of the record").show_default();
+  verb.add_option("--rate", r.rate, "Samples per second").show_default();
+  verb.add_option("--seed", r.seed_text, "Seed of noise and scatter").show_default();
+  verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
   const char* rig = "Motion of the disc, load and temperature";
-  group(rig, "--run-up", r.run_up, "start from standstill and reach the speed in this time; else the start is settled");
+  group(rig, "--run-up", r.run_up, "Start from standstill and reach the speed in this time; else the start is settled");
   group(rig, "--reversing", r.reversing,
-        "the disc goes forth and back as a sine of this frequency; --speed is its peak");
-  group(rig, "--speed-steps", r.speed_steps, "speeds of the disc from times on, e.g. 0s:2rpm,10s:4rpm,20s:-4rpm");
-  group(rig, "--pause", r.pauses, "the disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
+        "The disc goes forth and back as a sine of this frequency; --speed is its peak");
+  group(rig, "--speed-steps", r.speed_steps, "Speeds of the disc from times on, e.g. 0s:2rpm,10s:4rpm,20s:-4rpm");
+  group(rig, "--pause", r.pauses, "The disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
       .one_value_each();
   group(rig, "--load-swing", r.load_swing,
-        "a sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
+        "A sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
   group(rig, "--temperature", r.temperature,
-        "temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
+        "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
   const char* law = "Scatter of break-away";
-  group(law, "--scatter", r.scatter, "standard deviation of mu_s from cycle to cycle").show_default();
-  group(law, "--wander", r.wander, "correlation of the scatter between neighbouring cycles").show_default();
+  group(law, "--scatter", r.scatter, "Standard deviation of mu_s from cycle to cycle").show_default();
+  group(law, "--wander", r.wander, "Correlation of the scatter between neighbouring cycles").show_default();
   const char* sensors = "Sensors";
-  group(sensors, "--noise-mu", r.noise_mu, "standard deviation of the noise on mu").show_default();
-  group(sensors, "--noise-v", r.noise_v, "of the noise on v_b").show_default();
+  group(sensors, "--noise-mu", r.noise_mu, "Standard deviation of the noise on mu").show_default();
+  group(sensors, "--noise-v", r.noise_v, "Standard deviation of the noise on v_b").show_default();
   group(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white").show_default();
-  group(sensors, "--delay", r.delay, "mu is recorded later than v_b").show_default();
-  group(sensors, "--mass-below", r.mass_below, "mass below the force sensor").show_default();
-  group(sensors, "--force-bandwidth", r.force_bandwidth, "second-order low-pass on mu; 0: none").show_default();
-  group(sensors, "--force-damping", r.force_damping, "its damping ratio").show_default();
-  group(sensors, "--velocity-gain", r.velocity_gain, "vibrometer reading over true velocity").show_default();
-  group(sensors, "--high-pass", r.high_pass, "first-order high-pass of the vibrometer; 0: none").show_default();
+  group(sensors, "--delay", r.delay, "Time by which mu is recorded later than v_b").show_default();
+  group(sensors, "--mass-below", r.mass_below, "Mass below the force sensor").show_default();
+  group(sensors, "--force-bandwidth", r.force_bandwidth, "Second-order low-pass on mu; 0: none").show_default();
+  group(sensors, "--force-damping", r.force_damping, "Damping ratio of that low-pass").show_default();
+  group(sensors, "--velocity-gain", r.velocity_gain, "Vibrometer reading over true velocity").show_default();
+  group(sensors, "--high-pass", r.high_pass, "First-order high-pass of the vibrometer; 0: none").show_default();
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ FloorComparison against_floor(double held_out_rmse, double floor_rmse);
 /// Share of the squares of the base law above the noise floor that is gone at a rung; NaN where none is above it.
 double removed_at(const Diagnosis& diagnosis, std::size_t rung);
 
-/// The last rung predicts the run that took no part better than the base law, and not by chance.
+/// The last rung predicts the run that was not used in the fit better than the base law, and not by chance.
 bool is_confirmed(const Confirmation& confirmation);
 
 }  // namespace tribofit

@@ -228,8 +228,8 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
   if (!(error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse)) return;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(
-      fmt::format("what remains is {:.1f} times the noise floor and goes with no variable of these data more than "
-                  "chance would make it: it changes from cycle to cycle, or with something that was not recorded",
+      fmt::format("what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: "
+                  "it changes from cycle to cycle, or with something that was not recorded",
                   left_over));
 }
 

@@ -191,7 +191,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
   finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::unsupported;
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
                    : last.judged != nullptr ? why_not(*last.judged, in.all[k], in.context.fine.observations)
-                                            : "it promises no fall of the error";
+                                            : "screening predicts no fall of the held-out error";
   if (finding.status == EffectStatus::unsupported && is_possible(in, k, last)) {
     finding.status = EffectStatus::possible;
     finding.reason =
@@ -203,7 +203,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
   }
   if (!contains(in.ladder.withdrawn, k)) return;
   finding.status = EffectStatus::unsupported;
-  finding.reason = "more remains over its variable than it explains: its name would be wrong";
+  finding.reason = "the error left over its variable is larger than what it explains";
 }
 
 /// What a candidate is on the ladder: added by one of its steps, or equivalent to what a step added.

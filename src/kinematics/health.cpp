@@ -20,9 +20,9 @@ namespace {
 using Status = HealthItem::Status;
 
 struct Band {
-  double upper = 0;       // content above the floor up to here [Hz]
-  double floor = 0;       // amplitude density of the floor, relative to the largest line
-  bool filtered = false;  // the floor itself falls off towards the end of the band
+  double upper = 0;       // content above the noise floor up to here [Hz]
+  double floor = 0;       // amplitude density of the noise floor, relative to the largest line
+  bool filtered = false;  // the noise floor itself falls off towards the end of the band
   double corner = 0;      // from here on the content falls steeply [Hz]; 0: nowhere
   double order = 0;       // the power of frequency with which it does
 };
@@ -48,7 +48,7 @@ void find_corner(const Spectrum& spectrum, double floor, Band& band) {
   }
 }
 
-// Content reaches up to where the smoothed spectrum comes within a factor of two of the floor (upper quarter).
+// Content reaches up to where the smoothed spectrum comes within a factor of two of the noise floor (upper quarter).
 Band band_of(std::span<const double> signal, double step) {
   const Spectrum spectrum = averaged_spectrum(signal, step);
   Band band;
@@ -250,7 +250,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
     item.message = fmt::format(
         "friction falls behind the velocity by {:.2f} ms from the first third of the record to the last ({:.0f} ppm, "
         "{} "
-        "slips): their clocks run apart; mu_k and alpha are at stake",
+        "slips): their clocks run apart; mu_k and alpha are unreliable",
         1e3 * drift.gained, 1e6 * drift.gained / drift.time, used);
     return item;
   }

@@ -44,7 +44,7 @@ struct Resting {
 };
 
 /// A converter or an amplifier at its limit. A record without noise repeats its plateau, and that is no clipping. Nor
-/// is a lowest friction that is above zero. Adds the samples to those that take no part.
+/// is a lowest friction that is above zero. Adds the samples to those that are not used.
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
                           const Resting& resting, SpoiltSamples& spoilt);
 

@@ -206,7 +206,7 @@ inline constexpr std::size_t kShortestHalf = 4, kWidestHalf = 500;
 /// How nearly the steepest fall of the pull is that of stiffness and mass: friction that falls with speed makes it
 /// steeper by some per cent, noise by some more.
 inline constexpr double kFrequencyAgrees = 0.2;
-/// Standard error of a velocity over the median, from which it takes no part, and samples beside it: where a window
+/// Standard error of a velocity over the median, from which it is not used, and samples beside it: where a window
 /// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
 inline constexpr double kUnsure = 2.5;
 inline constexpr std::size_t kBesideUnsure = 2;

@@ -45,7 +45,7 @@ HealthItem check_mean(const Motion& motion) {
   item.status = HealthItem::Status::problem;
   item.message += std::abs(mean / disc) < kGainOff
                       ? ": this is the velocity of the block; name the column v_b"
-                      : ": zero or gain of v_r, or radius or speed, are wrong; alpha is at stake";
+                      : ": zero or gain of v_r, or radius or speed, are wrong; alpha is unreliable";
   return item;
 }
 
@@ -74,7 +74,7 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
   } else if (std::abs(gain - 1) > kGainOff) {
     item.status = Status::problem;
     item.message +=
-        fmt::format(": v_r reads {:.3g} times the truth, or radius or speed are wrong; alpha is at stake", gain);
+        fmt::format(": v_r reads {:.3g} times the truth, or radius or speed are wrong; alpha is unreliable", gain);
   } else if (is_off) {
     item.message += ": its zero is off, and alpha with it";
   } else if (std::abs(gain - 1) > kGainWarned) {

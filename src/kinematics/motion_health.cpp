@@ -74,7 +74,8 @@ HealthItem MotionStages::check_band() const {
   if (samples >= kFewSlipSamples) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are at stake", samples);
+      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are unreliable",
+      samples);
   return item;
 }
 

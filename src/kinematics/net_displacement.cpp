@@ -120,12 +120,12 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
       : compression != 0
           ? fmt::format("slips are not read like sticks, the gain is {:.3g} % {} at the fastest; undone{}",
                         100 * std::abs(compression), compression > 0 ? "less" : "more",
-                        is_guess ? " as of third order, mu_k and alpha are at stake" : "")
+                        is_guess ? " as of third order, mu_k and alpha are unreliable" : "")
       : speed_was_stated
-          ? "slips are not read like sticks (a compressed velocity), or samples are missing; mu_k and alpha are at "
-            "stake"
+          ? "slips are not read like sticks (a compressed velocity), or samples are missing; mu_k and alpha are "
+            "unreliable"
           : "its zero is off, or slips are not read like sticks (a compressed velocity; mu_k and alpha are "
-            "then at stake); give --speed to decide";
+            "then unreliable); give --speed to decide";
 }
 
 }  // namespace tribofit::kinematics

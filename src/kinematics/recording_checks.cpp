@@ -111,7 +111,7 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   const bool is_force = trace.friction_kind == FrictionKind::force;
   const Units friction{"friction", 1, is_force ? " N" : "", SampleFault::friction};
   const Units velocity{"velocity", 1e3, " mm/s", SampleFault::velocity};
-  const auto add_warning = [&](const Units& channel, const EndRuns& end, const char* at_stake) {
+  const auto add_warning = [&](const Units& channel, const EndRuns& end, const char* unreliable) {
     const PileUp& pile = end.pile;
     // Where nothing sticks a channel may rest at an end of its range, but not far from zero and quiet.
     const bool holds = resting.sticks ? pile.is_quiet || pile.density >= kCrowdedAlone : pile.is_quiet && end.is_far;
@@ -121,9 +121,9 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
     const double share = static_cast<double>(count) / static_cast<double>(trace.size());
     item.status = share > 0.001 ? Status::problem : Status::warning;
     item.message = fmt::format(
-        "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they take no part, {} at stake",
+        "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they are not used, {} unreliable",
         channel.name, channel.factor * (end.count < 6 ? pile.level : end.at), channel.unit, count, 100 * share,
-        at_stake);
+        unreliable);
     spoilt.add_clipped(is_clipped ? pile.spans : end.spans, channel.kind);
   };
   const auto& [low, high] = ends.friction;
@@ -148,7 +148,7 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
     item.status = Status::problem;
     item.message = fmt::format(
         "{}{}{} changes by {:.3g}{} a second and never faster: its amplifier cannot follow; mu_s, "
-        "mu_k and alpha are at stake",
+        "mu_k and alpha are unreliable",
         is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * change / trace.interval(),
         channel.unit);
   };

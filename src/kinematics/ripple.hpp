@@ -28,7 +28,7 @@ struct RippleEstimate {
 /// counts when two revolutions are recorded, A is at least 0.5 % and six standard errors (for levels correlated from
 /// plateau to plateau), it explains half of the variance of the levels, and both halves of the record show the same
 /// amplitude and phase: what swings in time, or wanders, does not. Where the plateaus fall towards break-away the
-/// contact creeps, and creep follows friction (a runout): friction in the plateau and at its end then take part in the
+/// contact creeps, and creep follows friction (a runout): friction in the plateau and at its end are then used in the
 /// fit, and A must be larger than that fall over the level.
 ///
 /// The phase of a real coupling runs with the angle theta that the disc has turned, of which omega t is the mean up to

@@ -12,7 +12,7 @@
 
 namespace tribofit::kinematics {
 
-/// The samples of a trace that do not take part, and why.
+/// The samples of a trace that are not used, and why.
 class SpoiltSamples {
  public:
   /// Looks for markers, spikes and frozen stretches in every channel and bridges them.

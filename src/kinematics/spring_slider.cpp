@@ -79,7 +79,7 @@ Stretches stretches_of(const std::vector<bool>& slips, std::size_t reach) {
 }
 
 /// Where the slider slips throughout a stretch: pull, slope and bend as means over it with the same weights, of which
-/// the force balance holds exactly. Stretches with a part of a stick show no law of sliding, and take no part; where
+/// the force balance holds exactly. Stretches with a part of a stick show no law of sliding, and are not used; where
 /// most of the slips are such, all stays as it is. Errors of the velocity stay those of the wider window, by which
 /// stick is distinguished from slip.
 void smooth_alike(const LocalDerivatives& pull, const std::vector<double>& raw, std::size_t half, double unit,

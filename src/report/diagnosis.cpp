@@ -242,7 +242,7 @@ std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOption
   add_found(result, text);
   add_experiment(d, text);
   add_untestable(d, text);
-  if (!d.confirmations.empty()) text.heading("On runs that took no part");
+  if (!d.confirmations.empty()) text.heading("On runs not used in the fit");
   for (const Confirmation& c : d.confirmations) text.line(confirmation_sentence(c, result));
   if (!d.formula.empty()) text.heading("A closed form of what remains");
   if (!d.formula.empty()) text.line(d.formula);

@@ -138,7 +138,7 @@ ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& mot
     section.command(d.formula);
   }
   for (const std::string& message : d.messages) section.plain(message);
-  if (!d.confirmations.empty()) section.heading("On runs that took no part");
+  if (!d.confirmations.empty()) section.heading("On runs not used in the fit");
   for (const Confirmation& c : d.confirmations) {
     section.item(confirmation_sentence(c, result));
   }

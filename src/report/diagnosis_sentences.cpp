@@ -75,8 +75,7 @@ class Sentences {
       case Verdict::unexplained:
         return unexplained();
       case Verdict::unconfirmed:
-        return fmt::format("{} A run that was held back does not bear it out, so it is not confirmed.",
-                           found_sentence(result_));
+        return fmt::format("{} A run that was held back does not confirm it.", found_sentence(result_));
       case Verdict::not_enough_data:
         break;
     }

@@ -32,7 +32,7 @@ std::string spelled(const DiagnosedTraces& result, const std::string& key);
 /// Which effects fit equally well; empty where each stands alone.
 std::string equivalence_sentence(const Diagnosis& diagnosis);
 
-/// How the finding did on a run that took no part.
+/// How the finding did on a run that was not used in the fit.
 std::string confirmation_sentence(const Confirmation& confirmation, const DiagnosedTraces& result);
 
 /// " N" where friction is a force.

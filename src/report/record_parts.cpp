@@ -57,8 +57,8 @@ std::string slip_text(const Identification& r) {
   const double limit = r.segmentation.stick_threshold / kMillimetre;
   const std::string below = limit > 0 ? fmt::format(" below {} mm/s", significant(limit, 2)) : "";
   return text + (r.segmentation.kind == MotionKind::always_slipping
-                     ? fmt::format("; the others are at rest{} and take no part in the fit", below)
-                     : fmt::format("; the others stick{} and take no part in the law of sliding", below));
+                     ? fmt::format("; the others are at rest{} and are not used in the fit", below)
+                     : fmt::format("; the others stick{} and are not used for the law of sliding", below));
 }
 
 /// "72 points, |v_r| from 0.1 to 600 mm/s, in both directions".

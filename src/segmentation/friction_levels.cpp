@@ -24,7 +24,7 @@ void for_each_sample(const Motion& motion, const Cycle& cycle, Use use) {
   }
 }
 
-/// Slips of one direction that take part.
+/// Slips of one direction that are used.
 std::vector<const Cycle*> slips_of(const Segmentation& segmentation, int direction) {
   std::vector<const Cycle*> slips;
   for (const Cycle& cycle : segmentation.cycles) {

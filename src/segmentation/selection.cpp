@@ -16,7 +16,7 @@ SampleRange whole(const Cycle& cycle) {
 
 void exclude_cycles(const Selection::Cycles& selected, const Motion& motion, Segmentation& segmentation) {
   if (segmentation.kind != MotionKind::stick_slip) {
-    segmentation.notes.push_back("there are no cycles of stick and slip to choose from: all of the motion takes part");
+    segmentation.notes.push_back("there are no cycles of stick and slip to choose from: all of the motion is used");
     return;
   }
   const auto& cycles = segmentation.cycles;
@@ -57,7 +57,7 @@ void exclude(const Selection& selection, const Motion& motion, Segmentation& seg
   segmentation.left_out = segmentation::spoilt_stretches(motion);
   if (selection.empty()) return;
   if (motion.is_points()) {
-    segmentation.notes.emplace_back("points have neither cycles nor time to choose by: all of them take part");
+    segmentation.notes.emplace_back("points have neither cycles nor time to choose by: all of them are used");
     return;
   }
   if (selection.cycles) exclude_cycles(*selection.cycles, motion, segmentation);
@@ -70,11 +70,11 @@ void exclude(const Selection& selection, const Motion& motion, Segmentation& seg
   const auto left =
       std::count_if(cycles.begin(), cycles.end(), [&](const Cycle& c) { return segmentation.is_selected(c); });
   if (static_cast<std::size_t>(left) == cycles.size()) {
-    segmentation.notes.push_back("all cycles take part: what was to be left out holds none of them");
+    segmentation.notes.push_back("all cycles are used: what was to be left out holds none of them");
     return;
   }
   segmentation.notes.push_back(
-      fmt::format("{} of {} cycles take part in the fit, the others were left out by request", left, cycles.size()));
+      fmt::format("{} of {} cycles are used in the fit, the others were left out by request", left, cycles.size()));
 }
 
 }  // namespace tribofit

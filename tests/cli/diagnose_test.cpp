@@ -134,7 +134,7 @@ TEST(Diagnose, AFolderWithAManifestIsDiagnosedTogetherAndRepeatsConfirm) {
   EXPECT_EQ(j["conditions"][1]["speed_source"], "manifest");
   ASSERT_EQ(j["diagnosis"]["confirmations"].size(), 1u);
   EXPECT_EQ(j["diagnosis"]["confirmations"][0]["path"], "runs/a2.csv");
-  EXPECT_THAT(j["traces"][0]["notes"].dump(), HasSubstr("takes no part"));
+  EXPECT_THAT(j["traces"][0]["notes"].dump(), HasSubstr("not used in the diagnosis"));
   EXPECT_TRUE(j["fits"][0]["parameters"][0]["trace"].is_null());
 
   const json named = result_of(shop, "--load 40N --confirm runs/b1.csv runs");

@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"EmptyRadius", "--radius '' a.csv", "--radius is given an empty"},
         Wrong{"EmptyJson", "--json '' a.csv", "--json is given an empty"},
         Wrong{"EmptyTrace", "--radius 15mm ''", "a trace is given an empty"},
-        Wrong{"FormatOfNothing", "--format pdf a.csv", "--format goes with --figures"},
+        Wrong{"FormatOfNothing", "--format pdf a.csv", "--format needs --figures"},
         Wrong{"UnknownFormat", "--figures out --format eps a.csv", "svg"},
         Wrong{"FiguresOfTwo", "--figures out a.csv b.csv", "one trace"},
         Wrong{"FiguresOntoTheJson", "--figures x --json x a.csv", "folder"},

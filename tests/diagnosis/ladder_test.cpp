@@ -341,7 +341,7 @@ TEST(Findings, AWithdrawnEffectIsNotFound) {
   ladder.withdrawn = {0};
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
   EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::unsupported);
-  EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("name would be wrong"));
+  EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("left over its variable is larger than what it explains"));
 }
 
 /// Beside a base law that leaves twice the squares of the noise.

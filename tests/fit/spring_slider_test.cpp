@@ -124,7 +124,7 @@ std::vector<double> as_means(const Motion& motion, const std::vector<double>& tr
   return out;
 }
 
-/// What is found less what is true, over its stated error, of the samples that take part: mean, and root mean square
+/// What is found less what is true, over its stated error, of the samples that are used: mean, and root mean square
 /// without the hundredth that is farthest off (beside the kinks).
 struct Pulls {
   double mean = 0, spread = 0;

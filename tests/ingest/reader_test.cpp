@@ -34,7 +34,7 @@ std::vector<double> series(std::size_t count, double first, double step) {
   return values;
 }
 
-/// Everything here is read by the tests' own reader: no CSV code takes part.
+/// Everything here is read by the tests' own reader: no CSV code is used.
 class Readers : public TempFiles {
  protected:
   std::string write_binary(const RawTable& table, const std::string& name = "trace.bin") const {

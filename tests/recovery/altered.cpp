@@ -1,4 +1,4 @@
-// Good records of known truth, altered as acquisition does it: the fault is named, what it spoilt takes no part, and
+// Good records of known truth, altered as acquisition does it: the fault is named, what it spoilt is not used, and
 // the parameters stay within their intervals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

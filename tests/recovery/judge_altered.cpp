@@ -79,10 +79,10 @@ std::string problems(const Identification& trace, HealthItem::Status at_least) {
 }
 
 /// A warning that says which parameter is off.
-bool says_at_stake(const Identification& trace) {
+bool says_unreliable(const Identification& trace) {
   return std::any_of(trace.motion.health.begin(), trace.motion.health.end(), [](const HealthItem& item) {
     return item.status != HealthItem::Status::ok &&
-           (item.message.find("at stake") != std::string::npos || item.message.find("alpha") != std::string::npos);
+           (item.message.find("is unreliable") != std::string::npos || item.message.find("alpha") != std::string::npos);
   });
 }
 
@@ -131,7 +131,7 @@ Judged judge(const AlteredCase& what) {
     const Off parameters = off(by_exponential ? found.rungs.back() : found.fits[0], what);
     judged.strict = parameters.text.empty();
     const std::string problem = problems(one, HealthItem::Status::problem);
-    bool is_named = !problem.empty() || says_at_stake(one);
+    bool is_named = !problem.empty() || says_unreliable(one);
     for (const EffectFinding& effect : found.diagnosis.effects) {
       const bool is_fault = std::find(what.may_name.begin(), what.may_name.end(), effect.key) != what.may_name.end();
       is_named = is_named || (is_fault && effect.status <= EffectStatus::possible);

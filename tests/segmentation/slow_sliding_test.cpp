@@ -13,7 +13,7 @@
 namespace tribofit {
 namespace {
 
-/// Slow sliding is no stick, however fast the record becomes: every sample takes part, as what it is.
+/// Slow sliding is no stick, however fast the record becomes: every sample is used, as what it is.
 TEST(SlowSliding, SlowIsNotAtRest) {
   std::mt19937_64 engine(3);
   constexpr double kStep = 5e-3, kDuration = 60, kNoise = 5e-5;

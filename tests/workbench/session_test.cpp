@@ -96,7 +96,7 @@ TEST(Session, says_what_part_of_the_record_it_shows) {
     for (const ReportSection& section : picture.report.sections) {
       for (const ReportItem& item : section.items) {
         const auto* text = std::get_if<ReportText>(&item);
-        if (text != nullptr && text->text.find("take part in the fit") != std::string::npos) return text->text;
+        if (text != nullptr && text->text.find("are used in the fit") != std::string::npos) return text->text;
       }
     }
     return std::string();

@@ -36,7 +36,7 @@ struct UndoneDistortion {
   bool any() const { return value != 0; }
 };
 
-/// Bits of Motion::faults. The motion is not known in a stretch: the cycles that reach into it take no part.
+/// Bits of Motion::faults. The motion is not known in a stretch: the cycles that reach into it are not used.
 struct SampleFault {
   static constexpr std::uint8_t friction = 1, velocity = 2, stretch = 4, any = 7;
 };

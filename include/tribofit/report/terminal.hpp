@@ -30,7 +30,7 @@ std::string render_terminal(const Identification& result, const TerminalOptions&
 /// After a diagnosis, in this order: what was diagnosed; the ladder of held-out errors as it falls, with bars against
 /// the noise floor; where the base law fails; the verdict in one sentence; the effects found with their parameters;
 /// what is not distinguishable with these data and the discriminating experiment; what they cannot show at all; how
-/// the finding did on runs that took no part; a closed form of what no effect explains; the next command.
+/// the finding did on runs that were not used in the fit; a closed form of what no effect explains; the next command.
 ///
 /// No line but a word longer than the width is wider than options.width (at least 40 columns).
 std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options = {});

@@ -66,11 +66,11 @@ struct Segmentation {
   Estimate branch_difference;
   double rms_velocity = 0;            ///< of the block velocity [m/s]
   std::vector<std::string> notes;     ///< what a person should know ("never sticks", "the first slip is cut off")
-  std::vector<SampleRange> left_out;  ///< samples that take no part in fits, see exclude()
+  std::vector<SampleRange> left_out;  ///< samples that are not used in fits, see exclude()
 
   /// Whether none of these samples is left out.
   bool is_selected(const SampleRange& samples) const;
-  /// The same for stick and slip of a cycle: it takes part as a whole or not at all.
+  /// The same for stick and slip of a cycle: it is used as a whole or not at all.
   bool is_selected(const Cycle& cycle) const;
 };
 
@@ -80,7 +80,7 @@ RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation
 
 /// What part of a record is fitted.
 struct Selection {
-  /// Numbers of cycles as in cycles.csv, the first is 0; both ends take part.
+  /// Numbers of cycles as in cycles.csv, the first is 0; both ends are used.
   struct Cycles {
     std::size_t first = 0, last = 0;
   };
@@ -89,7 +89,7 @@ struct Selection {
     double from = 0, to = 0;
   };
   std::optional<Cycles> cycles;   ///< only these; none: all
-  std::vector<Stretch> excluded;  ///< cycles that reach into one of them take no part
+  std::vector<Stretch> excluded;  ///< cycles that reach into one of them are not used
 
   bool empty() const { return !cycles && excluded.empty(); }
 };

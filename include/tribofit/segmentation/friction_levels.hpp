@@ -26,7 +26,7 @@ struct FrictionLevels {
   std::vector<Level> levels;  ///< two halves of the slips by their peaks; empty where there are fewer than eight slips
 };
 
-/// Six bins of equal width in each direction. Samples that a fault spoilt take no part.
+/// Six bins of equal width in each direction. Samples that a fault spoilt are not used.
 FrictionLevels friction_levels(const Motion& motion, const Segmentation& segmentation);
 
 }  // namespace tribofit

@@ -15,7 +15,7 @@ struct TdmsIndex {
   std::uint64_t count = 0, bytes = 0;
 };
 
-/// The objects with values in a segment, in their order; those of no bytes take no part, or a file of many objects and
+/// The objects with values in a segment, in their order; those of no bytes are left out, or a file of many objects and
 /// many segments would cost their product.
 class ActiveTdmsObjects {
  public:

@@ -71,7 +71,7 @@ void shade_phases(const Motion& motion, const Cycle& c, Chart& chart) {
   if (c.slip.size() > 0) chart.stretches.push_back({c.break_away_time, end, Shade::slip});
 }
 
-/// What takes no part in fits.
+/// What is not used in fits.
 void shade_left_out(const DrawnTrace& d, Chart& chart) {
   const std::vector<double>& time = d.trace.motion.time;
   for (const SampleRange& span : d.trace.segmentation.left_out) {

@@ -41,7 +41,7 @@ function showStatus(rung) {
   document.getElementById("shown-model").textContent = rung.name;
   document.getElementById("shown-error").textContent = withUnit(rung.held_out_rmse, rung.unit);
   document.getElementById("shown-about").textContent =
-    `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles that took no part in the fit (blocks held out in turn); ` +
+    `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles not used in the fit (blocks held out in turn); ` +
     `${ratio ? `${number(ratio, 3)} times the noise floor, ` : ""}` +
     `${rung.cycles}${rung.cycles < workbench.world.cycles ? ` of ${workbench.world.cycles}` : ""} cycles; ` +
     (rung.full ? "fitted as the command below does it" : "quick fit, being refined");
