@@ -24,7 +24,7 @@ struct Options {
   std::size_t records = 20;
   std::string only, one, json_path;
   int threads = 0;
-  bool quiet = false, experiments = true, asked = false, coverage = false;
+  bool quiet = false, experiments = true, asked = false, coverage = false, halved = false;
 };
 
 std::string describe(const Name& name) {
@@ -141,6 +141,7 @@ int run(const Options& options) {
                options.one);
     return 2;
   }
+  if (options.halved) cases = recovery::halved(std::move(cases));
   std::erase_if(cases, [&](const Case& c) {
     std::stringstream all(options.only);
     for (std::string one; std::getline(all, one, ';');) {
@@ -188,6 +189,7 @@ int main(int argc, char** argv) {
                "of each kind of sliding: viscous, drift, asymmetry, a logarithmic law, and Stribeck curves with "
                "viscous friction");
   app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
+  app.add_flag("--halved", options.halved, "records half as long where that is enough, as in the tests");
   app.add_flag("--coverage", options.coverage, "how often the intervals of effects that were named hold the truth");
   app.add_option(
       "--only", options.only,

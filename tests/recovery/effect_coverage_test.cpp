@@ -41,6 +41,7 @@ TEST(EffectCoverage, NominalIntervalsOfEffectsCoverTheTruth) {
                       .aliens = 0,
                       .unknowable = 0};
   std::vector<Case> cases = plan_cases(plan);
+  if (text == nullptr) cases = halved(std::move(cases));
   std::erase_if(cases, [](const Case& c) { return !is_fitted(c); });
   std::vector<std::vector<int>> covered(cases.size());
   tribofit::run_tasks(cases.size(), 0, [&](std::size_t i) {

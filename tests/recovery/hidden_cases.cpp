@@ -144,6 +144,7 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
   if (slides) std::tie(options.duration, options.rate) = kSlidingRecord;
   if (run.duration > 0) options.duration = run.duration;
   if (run.rate > 0) options.rate = run.rate;
+  options.duration *= c.length;
   const Drive drive = drive_of(c, run, options.duration, random);
   Rig rig = c.rig;
   rig.stiffness *= run.stiffness;
@@ -189,6 +190,14 @@ Case draw_case(std::string group, std::size_t number, Kind kind, Setting setting
   c.speed = 4 * kRpm;
   c.load = 50;
   return c;
+}
+
+std::vector<Case> halved(std::vector<Case> cases) {
+  for (Case& c : cases) {
+    const bool slides = c.programme != Programme::stick_slip;
+    if (c.setting == Setting::fast || c.setting == Setting::four_speeds || slides) c.length = 0.5;
+  }
+  return cases;
 }
 
 std::string_view to_string(Setting setting) {

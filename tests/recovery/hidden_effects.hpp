@@ -88,6 +88,7 @@ struct Case {
   std::string record_kind;  ///< of plan_record_kinds(); empty in the others
   Programme programme = Programme::stick_slip;
   double slowness = 1;  ///< of the rig over that of [D]: times grow by it, speeds fall
+  double length = 1;    ///< of the record over that of its setting
   std::string partner;  ///< look-alikes: the one to distinguish it from
 };
 
@@ -105,6 +106,9 @@ struct PlanOptions {
 };
 
 std::vector<Case> plan_cases(const PlanOptions& options);
+
+/// The same cases with records half as long, but for those that must turn twice or change slowly: for tests.
+std::vector<Case> halved(std::vector<Case> cases);
 
 /// Kinds of record beside those of [D]: programmes of sliding, slow and fast rigs, kinds of noise.
 std::vector<std::string> record_kinds();

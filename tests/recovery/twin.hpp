@@ -18,6 +18,7 @@ struct TwinOptions {
   double radius = 0.015;  ///< [m]
   tribofit::Law law = tribofit::ExponentialLaw{};
   double duration = 20;  ///< [s]
+  double rate = 20e3;    ///< [Hz]
   double colour = 0;     ///< AR(1) coefficient of both noises, per sample
   double scatter = 0.004;
   double wander = 0;  ///< of the scatter, per cycle
@@ -34,7 +35,7 @@ struct Twin {
   tribofit::Segmentation segmentation;
 };
 
-/// Simulates a test of [D], records it at 20 kHz with noise 0.003 and 0.02 mm/s, and takes it through the stages before
+/// Simulates a test of [D], records it with noise 0.003 and 0.02 mm/s, and takes it through the stages before
 /// the fit.
 inline Twin make_twin(const TwinOptions& o) {
   using namespace tribofit;
@@ -49,6 +50,7 @@ inline Twin make_twin(const TwinOptions& o) {
   drive.mean_load = twin.test.load;
   SimulationOptions simulation;
   simulation.duration = o.duration;
+  simulation.rate = o.rate;
   simulation.settle = settling_time(twin.test.rig, drive, twin.truth);
   simulation.scatter = {o.scatter, o.wander};
   simulation.seed = o.seed;
