@@ -43,9 +43,10 @@ TEST(Twins, JointFitReturnsTheTruthAndTheGeneratingLawWins) {
     for (const double radius : kRadii) options.push_back({.radius = radius, .law = law});
   }
   const std::vector<Twin> twins = make_twins(options);
+  auto next = twins.begin();
   for (const Law& law : kLaws) {
     for (const double radius : kRadii) {
-      const Twin& twin = twins[static_cast<std::size_t>(&law - kLaws) * 4 + static_cast<std::size_t>(&radius - kRadii)];
+      const Twin& twin = *next++;
       const Fit joint = fit_twin(twin, law), published = fit_twin(twin, law, Protocol::published);
       const Fit rival = fit_twin(twin, other(law));
       ASSERT_TRUE(joint.converged);
