@@ -61,7 +61,7 @@ inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles
 /// factor well enough, and noise that is correlated within a slip (1/f) is taken for less scatter of break-away. The
 /// held-out losses must then bear it out, cycle by cycle. Beyond such a size, of the squares of the noise, slow noise
 /// does not reach.
-inline constexpr double kVague = 5, kSizeOfSlowNoise = 0.5;
+inline constexpr double kVague = 5, kSizeOfSlowNoise = 0.25;
 
 /// Two models are distinguishable when their squares differ by more than chance would make them: with the right one
 /// known the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond
