@@ -77,8 +77,9 @@ Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, 
   return out;
 }
 
-}  // namespace
-
+/// That the held-out losses of the cycles fall by chance: their differences, cycle by cycle, with a long-run variance.
+/// A second effect that is missing too makes what is left look correlated, which the F test counts against every
+/// candidate; what both models leave alike is not in the differences.
 double paired_p_value(const Trial& poorer, const Trial& richer) {
   if (poorer.held_out.size() != richer.held_out.size()) return 1;
   std::vector<double> falls(richer.held_out.size());
@@ -88,10 +89,8 @@ double paired_p_value(const Trial& poorer, const Trial& richer) {
   return 0.5 * t_p_value(fall.value / fall.std_error, fall.degrees_of_freedom);
 }
 
-namespace {
-
-/// That an effect of the stick time takes away nothing, which explains what otherwise is scatter of break-away from
-/// cycle to cycle.
+/// The same for an effect of the stick time, which explains what otherwise is scatter of break-away from cycle to
+/// cycle.
 ///
 /// The whitened squares take that scatter for what it is from one cycle to the next; where it wanders, an effect that
 /// acts on the level of single cycles (a longer stick after a pause) may explain much of it and lower them little.
@@ -124,6 +123,7 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const bool few = out.design_effect > limits::kCorrelated && !info.needs_full_resolution;
   const double known = std::max(3.0, cycles / 3), freedom = few ? few_frequencies(cycles) : known;
   const double fall = poorer.squares - trial.squares;
+  const double of_squares = fall_p_value(fall, added.free, noise, out.design_effect, freedom);
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = context.floor_squares(trial.whitening);
   out.size = std::max(out.fall / context.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
@@ -138,9 +138,6 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const double of_pairs = info.needs_full_resolution ? 1 : std::max(of_slow, paired_p_value(poorer, trial));
   const double of_level = has_level ? level_p_value(level, poorer, trial, info, floor) : 1;
   const double views = 1 + (info.needs_full_resolution ? 0 : 1) + (has_level ? 1 : 0);
-  const double of_fall = fall_p_value(fall, added.free, noise, out.design_effect, freedom);
-  const bool vague = out.design_effect > limits::kVague && out.size < limits::kSizeOfSlowNoise;
-  const double of_squares = vague && !info.needs_full_resolution ? std::max(of_fall, of_pairs) : of_fall;
   const double of_cycles = std::min(of_squares, of_pairs);
   out.p_value = std::min(1.0, views * tests * std::min(of_cycles, of_level));
   out.by_level = of_level < of_cycles && !(out.fall > 0 && views * tests * of_cycles < least.p_value);

@@ -32,11 +32,6 @@ struct Choice {
   std::vector<std::size_t> group;     ///< candidates
 };
 
-/// That the held-out losses of the cycles fall by chance: their differences, cycle by cycle, with a long-run variance.
-/// A second effect that is missing too makes what is left look correlated, which the F test counts against every
-/// candidate; what both models leave alike is not in the differences.
-double paired_p_value(const Trial& poorer, const Trial& richer);
-
 /// How much better `richer` is than `poorer`, from which it differs by one effect. tests: the p-value is corrected for
 /// as many.
 CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,

@@ -92,7 +92,7 @@ double slow_design(const Level& level, const Trial& trial) {
 }
 
 /// The second predicts held-out cycles better, or as well with fewer effects, or with as many and fewer parameters.
-/// With more effects, and little better, it must do so by both held-out errors and cycle by cycle.
+/// With more effects it must do so by both held-out errors, as for a name.
 bool is_better(const DiagnosisContext& context, const Level& level, const Trial& first, const Trial& second) {
   if (!second.usable || !first.usable) return second.usable;
   const double difference = first.held_out_squares - second.held_out_squares;
@@ -108,11 +108,8 @@ bool is_better(const DiagnosisContext& context, const Level& level, const Trial&
                        context.noise_squares();
   const double noise = std::min(noise_of(level, first), noise_of(level, second));
   const Trial &longer = effects > other_effects ? first : second, &shorter = effects > other_effects ? second : first;
-  const bool large = std::abs(difference) > limits::kSizeOfSlowNoise * context.noise_squares();
-  const bool borne_out =
-      effects == other_effects || large ||
-      (longer.plain_held_out < shorter.plain_held_out && paired_p_value(shorter, longer) < Limits().p_value);
-  if (borne_out && std::abs(difference) > std::max(sure * noise, least)) return difference > 0;
+  const bool by_both = effects == other_effects || longer.plain_held_out < shorter.plain_held_out;
+  if (by_both && std::abs(difference) > std::max(sure * noise, least)) return difference > 0;
   if (effects != other_effects) return other_effects < effects;
   return more == 0 ? difference > 0 : second.p.size() < first.p.size();
 }

@@ -57,11 +57,6 @@ inline constexpr double kLeastSizeOfLevel =
     0.15;  ///< a high break-away makes its own stick longer, and explains as much
 inline constexpr std::ptrdiff_t kBreakAwaysOfStickSlip = 30;  ///< fewer: what goes with the stick time goes with time
 inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles do not count as independent
-/// Design effect from which the fall of the squares is no evidence by itself: a few frequencies do not tell so large a
-/// factor well enough, and noise that is correlated within a slip (1/f) is taken for less scatter of break-away. The
-/// held-out losses must then bear it out, cycle by cycle. Beyond such a size, of the squares of the noise, slow noise
-/// does not reach.
-inline constexpr double kVague = 5, kSizeOfSlowNoise = 0.25;
 
 /// Two models are distinguishable when their squares differ by more than chance would make them: with the right one
 /// known the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond

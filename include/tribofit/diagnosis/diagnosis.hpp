@@ -97,8 +97,7 @@ struct Confirmation {
 /// p-value is the smallest of up to three, times their number, times the number of candidates and of places looked at
 /// (Bonferroni): of the fall of the squares (F test whose noise is that between cycles), of the held-out losses cycle
 /// by cycle (paired, with a long-run variance; not for spectral lines), and for what goes with the stick time of the
-/// levels of break-away. It is the one that is reported. A small fall amid correlated noise counts by the paired
-/// losses alone. No p-value is smaller than slow noise makes it: what the level
+/// levels of break-away. It is the one that is reported. No p-value is smaller than slow noise makes it: what the level
 /// of friction does from cycle to cycle beside the model is taken for 1/f noise or an autoregression (slow_noise()),
 /// and counts in the F test as it would move the effect. The best one is added, with those that do as well as its
 /// group, until none is left; effects that became redundant are dropped. Both base laws climb a ladder of their own;
