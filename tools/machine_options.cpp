@@ -17,11 +17,6 @@
 namespace tribofit {
 namespace {
 
-double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
-                double otherwise) {
-  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
-}
-
 /// An effect and its parameters in SI, in the order of its info().
 struct RequestedEffect {
   Effect effect;

@@ -65,11 +65,6 @@ double number(const std::string& text, const char* option) {
   return stated_value(text, Quantity::dimensionless, option);
 }
 
-double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
-                double otherwise) {
-  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
-}
-
 void plan_drive(const SimulateRequest& request, Plan& plan) {
   Drive& drive = plan.drive;
   drive = plan.machine.drive();

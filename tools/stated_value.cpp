@@ -55,3 +55,8 @@ std::uint64_t stated_seed(const std::string& text) {
   if (error == std::errc{} && last == end) return seed;
   throw UsageError("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
 }
+
+double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
+                double otherwise) {
+  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
+}

@@ -13,3 +13,7 @@ double stated_value(std::string_view text, tribofit::Quantity quantity, const st
 
 /// A seed as typed. Usage error where it is no whole number of 64 bits.
 std::uint64_t stated_seed(const std::string& text);
+
+/// The same of an option that need not be given.
+double given_or(const std::string& text, tribofit::Quantity quantity, const char* option, std::string_view bare_unit,
+                double otherwise);
