@@ -15,17 +15,16 @@ inline constexpr std::size_t kFewestSlowValues = 16;
 inline constexpr double kConstantSeries = 1e-20;
 
 /// By how much the likelihood of an autoregression must exceed that of 1/f noise: it has a parameter more, and a record
-/// that is not much longer than its memory cannot distinguish the two. One series of 1/f noise in a hundred exceeds it
-/// (1000 values; fewer of shorter ones). Less: 1/f noise passes for an autoregression, and slow effects are named in it.
-inline constexpr double kClearlyLikelier = 3;
+/// that is not much longer than its memory cannot distinguish the two. Less: 1/f noise passes for an autoregression,
+/// and slow effects are named in it.
+inline constexpr double kClearlyLikelier = 5;
 
 /// By how much slow noise must exceed independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
 inline constexpr double kLikelier = 1;
 
 /// By how much another spectrum must exceed that of 1/f noise before it is the likelier one: the best of several gains
-/// as much by chance in one series of 1/f noise in twenty. More: what a wrong law leaves passes for 1/f noise and
-/// raises the noise floor.
-inline constexpr double kRatherLikelier = 1.5;
+/// as much by chance. More: what a wrong law leaves passes for 1/f noise and raises the noise floor.
+inline constexpr double kRatherLikelier = 1;
 
 /// Below as many periods in the record a model that was fitted has taken power away.
 inline constexpr double kFirstBin = 3;

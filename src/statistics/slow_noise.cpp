@@ -59,22 +59,10 @@ Periodogram windowed_periodogram(std::span<const double> series) {
   return out;
 }
 
-/// Power of 1/f^power noise of which every value is the mean over its step: of all frequencies that look like f to such
-/// values, each weakened by the mean. Taken for 1/f noise itself it is too steep at the highest frequencies. f: per
-/// value, above 0.
-double power_of_means(double f, double power) {
-  constexpr int kAliases = 4;  // the next are less than a hundredth
-  double sum = 0;
-  for (int k = -kAliases; k <= kAliases; ++k) sum += std::pow(std::abs(f + k), -power - 2);
-  return sum * std::pow(std::sin(std::numbers::pi * f) / std::numbers::pi, 2);
-}
-
-/// Spectra of slow noise. Those steeper than 1/f are of a level that jumps or drifts, as a wrong model leaves it. The
-/// covariance of a series with that of 1/f noise is covariance_of_flicker().
-std::vector<double> power_law(const std::vector<double>& frequency, double power) {
+/// Spectra of slow noise; the covariance of a series with that of 1/f noise is covariance_of_flicker().
+std::vector<double> flicker(const std::vector<double>& frequency) {
   std::vector<double> out;
-  const double scale = std::pow(frequency.front(), power - 1);
-  for (const double f : frequency) out.push_back(scale * power_of_means(f, power));
+  for (const double f : frequency) out.push_back(1 / f);
   return out;
 }
 
@@ -87,11 +75,18 @@ std::vector<double> autoregression(const std::vector<double>& frequency, double 
   return out;
 }
 
+/// Spectra that rise more steeply than 1/f, as a level that jumps or drifts has: what a wrong model leaves.
+std::vector<double> steeper(const std::vector<double>& frequency, double power) {
+  std::vector<double> out;
+  for (const double f : frequency) out.push_back(std::pow(f / frequency.front(), -power) / frequency.front());
+  return out;
+}
+
 std::vector<double> covariance_of_flicker(std::size_t n) {
   const std::size_t longer = padded(kLonger * n);
   Transform spectrum(longer), covariance;
   for (std::size_t j = 1; j < longer; ++j) {
-    spectrum[j] = power_of_means(static_cast<double>(std::min(j, longer - j)) / static_cast<double>(longer), 1);
+    spectrum[j] = static_cast<double>(longer) / static_cast<double>(std::min(j, longer - j));
   }
   Eigen::FFT<double> fft;
   fft.inv(covariance, spectrum);
@@ -175,7 +170,7 @@ SlowNoise slow_noise(std::span<const double> series) {
   for (const double x : series) squares += x * x;
   for (const double x : seen.power) left += x;
   if (!(left > kConstantSeries * squares)) return {};
-  const Likeliest of_flicker = robust_fit(seen, power_law(seen.frequency, 1));
+  const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
   Likeliest best;
   double memory = 0;
   for (const double m : {0.3, 0.5, 0.65, 0.8, 0.9, 0.95}) {
@@ -184,15 +179,15 @@ SlowNoise slow_noise(std::span<const double> series) {
   }
   SlowNoise out;
   if (std::max(best.gain, of_flicker.gain) < kLikelier) return out;
-  double likeliest_other = best.log_likelihood;
-  for (const double power : {1.5, 2.0, 3.0}) {
-    likeliest_other = std::max(likeliest_other, robust_fit(seen, power_law(seen.frequency, power)).log_likelihood);
-  }
-  out.is_rather_other = likeliest_other > of_flicker.log_likelihood + kRatherLikelier;
   if (best.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) {
     for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
   } else if (of_flicker.slow > 0) {
     out.is_flicker = true;
+    double likeliest_other = best.log_likelihood;
+    for (const double power : {1.5, 2.0, 3.0}) {
+      likeliest_other = std::max(likeliest_other, robust_fit(seen, steeper(seen.frequency, power)).log_likelihood);
+    }
+    out.is_rather_other = likeliest_other > of_flicker.log_likelihood + kRatherLikelier;
     out.covariance = covariance_of_flicker(n);
     for (double& c : out.covariance) c *= of_flicker.slow;
   }

@@ -117,22 +117,6 @@ TEST(SlowNoise, FewOrEqualValuesHaveNone) {
   EXPECT_EQ(slow_noise({}).variance_within(), 0);
 }
 
-/// Residuals are means over stretches: what such means leave of the highest frequencies is no other spectrum.
-TEST(SlowNoise, MeansOfFlickerNoiseAreNoOtherNoise) {
-  std::mt19937_64 engine(6);
-  constexpr std::size_t kValues = 300, kMean = 4;
-  constexpr int kSeries = 60;
-  int other = 0;
-  for (int k = 0; k < kSeries; ++k) {
-    const std::vector<double> noise = flicker(engine, kValues * kMean);
-    std::vector<double> means(kValues);
-    for (std::size_t i = 0; i < noise.size(); ++i) means[i / kMean] += noise[i] / kMean;
-    const SlowNoise found = slow_noise(means);
-    other += !found.is_flicker || found.is_rather_other ? 1 : 0;
-  }
-  EXPECT_LT(other, 0.2 * kSeries);
-}
-
 /// Levels that jump, as a wrong law leaves at steps of speed, are not 1/f noise; with so many values that shows.
 TEST(SlowNoise, JumpsAreRatherNoFlicker) {
   std::mt19937_64 engine(5);

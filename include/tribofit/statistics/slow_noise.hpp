@@ -9,7 +9,7 @@ namespace tribofit {
 struct SlowNoise {
   std::vector<double> covariance;  ///< of values 0, 1, 2 ... apart; empty: there is none
   bool is_flicker = false;         ///< taken for 1/f noise, not for an autoregression
-  bool is_rather_other = false;    ///< a spectrum of another shape than 1/f is likelier: it may be no noise at all
+  bool is_rather_other = false;    ///< though a spectrum of another shape is likelier: it may be no noise at all
 
   /// Variance of the sum of weights[i] times value i. weights: as many as the series has values.
   double variance_of_sum(std::span<const double> weights) const;
@@ -21,8 +21,7 @@ struct SlowNoise {
 /// (P. Whittle, Ark. Mat. 2 (1953) 423): independent noise plus either a first-order autoregression or 1/f noise,
 /// whose power rises without end towards low frequencies (M. S. Keshner, Proc. IEEE 70 (1982) 212); 1/f unless the
 /// autoregression is clearly likelier. Its spectrum is s^2 + a/f or s^2 + a (1-m^2)/(1 - 2 m cos(2 pi f) + m^2) over
-/// the frequency f per value; s^2 and a in squares of the unit of the series. Values are means over their steps, of
-/// which a/f is the power before the mean.
+/// the frequency f per value; s^2 and a in squares of the unit of the series.
 ///
 /// The mean of a record with 1/f noise errs by more than its own lowest frequencies show, and a slow function fitted to
 /// it takes away the very power that would tell so. Here that power follows from all frequencies. Single lines, which
