@@ -31,6 +31,11 @@ inline constexpr double kPartBesideParabola = 1.0 / 3;
 /// with 60 in hardly any; more only cost time.
 inline constexpr std::size_t kEnoughLevels = 2000;
 
+/// Periods in a slip from which a steady line and a ring are looked for. A line with less than half of one moves slips
+/// as a whole, as 1/f noise does: with fewer one is named in empty records with such noise. A ring with fewer than six
+/// is not distinguished from the shape of the law.
+inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
+
 // ---- how good a fit is
 
 /// Held-out error over the noise floor up to which what remains is called noise: noise floors are known to some per

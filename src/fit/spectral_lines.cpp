@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "limits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
@@ -45,6 +46,12 @@ double median_slip_time(const Observations& observations) {
   return median(std::move(lengths));
 }
 
+/// The frequency with so many periods in a slip; 0 where there is none.
+double frequency_of(double periods, const Observations& observations) {
+  const double length = median_slip_time(observations);
+  return length > 0 ? periods / length : 0;
+}
+
 }  // namespace
 
 double observation_rate(const Observations& observations) {
@@ -59,15 +66,11 @@ double observation_rate(const Observations& observations) {
 }
 
 double lowest_steady_line(const Observations& observations) {
-  constexpr double kPeriods = 0.5;
-  const double length = median_slip_time(observations);
-  return length > 0 ? kPeriods / length : 0;
+  return frequency_of(kFewestPeriodsOfLine, observations);
 }
 
 double lowest_ringing(const Observations& observations) {
-  constexpr double kPeriods = 6;
-  const double length = median_slip_time(observations);
-  return length > 0 ? kPeriods / length : 0;
+  return frequency_of(kFewestPeriodsOfRing, observations);
 }
 
 namespace {

@@ -15,6 +15,14 @@ def count_in(offences, files):
         return len(offences(root))
 
 
+def sources(repository, directories, suffixes):
+    """The files of ours below these directories, in order."""
+    for directory in directories:
+        for path in sorted((repository / directory).rglob("*")):
+            if path.suffix in suffixes and "node_modules" not in path.parts:
+                yield path
+
+
 def self_test(name, offences, trees):
     wrong = 0
     for files, expected in trees:

@@ -62,17 +62,14 @@ def python_functions(lines):
 
 def offences(repository):
     found = []
-    for directory in DIRECTORIES:
-        for path in sorted((repository / directory).rglob("*")):
-            if path.suffix not in SUFFIXES or "node_modules" in path.parts:
-                continue
-            lines = path.read_text(encoding="utf-8").splitlines()
-            if len(lines) > MOST_LINES_OF_A_FILE:
-                found.append(f"{path}: {len(lines)} lines, at most {MOST_LINES_OF_A_FILE}")
-            parts = functions(lines) if path.suffix in BRACED else python_functions(lines) if path.suffix == ".py" else ()
-            for number, count, name in parts:
-                if count > MOST_LINES_OF_A_FUNCTION:
-                    found.append(f"{path}:{number}: {name} has {count} lines, at most {MOST_LINES_OF_A_FUNCTION}")
+    for path in contract.sources(repository, DIRECTORIES, SUFFIXES):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        if len(lines) > MOST_LINES_OF_A_FILE:
+            found.append(f"{path}: {len(lines)} lines, at most {MOST_LINES_OF_A_FILE}")
+        parts = functions(lines) if path.suffix in BRACED else python_functions(lines) if path.suffix == ".py" else ()
+        for number, count, name in parts:
+            if count > MOST_LINES_OF_A_FUNCTION:
+                found.append(f"{path}:{number}: {name} has {count} lines, at most {MOST_LINES_OF_A_FUNCTION}")
     return found
 
 

@@ -27,15 +27,12 @@ def without_prose(text):
 
 def offences(repository):
     found = []
-    for directory in DIRECTORIES:
-        for path in sorted((repository / directory).rglob("*")):
-            if path.suffix not in SUFFIXES or "node_modules" in path.parts:
+    for path in contract.sources(repository, DIRECTORIES, SUFFIXES):
+        text = without_prose(path.read_text(encoding="utf-8"))
+        for match in NAME.finditer(text):
+            if path.suffix in {".js", ".mjs"} and LOOP.search(text[:match.start() + 1]):
                 continue
-            text = without_prose(path.read_text(encoding="utf-8"))
-            for match in NAME.finditer(text):
-                if path.suffix in {".js", ".mjs"} and LOOP.search(text[:match.start() + 1]):
-                    continue
-                found.append(f"{path}:{text.count(chr(10), 0, match.end()) + 1}: `of` is the name of a thing")
+            found.append(f"{path}:{text.count(chr(10), 0, match.end()) + 1}: `of` is the name of a thing")
     return found
 
 

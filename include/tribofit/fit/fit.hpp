@@ -156,7 +156,8 @@ void set_floor(const Floor& floor, Fit& fit);
 /// them held out. A fit that failed stays failed, with a message.
 Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& segmentation);
 
-/// Standard error of the held-out RMSE, from cycle to cycle [1 or N].
+/// Standard error of the held-out RMSE, from cycle to cycle [1 or N]; NaN with fewer than three cycles, 0 where there
+/// is no error.
 double held_out_std_error(const Fit& fit);
 
 /// Which of two fits predicts held-out cycles better.
