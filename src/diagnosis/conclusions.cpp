@@ -6,16 +6,13 @@
 #include <string>
 
 #include "fit/assessment.hpp"
+#include "limits.hpp"
 
 namespace tribofit {
 namespace {
 
-/// Share of the error above the noise floor from which a variable is worth naming; p value up to which it, or a
-/// confirmation, is not chance; share that is "most".
-constexpr double kWorthNaming = 0.05, kSignificant = 0.05, kMost = 0.5;
-
 bool is_named(const Share& s) {
-  return s.share >= kWorthNaming && !(s.p_value > kSignificant);
+  return s.share >= diagnosis::limits::kShareWorthNaming && !(s.p_value > diagnosis::limits::kChanceOfShare);
 }
 
 }  // namespace
@@ -59,7 +56,7 @@ const Share* largest_share(const std::vector<Share>& shares) {
 }
 
 bool is_most(const Share& share) {
-  return share.share >= kMost;
+  return share.share >= diagnosis::limits::kMostOfTheError;
 }
 
 const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key) {
@@ -82,7 +79,7 @@ double removed_at(const Diagnosis& d, std::size_t rung) {
 }
 
 bool is_confirmed(const Confirmation& c) {
-  return c.p_value < kSignificant && c.final_rmse < c.base_rmse;
+  return c.p_value < diagnosis::limits::kChanceOfConfirmation && c.final_rmse < c.base_rmse;
 }
 
 }  // namespace tribofit

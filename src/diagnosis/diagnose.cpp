@@ -233,6 +233,19 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
                   left_over));
 }
 
+/// Values of a slip in which candidates are fitted.
+std::size_t fine_values(std::size_t cycles) {
+  return std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine);
+}
+
+/// And in which they are screened. A filter is not seen in means over more than its time.
+std::size_t coarse_values(std::span<const Record> records, std::size_t cycles) {
+  const bool filtered = std::any_of(records.begin(), records.end(),
+                                    [](const Record& record) { return record.motion->friction_low_pass.any(); });
+  if (filtered) return limits::kFewestFine;
+  return std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse);
+}
+
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
@@ -269,6 +282,11 @@ std::string_view to_string(EffectStatus status) {
   return "untestable";
 }
 
+std::string_view status_text(EffectStatus status) {
+  if (status == EffectStatus::found) return "found";
+  return status == EffectStatus::unsupported ? "not supported by the data" : to_string(status);
+}
+
 Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& given, const std::vector<Effect>& own,
                    const Instruments& instruments, const FitOptions& fit, const DiagnosisOptions& options) {
   Diagnosed out;
@@ -279,15 +297,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   progress.say("reading slips", 0.02);
   const Channels channels = all_channels(records);
   const Floor floor = floor_of(records);
-  const Observations fine = observe_all(
-      records, channels, std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine), floor.noise);
-  // A filter is not seen in means over more than its time.
-  const bool filtered = std::any_of(records.begin(), records.end(),
-                                    [](const Record& record) { return record.motion->friction_low_pass.any(); });
-  const std::size_t enough =
-      filtered ? limits::kFewestFine
-               : std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse);
-  const Observations coarse = observe_all(records, channels, enough, floor.noise);
+  const Observations fine = observe_all(records, channels, fine_values(cycles), floor.noise);
+  const Observations coarse = observe_all(records, channels, coarse_values(records, cycles), floor.noise);
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
   context.threads = options.threads;
   context.cancelled = options.cancelled;

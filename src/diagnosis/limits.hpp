@@ -103,11 +103,14 @@ inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those th
 // What remains.
 inline constexpr double kChance = 0.01;             ///< p-value below which structure is not chance
 inline constexpr double kChanceOfShare = 0.05;      ///< for a share that is only shown
+inline constexpr double kShareWorthNaming = 0.05;   ///< of the error above the noise floor; less helps nobody
+inline constexpr double kMostOfTheError = 0.5;      ///< a share that is "most of the error"
 inline constexpr double kLeastStructure = 0.05;     ///< of the squares of the noise: smaller structure does not matter
 inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
 inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
 inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part
 inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is no chance
+inline constexpr double kSlowestLine = 15;   ///< slip times of a period: a line as slow is structure over time
 inline constexpr int kHarmonicsOfAngle = 6;  ///< of a turn: a disc's faults are low ones, and more cost evidence
 inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering
 

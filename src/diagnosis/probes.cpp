@@ -9,6 +9,7 @@
 
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
+#include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit::diagnosis {
@@ -327,9 +328,8 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
 std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial& fine,
                                     std::span<const double> residual) {
   const Observations& o = context.fine.observations;
-  constexpr double kPeriods = 15;  // a line as slow as that is structure over time
-  const SpectralLines lines =
-      strongest_lines(context.records[0], o, residual, 1 / (kPeriods * o.scales.slip_time), 0.4 * observation_rate(o));
+  const SpectralLines lines = strongest_lines(
+      context.records[0], o, residual, 1 / (limits::kSlowestLine * o.scales.slip_time), 0.4 * observation_rate(o));
   if (lines.frequencies.empty()) return std::nullopt;
   const double frequency = lines.frequencies.front();
   Probe probe;

@@ -36,6 +36,18 @@ FitQuality quality_of(const Fit& fit) {
   return fit.error.mean_relative <= kOutline ? FitQuality::outline : FitQuality::poor;
 }
 
+bool is_above_floor(const Fit& fit) {
+  return over_floor(fit) > kAtFloor;
+}
+
+bool is_far_above_floor(const Fit& fit) {
+  return over_floor(fit) > kFarAboveFloor;
+}
+
+double relative_error(double measured, double model) {
+  return measured == 0 ? std::nan("") : std::abs((measured - model) / measured);
+}
+
 bool well_above_floor(const Fit& fit) {
   return fit.error.held_out_rmse > kWellAbove * fit.floor.rmse;
 }

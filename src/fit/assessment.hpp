@@ -28,6 +28,15 @@ FitQuality quality_of(const Fit& fit);
 /// Held-out error over the noise floor: 1 where both are rounding, NaN where no floor is known.
 double over_floor(const Fit& fit);
 
+/// The held-out error is more than noise and the cost of the parameters explain; false where no floor is known.
+bool is_above_floor(const Fit& fit);
+
+/// It is so far above the noise floor that the ratio says nothing more.
+bool is_far_above_floor(const Fit& fit);
+
+/// [D] Eq 5, |(measured - model)/measured|; NaN where nothing was measured to compare with.
+double relative_error(double measured, double model);
+
 /// The fit leaves clearly more than the noise floor, so that a mean that agrees may hide what it misses.
 bool well_above_floor(const Fit& fit);
 

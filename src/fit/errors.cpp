@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "assessment.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
@@ -109,8 +110,7 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
       const double level = measured[i] * range.direction;
       sum += weight * level;
       sum_squares += weight * level * level;
-      if (measured[i] != 0) {
-        const double e = std::abs(r / measured[i]);
+      if (const double e = relative_error(measured[i], mu[i]); std::isfinite(e)) {
         relative += e;
         relative_count += 1;
         out.figures.max_relative = std::max(out.figures.max_relative, e);

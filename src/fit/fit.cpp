@@ -191,6 +191,19 @@ void fill_errors_of_records(const FitContext& context, const std::vector<double>
     fit.stick_rmse = stick_creep_rmse(context.model, p, *record.motion, *record.segmentation);
 }
 
+/// Why a model cannot be fitted to these data; empty where it can.
+std::string refusal(const FrictionModel& model, const Observations& observations, Protocol protocol) {
+  if (observations.cycles < kFewestCycles)
+    return "there are fewer than three cycles: no law can be fitted with an uncertainty";
+  if (observations.size() <= model.parameters().size()) {
+    return fmt::format("there are {} values for {} parameters: nothing is left to test", observations.size(),
+                       model.parameters().size());
+  }
+  if (protocol == Protocol::published && !describe(model.law()).has_per_cycle_extremes())
+    return "per-cycle extremes are for laws of mu_s, mu_k and at most one more parameter";
+  return "";
+}
+
 }  // namespace
 
 bool on_bound(double value, double lower, double upper) {
@@ -206,6 +219,12 @@ std::vector<double> Fit::values() const {
   std::vector<double> p;
   for (const FitParameter& parameter : parameters) p.push_back(parameter.value);
   return p;
+}
+
+double Fit::correlation(std::size_t first, std::size_t second) const {
+  const std::size_t n = parameters.size();
+  const double size = std::sqrt(covariance.at(first * n + first) * covariance.at(second * n + second));
+  return size > 0 ? covariance.at(first * n + second) / size : std::nan("");
 }
 
 void set_floor(const Floor& floor, Fit& fit) {
@@ -224,15 +243,8 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
 Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
               const Instruments& instruments, const FitOptions& options) {
   Fit fit = empty_fit(model, options.protocol, observations);
-  if (observations.cycles < kFewestCycles)
-    return failed_fit(std::move(fit), "there are fewer than three cycles: no law can be fitted with an uncertainty");
-
-  if (observations.size() <= model.parameters().size()) {
-    return failed_fit(std::move(fit), fmt::format("there are {} values for {} parameters: nothing is left to test",
-                                                  observations.size(), model.parameters().size()));
-  }
-  if (options.protocol == Protocol::published && !describe(model.law()).has_per_cycle_extremes())
-    return failed_fit(std::move(fit), "per-cycle extremes are for laws of mu_s, mu_k and at most one more parameter");
+  if (std::string why = refusal(model, observations, options.protocol); !why.empty())
+    return failed_fit(std::move(fit), std::move(why));
 
   FitContext context = context_of(model, records, observations, instruments, options);
   report_moved_starts(context, fit);

@@ -58,8 +58,7 @@ bool is_spoilt(const Motion& motion, const SampleRange& samples) {
   return false;
 }
 
-constexpr std::size_t kShortestStick = 40;  ///< samples that can show a spread
-constexpr std::size_t kStretches = 1000;    ///< enough to know a spread to 0.2 %
+constexpr std::size_t kStretches = 1000;  ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are, in stretches of so many samples.
 std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation& segmentation,

@@ -36,6 +36,28 @@ inline constexpr std::size_t kEnoughLevels = 2000;
 /// is not distinguished from the shape of the law.
 inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
 
+// ---- slips
+
+/// Samples of a slip that show a curve, of a stick that show a spread, and units of evidence of a record that never
+/// sticks: enough for folds and long-run variances, and each long beside what is remembered.
+inline constexpr std::size_t kShortestSlip = 4, kShortestStick = 40, kPiecesWithoutStick = 40;
+/// Of the slip, friction after re-stick: what rings there is over after the first, and the spring has raised friction
+/// little over the second.
+inline constexpr double kAfterRestick = 0.015, kMeanAfterRestick = 0.06;
+/// Standard deviations of v_r below which the last samples of a slip are stick that noise kept above its threshold.
+inline constexpr double kSlowEnd = 6;
+/// Part of a stick time that is left where its own levels made the rest of it.
+inline constexpr double kLeastStickTime = 0.1;
+
+// ---- the rig
+
+/// Standard errors from zero that mass and stiffness must be, part of what a channel has for itself that may be noise,
+/// and samples in a free period: with fewer the derivative is that of another motion.
+inline constexpr double kClearOfZero = 3, kMostNoiseOfRig = 0.3, kShortestPeriod = 8;
+/// Chance of a false remark about one record, part of the damping that makes one, and of the stiffness: less is no news
+/// about a gain or a radius.
+inline constexpr double kChanceOfRemark = 1e-3, kPartOfDamping = 0.1, kPartOfStiffness = 0.005;
+
 // ---- how good a fit is
 
 /// Held-out error over the noise floor up to which what remains is called noise: noise floors are known to some per
@@ -51,6 +73,10 @@ inline constexpr double kLearntByHeart = 1.5;
 
 /// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
 inline constexpr double kClose = 0.02, kOutline = 0.08;
+
+/// Correlation of two parameters from which the data determine them together rather than each: either could be three
+/// times as well known if the other were.
+inline constexpr double kStrongCorrelation = 0.9;
 
 /// p value from which one law is clearly better than another.
 inline constexpr double kClearlyBetter = 0.05;

@@ -11,19 +11,15 @@ namespace tribofit {
 
 namespace {
 
-constexpr double kStrongCorrelation = 0.9;
-
 /// "alpha", "rate-state D_c".
 std::string shown_name(const FitParameter& p) {
   return p.effect.empty() ? p.parameter.name : p.effect + " " + p.parameter.name;
 }
 
 void add_correlations(Fit& fit) {
-  const std::size_t n = fit.parameters.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const double size = std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
-      const double correlation = size > 0 ? fit.covariance[i * n + j] / size : 0;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    for (std::size_t j = i + 1; j < fit.parameters.size(); ++j) {
+      const double correlation = fit.correlation(i, j);
       if (std::abs(correlation) >= kStrongCorrelation) fit.correlations.push_back({i, j, correlation});
     }
   }

@@ -11,6 +11,7 @@
 #include "force_balance.hpp"
 #include "influence.hpp"
 #include "kinematics/corrections.hpp"
+#include "limits.hpp"
 #include "rig_messages.hpp"
 #include "rig_solution.hpp"
 #include "tribofit/statistics/distributions.hpp"
@@ -19,10 +20,6 @@
 
 namespace tribofit {
 namespace {
-
-constexpr double kClear = 3;          // standard errors from zero that mass and stiffness must be
-constexpr double kMostNoise = 0.3;    // of what a channel has for itself
-constexpr double kFewestSamples = 8;  // in a free period
 
 RigValue rig_value(double value, double std_error, double freedom) {
   RigValue out;
@@ -111,7 +108,7 @@ void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit
   }
   const MeanError error = standard_error_of_mean(influence);
   fit.stick_slope_stiffness = rig_value(line->slope, error.std_error, error.degrees_of_freedom);
-  if (!(std::abs(line->slope) > kClear * error.std_error)) return;
+  if (!(std::abs(line->slope) > kClearOfZero * error.std_error)) return;
   fit.stiffness = fit.stick_slope_stiffness;
 }
 
@@ -190,8 +187,8 @@ void try_further_terms(const Balance& balance, const BalanceSolution& solution, 
 
 /// Whether the values are those of a rig, and if not, why.
 void judge(const BalanceSolution& solution, RigFit& fit) {
-  const auto clear = [](const RigValue& v) { return v.determined && std::abs(v.value) > kClear * v.std_error; };
-  if (!(solution.noise_share.maxCoeff() < kMostNoise) || !clear(fit.mass) || !clear(fit.stiffness)) {
+  const auto clear = [](const RigValue& v) { return v.determined && std::abs(v.value) > kClearOfZero * v.std_error; };
+  if (!(solution.noise_share.maxCoeff() < kMostNoiseOfRig) || !clear(fit.mass) || !clear(fit.stiffness)) {
     fit.reason = "the block moves too little, compared with the noise, to determine mass, damping and stiffness";
     return;
   }
@@ -218,7 +215,8 @@ std::pair<Balance, BalanceSolution> solve(const Motion& motion, const Segmentati
 /// friction back by what was found and looking again.
 void refine_delay(const Motion& motion, const Segmentation& segmentation, double period, RigFit& fit) {
   const auto is_clear = [&](const RigValue& delay) {
-    return delay.determined && std::abs(delay.value) > kClear * delay.std_error && std::abs(delay.value) > motion.step;
+    return delay.determined && std::abs(delay.value) > kClearOfZero * delay.std_error &&
+           std::abs(delay.value) > motion.step;
   };
   constexpr int kMostTimes = 4;
   double total = fit.delay.value;
@@ -263,7 +261,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
     return fit;
   }
   const double period = period_guess(motion, segmentation);
-  if (!(period > kFewestSamples * motion.step)) {
+  if (!(period > kShortestPeriod * motion.step)) {
     fit.reason = period > 0 ? "the record has fewer than eight samples per oscillation of the block"
                             : "no slip is complete and nothing oscillates: there is no motion for the force balance";
     return fit;

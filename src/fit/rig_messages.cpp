@@ -5,13 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "limits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::rig {
 namespace {
-
-constexpr double kChance = 1e-3;  // of a false word about one record
-constexpr double kMatters = 0.1;  // of the damping
 
 double t_of(const RigValue& v) {
   return v.determined && v.std_error > 0 ? std::abs(v.value) / v.std_error : 0;
@@ -19,9 +17,9 @@ double t_of(const RigValue& v) {
 
 /// Whether a further term is there and moves the damping by enough to be spoken of.
 bool counts(const RigValue& term, const RigFit& fit) {
-  return term.determined && t_p_value(t_of(term), fit.degrees_of_freedom) < kChance &&
+  return term.determined && t_p_value(t_of(term), fit.degrees_of_freedom) < kChanceOfRemark &&
          std::abs(fit.without_both.damping - fit.damping.value) >
-             std::max(kMatters * std::abs(fit.damping.value), 2 * fit.damping.std_error);
+             std::max(kPartOfDamping * std::abs(fit.damping.value), 2 * fit.damping.std_error);
 }
 
 bool delay_counts(const RigFit& fit) {
@@ -125,10 +123,9 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
 
 void add_about_stiffness(const Motion& motion, const Instruments& instruments, RigFit& fit) {
   auto& out = fit.messages;
-  constexpr double kLeast = 0.005;  // of the stiffness: less is no news about a gain or a radius
   const double off = fit.stick_slope_stiffness.value / fit.stiffness.value - 1;
-  if (fit.determined && fit.stick_slope_stiffness.determined && std::abs(off) > kLeast &&
-      t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChance) {
+  if (fit.determined && fit.stick_slope_stiffness.determined && std::abs(off) > kPartOfStiffness &&
+      t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChanceOfRemark) {
     out.push_back(
         fmt::format("the slope of friction in stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or "
                     "omega r is off, or the "

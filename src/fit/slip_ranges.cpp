@@ -6,14 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
 namespace {
-
-constexpr std::size_t kShortestSlip = 4;         ///< samples; less cannot show a curve
-constexpr std::size_t kPiecesWithoutStick = 40;  ///< units of evidence of a record that never sticks
 
 std::size_t good_samples(const Motion& motion, const SampleRange& samples) {
   std::size_t good = 0;
@@ -23,18 +21,16 @@ std::size_t good_samples(const Motion& motion, const SampleRange& samples) {
 
 /// Mean friction over the beginning of the stick after a slip; NaN where no stick follows.
 double friction_after(const Motion& motion, const Segmentation& segmentation, std::size_t segment) {
-  // Of the slip: what rings after re-stick is over after the first, and the spring has raised friction little over the
-  // second.
-  constexpr double kGap = 0.015, kMean = 0.06;
   const Cycle& cycle = segmentation.cycles[segment];
   if (!cycle.slip_complete) return std::numeric_limits<double>::quiet_NaN();
   // The stick after the last slip belongs to no cycle: it has no slip.
   const bool last = segment + 1 >= segmentation.cycles.size();
   const SampleRange stick = last ? SampleRange{cycle.slip.end, motion.size()} : segmentation.cycles[segment + 1].stick;
-  const std::size_t begin = stick.begin + static_cast<std::size_t>(kGap * static_cast<double>(cycle.slip.size()));
+  const std::size_t begin =
+      stick.begin + static_cast<std::size_t>(kAfterRestick * static_cast<double>(cycle.slip.size()));
   const std::size_t end = std::min(
-      stick.end,
-      begin + std::max<std::size_t>(2, static_cast<std::size_t>(kMean * static_cast<double>(cycle.slip.size()))));
+      stick.end, begin + std::max<std::size_t>(
+                             2, static_cast<std::size_t>(kMeanAfterRestick * static_cast<double>(cycle.slip.size()))));
   if (stick.begin < cycle.slip.end || begin + 2 > end) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) sum += motion.friction[i];
@@ -57,9 +53,9 @@ void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const s
 /// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
 /// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
 void trim_rest(const Motion& motion, SampleRange& samples) {
-  constexpr double kSigmas = 6;
   const std::size_t least = samples.begin + samples.size() / 2;
-  while (samples.end > least && std::abs(motion.relative_velocity[samples.end - 1]) < kSigmas * motion.velocity_noise) {
+  while (samples.end > least &&
+         std::abs(motion.relative_velocity[samples.end - 1]) < kSlowEnd * motion.velocity_noise) {
     --samples.end;
   }
 }
@@ -68,7 +64,6 @@ void trim_rest(const Motion& motion, SampleRange& samples) {
 /// high by chance is reached later: left in, its scatter would pass for ageing. What stays is how long the disc took.
 void free_stick_times_of_their_own_level(std::vector<Observations::SlipObservation>& slips,
                                          const std::vector<bool>& is_selected) {
-  constexpr double kLeastLeft = 0.1;
   std::vector<double> pulled(slips.size(), std::numeric_limits<double>::quiet_NaN());
   double sum = 0, count = 0;
   for (std::size_t k = 1; k < slips.size(); ++k) {
@@ -81,7 +76,7 @@ void free_stick_times_of_their_own_level(std::vector<Observations::SlipObservati
   for (std::size_t k = 1; k < slips.size(); ++k) {
     const double late = (pulled[k] - sum / count) / std::abs(slips[k].stick_slope);
     if (!std::isfinite(late)) continue;
-    slips[k].stick_time = std::max(kLeastLeft * slips[k].stick_time, slips[k].stick_time - late);
+    slips[k].stick_time = std::max(kLeastStickTime * slips[k].stick_time, slips[k].stick_time - late);
   }
 }
 

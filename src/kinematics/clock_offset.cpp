@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ingest/clock.hpp"
+#include "limits.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
@@ -23,11 +24,6 @@ namespace {
 constexpr std::size_t kEnough = 20000;  ///< samples for a quantile
 constexpr double kScanStep = 1;         ///< of the width of the minimum: it is not stepped over
 constexpr std::size_t kScanned = 8000;  ///< samples of a scan: some dozens in every slip
-/// Of the break-aways in the time that both share, those that must coincide where both files are of one run, and what
-/// the motion may leave of the variance of friction. Of two runs one in five coincides by chance.
-constexpr double kFewestMatched = 0.8, kMostUnbalanced = 0.3;
-/// What a join of one run may leave at any rate, and else over what the next best offset leaves.
-constexpr double kBalanced = 0.06, kAmbiguous = 0.5;
 
 /// The velocity most samples have, and how far slip takes it away from that.
 struct Plateau {
@@ -205,8 +201,10 @@ void refuse_strangers(const std::vector<double>& falls, const std::vector<double
     ++shared;
     matched += within(falls, at - width, at + width) > 0 ? 1U : 0U;
   }
-  const bool belong = static_cast<double>(matched) >= kFewestMatched * static_cast<double>(shared) && shared > 1;
-  const bool balances = unbalanced < kMostUnbalanced && (unbalanced < kBalanced || ambiguity < kAmbiguous);
+  const bool belong =
+      static_cast<double>(matched) >= kinematics::kFewestMatched * static_cast<double>(shared) && shared > 1;
+  const bool balances = unbalanced < kinematics::kMostUnbalanced &&
+                        (unbalanced < kinematics::kBalanced || ambiguity < kinematics::kAmbiguous);
   if (belong && balances) return;
   throw InputError(
       fmt::format("the two records are not of one run: {} of {} break-aways coincide, and the motion leaves "

@@ -80,6 +80,14 @@ inline constexpr double kDriftReach = 0.1, kDriftScatter = 3;
 /// Of the change of friction over five samples, what one of them must have for a jump.
 inline constexpr double kSharpJump = 0.8;
 
+// ---- two files of one run
+
+/// Of the break-aways in the time that both share, those that must coincide where both files are of one run, and what
+/// the motion may leave of the variance of friction. Of two runs one in five coincides by chance.
+inline constexpr double kFewestMatched = 0.8, kMostUnbalanced = 0.3;
+/// What a join of one run may leave at any rate, and else over what the next best offset leaves.
+inline constexpr double kBalanced = 0.06, kAmbiguous = 0.5;
+
 // ---- low-pass of the velocity
 
 /// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the third
@@ -226,6 +234,8 @@ inline constexpr double kAlikePowers = 0.5;
 
 // ---- faults of the recording
 
+/// Samples of which a distribution can be seen.
+inline constexpr std::size_t kFewestDistributed = 64;
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
 /// machine leaves its range so far within a sample. The samples beside it lie within the second.
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;

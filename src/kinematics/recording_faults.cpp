@@ -11,7 +11,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-constexpr std::size_t kFewestSamples = 64;  // of which a distribution can be seen
 constexpr std::size_t kThinned = 16384;
 
 /// Where all but one value in a thousand lie at each end.
@@ -107,7 +106,7 @@ bool is_never_still(std::span<const double> x, const std::vector<SampleSpan>& ru
     turns += (x[i] - x[i - 1]) * (x[i + 1] - x[i]) < 0 ? 1U : 0U;
   }
   const auto n = static_cast<double>(looked_at);
-  return looked_at >= kFewestSamples &&
+  return looked_at >= kFewestDistributed &&
          static_cast<double>(equal)<kFewRepeats * n&& static_cast<double>(turns)> kManyTurns * n;
 }
 
@@ -184,7 +183,7 @@ PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts
 
 ChannelFaults find_channel_faults(std::span<const double> channel, std::span<const double> beside) {
   ChannelFaults faults;
-  if (channel.size() < kFewestSamples) return faults;
+  if (channel.size() < kFewestDistributed) return faults;
   std::vector<double> cleaned;
   const auto clean = [&](const std::vector<SampleSpan>& spans) {
     if (spans.empty()) return;
@@ -212,7 +211,7 @@ void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel) 
 }
 
 std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {
-  if (channel.size() < kFewestSamples) return {};
+  if (channel.size() < kFewestDistributed) return {};
   const Extremes range = extremes(channel);
   if (!(range.high > range.low)) return {};
   std::vector<std::size_t> counts(kClipBins, 0);
@@ -261,7 +260,7 @@ std::array<PileUp, 2> find_smoothed_pile_ups(std::span<const double> channel) {
 }
 
 double find_slew_limit(std::span<const double> channel) {
-  if (channel.size() < kFewestSamples) return 0;
+  if (channel.size() < kFewestDistributed) return 0;
   std::vector<double> changes(channel.size() - 1);
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i] = channel[i + 1] - channel[i];
   const double step = find_resolution(channel);

@@ -91,9 +91,8 @@ void write_errors(WholeFolder& folder, const Identification& result, const std::
   CsvTable table = table_in(folder, "errors.csv", friction_unit(motion) + ",relative_error_1,cycle,held_out_fold");
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(model[i])) continue;
-    const double residual = motion.friction[i] - model[i];
-    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, residual,
-              std::abs(residual / motion.friction[i]), index_cell(member.cycle[i]), index_cell(member.fold[i]));
+    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i] - model[i],
+              relative_error(motion.friction[i], model[i]), index_cell(member.cycle[i]), index_cell(member.fold[i]));
   }
 }
 

@@ -181,11 +181,6 @@ std::string final_model_command(const DiagnosedTraces& result, const ReportOptio
 
 }  // namespace
 
-std::string_view status_text(EffectStatus status) {
-  if (status == EffectStatus::found) return "found";
-  return status == EffectStatus::unsupported ? "not supported by the data" : to_string(status);
-}
-
 std::string level_unit(const DiagnosedTraces& result) {
   return result.traces.empty() ? "" : unit_behind(friction_unit(result.traces.front().motion));
 }

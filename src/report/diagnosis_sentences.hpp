@@ -14,9 +14,6 @@ namespace tribofit {
 /// "Most of the error above the noise floor goes with the disc angle."
 std::string where_sentence(const std::vector<Share>& shares);
 
-/// Each status as people read it; JSON has its own words.
-std::string_view status_text(EffectStatus status);
-
 /// What the diagnosis comes to, as an engineer would say it.
 std::string diagnosis_verdict(const DiagnosedTraces& result);
 

@@ -68,8 +68,8 @@ ReportTable correlation_table(const Fit& fit) {
     table.numbers({full_name(fit.parameters[i])});
     std::vector<std::string> row = {full_name(fit.parameters[i])};
     for (std::size_t j = 0; j < n; ++j) {
-      const double size = std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
-      row.push_back(size > 0 ? fixed(fit.covariance[i * n + j] / size, 2) : "-");
+      const double correlation = fit.correlation(i, j);
+      row.push_back(std::isfinite(correlation) ? fixed(correlation, 2) : "-");
     }
     table.rows.push_back(std::move(row));
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
@@ -19,9 +20,9 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
   const std::string typical = percent(fit.error.mean_relative);
   std::string remains = "its held-out error is " + held_out;
   const double ratio = over_floor(fit);
-  if (ratio > kFarAboveFloor) {
+  if (is_far_above_floor(fit)) {
     remains += ", far above the noise floor of " + floor;
-  } else if (ratio <= kFarAboveFloor) {
+  } else if (std::isfinite(ratio)) {
     remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
   }
   switch (quality_of(fit)) {
@@ -111,7 +112,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
     if (!options.csv_written) return {"to look at the trace sample by sample", same_with(csv)};
     return {"to see which options there are", "identify --help"};
   }
-  if (over_floor(result.fits[result.best]) > kAtFloor) {
+  if (is_above_floor(result.fits[result.best])) {
     return {"to see where the law fails and which effect is missing",
             command_line(words_of({"diagnose"}, options.arguments, {"--profile"}, {"--protocol"}), {result.path})};
   }

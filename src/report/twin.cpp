@@ -102,7 +102,8 @@ std::string twin_verdict(const TwinIdentification& result) {
   }
   if (twin.agrees()) {
     text += fmt::format(
-        "The twin of the {} law moves as the record does: nothing is off by more than three standard errors.", law);
+        "The twin of the {} law moves as the record does: nothing is off by more than {:g} standard errors.", law,
+        kTwinIsOff);
     if (!result.law_falls_short()) return text;
     const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
@@ -122,7 +123,6 @@ std::vector<std::string> warnings_of(const TwinIdentification& result, const std
   std::vector<std::string> warnings = result.trace.warnings;
   if (!result.twin.reason.empty() || !result.law_falls_short()) return warnings;
   const Fit& fit = result.trace.fits.back();
-  if (!(over_floor(fit) > 1)) return warnings;
   warnings.insert(
       warnings.begin(),
       fmt::format("the {} law leaves {:.1f} times the noise floor of the record: its twin is that of another machine "
@@ -171,7 +171,7 @@ Chart differences_chart(const Twin& twin) {
   Chart chart;
   chart.id = "twin-differences";
   chart.title = "Simulated less measured";
-  chart.note = "Beyond three standard errors a difference is not chance.";
+  chart.note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff);
   chart.x = {.quantity = "difference", .unit = "standard errors"};
   ChartAxis& names = chart.panels[0].axis;
   names.falling = true;
@@ -189,7 +189,7 @@ Chart differences_chart(const Twin& twin) {
     }
   }
   chart.x.low = -largest, chart.x.high = largest;
-  for (const double at : {-3.0, 0.0, 3.0}) {
+  for (const double at : {-kTwinIsOff, 0.0, kTwinIsOff}) {
     chart.marks.push_back(
         {at, true, at == 0 ? Dash::solid : Dash::dashed, at == 0 ? "" : fmt::format("{:+.0f}", at), 0});
   }

@@ -233,11 +233,9 @@ namespace {
 /// Where the stretch before `end` begins over which the disc pulls at about the speed it has at the end: a disc that
 /// stood still, or was slower, in the same stick loaded the spring along another line.
 std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t end) {
-  constexpr double kSlower = 0.5;
-  constexpr std::size_t kFewest = 20;  // for a line
-  if (motion.disc_velocity.empty() || end < begin + kFewest) return begin;
-  const double least = kSlower * std::abs(motion.disc_velocity[end - 1]);
-  std::size_t i = end - kFewest;
+  if (motion.disc_velocity.empty() || end < begin + kShortestPull) return begin;
+  const double least = kSlowerPull * std::abs(motion.disc_velocity[end - 1]);
+  std::size_t i = end - kShortestPull;
   while (i > begin && std::abs(motion.disc_velocity[i - 1]) > least) --i;
   return i;
 }

@@ -24,8 +24,7 @@ LongSticks long_sticks(const Segmentation& segmentation) {
 }
 
 bool has_uneven_sticks(const Segmentation& segmentation) {
-  constexpr double kUneven = 3;
-  return long_sticks(segmentation).longest > kUneven * segmentation.stick_time.value;
+  return long_sticks(segmentation).longest > segmentation::kUnevenSticks * segmentation.stick_time.value;
 }
 
 bool follows_drive(const Motion& motion, const Segmentation& segmentation) {

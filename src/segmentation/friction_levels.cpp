@@ -11,8 +11,6 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::size_t kBins = 6, kFewestSlips = 3, kFewestForLevels = 8;
-
 struct Sum {
   double value = 0, velocity = 0, count = 0;
 };
@@ -37,26 +35,26 @@ void add_bins(const Motion& motion, const std::vector<const Cycle*>& slips, int 
               std::vector<FrictionLevels::Bin>& bins) {
   double fastest = 0;
   for (const Cycle* slip : slips) fastest = std::max(fastest, slip->peak_velocity);
-  std::array<std::vector<double>, kBins> means;
-  std::array<Sum, kBins> all;
+  std::array<std::vector<double>, segmentation::kLevelBins> means;
+  std::array<Sum, segmentation::kLevelBins> all;
   for (const Cycle* slip : slips) {
-    std::array<Sum, kBins> sums;
+    std::array<Sum, segmentation::kLevelBins> sums;
     for_each_sample(motion, *slip, [&](double v, double friction) {
-      const double at = direction * v / fastest * static_cast<double>(kBins);
+      const double at = direction * v / fastest * static_cast<double>(segmentation::kLevelBins);
       if (!(at > 0)) return;
-      const auto bin = std::min(kBins - 1, static_cast<std::size_t>(at));
+      const auto bin = std::min(segmentation::kLevelBins - 1, static_cast<std::size_t>(at));
       for (Sum* sum : {&sums[bin], &all[bin]}) {
         sum->value += friction;
         sum->velocity += v;
         sum->count += 1;
       }
     });
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
+    for (std::size_t bin = 0; bin < segmentation::kLevelBins; ++bin) {
       if (sums[bin].count > 0) means[bin].push_back(sums[bin].value / sums[bin].count);
     }
   }
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    if (means[bin].size() < kFewestSlips) continue;
+  for (std::size_t bin = 0; bin < segmentation::kLevelBins; ++bin) {
+    if (means[bin].size() < segmentation::kFewestSlipsOfBin) continue;
     bins.push_back({all[bin].velocity / all[bin].count, segmentation::mean_over_slips(means[bin]), means[bin].size()});
   }
 }
@@ -96,7 +94,7 @@ FrictionLevels friction_levels(const Motion& motion, const Segmentation& segment
     all.insert(all.end(), slips.begin(), slips.end());
   }
   std::sort(out.bins.begin(), out.bins.end(), [](const auto& a, const auto& b) { return a.velocity < b.velocity; });
-  if (all.size() < kFewestForLevels) return out;
+  if (all.size() < segmentation::kFewestForLevels) return out;
   std::sort(all.begin(), all.end(), [](const Cycle* a, const Cycle* b) {
     return a->peak_velocity != b->peak_velocity ? a->peak_velocity < b->peak_velocity : a->slip.begin < b->slip.begin;
   });

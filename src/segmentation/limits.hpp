@@ -45,4 +45,27 @@ inline constexpr double kAlikeLevels = 0.02;
 /// Of the drive, RMS of the swing about it from which friction follows the swing and not the drive.
 inline constexpr double kSwings = 0.1;
 
+// ---- counts
+
+/// Longest stick over the mean one, from which sticks are uneven: runout and ripple make them differ by less.
+inline constexpr double kUnevenSticks = 3;
+/// Samples without which there is nothing to segment, and points without which no law has a value to spare.
+inline constexpr std::size_t kFewestSamples = 16, kFewestPoints = 5;
+/// Slips from which the long-run variance of their mean is known; of fewer their scatter says more.
+inline constexpr std::size_t kManySlips = 30;
+
+// ---- the pull of the disc
+
+/// Speed of the disc over that at the end of a stick, below which it loaded the spring along another line, and the
+/// fewest samples that show a line.
+inline constexpr double kSlowerPull = 0.5;
+inline constexpr std::size_t kShortestPull = 20;
+/// Cycles from which the coupling of load and friction is known beside how it scatters.
+inline constexpr std::size_t kFewestCoupledCycles = 12;
+
+// ---- levels of friction in slip
+
+/// Bins of the speed in which slips are compared, slips in a bin, and slips in all: three levels need some of each.
+inline constexpr std::size_t kLevelBins = 6, kFewestSlipsOfBin = 3, kFewestForLevels = 8;
+
 }  // namespace tribofit::segmentation

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "limits.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
@@ -43,18 +44,17 @@ Line line_of(const Motion& motion, std::size_t begin, std::size_t end) {
 }  // namespace
 
 Estimate load_coupling(const Motion& motion, const Segmentation& segmentation) {
-  constexpr std::size_t kFewestCycles = 12, kFewestSamples = 20;
   Estimate out;
   out.value = out.std_error = std::numeric_limits<double>::quiet_NaN();
   if (motion.load.empty() || segmentation.kind != MotionKind::stick_slip) return out;
   std::vector<double> slopes;
   for (const Cycle& cycle : segmentation.cycles) {
-    if (cycle.stick.size() == 0 || cycle.slip.end < cycle.stick.begin + kFewestSamples) continue;
+    if (cycle.stick.size() == 0 || cycle.slip.end < cycle.stick.begin + segmentation::kShortestPull) continue;
     const Line line = line_of(motion, cycle.stick.begin, cycle.slip.end);
     const double scale = motion.friction_kind == FrictionKind::force ? 1 : line.level;
     if (line.known && scale > 0) slopes.push_back(line.slope / scale);
   }
-  if (slopes.size() < kFewestCycles) return out;
+  if (slopes.size() < segmentation::kFewestCoupledCycles) return out;
   return mean_with_error(std::move(slopes));
 }
 

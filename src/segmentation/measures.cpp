@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
@@ -51,10 +52,9 @@ Estimate frequency_of(const std::vector<double>& periods) {
 }
 
 Estimate mean_over_slips(std::vector<double> values) {
-  constexpr std::size_t kMany = 30;
   std::erase_if(values, [](double x) { return std::isnan(x); });
   const auto n = static_cast<double>(values.size());
-  if (values.size() < 3 || values.size() >= kMany) return mean_with_error(std::move(values));
+  if (values.size() < 3 || values.size() >= kManySlips) return mean_with_error(std::move(values));
   double mean = 0, squares = 0;
   for (const double x : values) mean += x / n;
   for (const double x : values) squares += (x - mean) * (x - mean);

@@ -14,8 +14,6 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::size_t kFewestSamples = 16, kFewestPoints = 5;
-
 bool is_constant(const std::vector<double>& channel) {
   return std::all_of(channel.begin(), channel.end(), [&](double x) { return x == channel.front(); });
 }
@@ -33,7 +31,7 @@ bool slides_at_one_speed(const Motion& motion, const Segmentation& segmentation)
 }  // namespace
 
 std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation, bool must_slip) {
-  if (motion.is_points() && motion.size() < kFewestPoints)
+  if (motion.is_points() && motion.size() < segmentation::kFewestPoints)
     return {fmt::format("there are only {} points: too few for any law", motion.size())};
   if (motion.is_points() && !must_slip)
     return {"these are points without time: a rig shows in the motion of a record only"};
@@ -45,7 +43,7 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
         "or of a slider on a spring --kind spring-slider with --speed and --stiffness"};
   if (motion.kind == RecordKind::spring_slider && !must_slip)
     return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
-  if (!motion.is_points() && motion.size() < kFewestSamples)
+  if (!motion.is_points() && motion.size() < segmentation::kFewestSamples)
     return {fmt::format("there are only {} samples: too few for any analysis", motion.size())};
   std::vector<std::string> found;
   if (is_constant(motion.friction))

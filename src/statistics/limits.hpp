@@ -38,4 +38,20 @@ inline constexpr double kMostSlow = 256;
 /// No value of a periodogram counts beyond the largest that this chance would give: it is a line, perhaps an effect.
 inline constexpr double kChanceOfLine = 0.5;
 
+// ---- a periodic line in a series, for the standard error of its mean
+
+/// Values that show a line, bin of a transform over twice the series below which a line is a drift (two periods in
+/// the record), and chance that the largest of all bins is as high in noise.
+inline constexpr std::size_t kFewestOfLine = 32, kSlowestBinOfLine = 4;
+inline constexpr double kChanceOfPeriod = 1e-3;
+
+// ---- local derivatives
+
+/// Squares that a window leaves over the usual ones, from which there is a kink in it, and over those of a window
+/// beside it that is taken instead: by chance one window in a thousand.
+inline constexpr double kKinkSquares = 3, kBetterWindow = 2;
+/// Standard deviations by which a lone sample is off its neighbours (noise alone never is), and that over what the
+/// signal does beside: at a turning point it is a third.
+inline constexpr double kLoneSample = 6, kLoneSteepness = 3;
+
 }  // namespace tribofit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "limits.hpp"
 #include "linear_algebra.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -116,8 +117,6 @@ class Pieces {
 LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
                                    std::span<const std::size_t> kinks) {
   constexpr std::size_t kFewest = 7;
-  // Of the usual squares, and of those of another window: by chance one window in a thousand.
-  constexpr double kKink = 3, kBetter = 2;
   const std::size_t n = signal.size();
   LocalDerivatives out;
   out.value.assign(signal.begin(), signal.end());
@@ -150,11 +149,11 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
         std::min(piece.begin > 0 ? i - piece.begin : half, piece.end < n ? piece.end - 1 - i : half);
     if (!whole && free < half && free >= kFewest / 2 && i >= free && i + free < n) best = &narrower[free - kFewest / 2];
     double least = whole ? left_about[i - half] : 0;
-    if (whole && least > kKink * usual) {
+    if (whole && least > kKinkSquares * usual) {
       for (const std::size_t at : tried) {
-        if (i < at || !piece.holds(i - at, count) || kBetter * left_beside[i - at] > least) continue;
+        if (i < at || !piece.holds(i - at, count) || kBetterWindow * left_beside[i - at] > least) continue;
         best = &places[at];
-        least = left_beside[i - at] / kBetter;
+        least = left_beside[i - at] / kBetterWindow;
       }
     }
     const double* samples = &signal[i - best->at];
@@ -168,8 +167,6 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
 }
 
 std::size_t remove_lone_samples(std::vector<double>& signal) {
-  constexpr double kFar = 6;      // standard deviations: noise alone never is
-  constexpr double kSteeper = 3;  // than what the signal does beside: at a turning point it is a third
   const std::size_t n = signal.size();
   if (n < 5) return 0;
   const std::vector<double> x = signal;
@@ -177,12 +174,12 @@ std::size_t remove_lone_samples(std::vector<double>& signal) {
   std::vector<double> distances;
   for (std::size_t i = 1; i + 1 < n; ++i) distances.push_back(off(i));
   constexpr double kUpperQuarter = 1.1503;  // of a normal distribution, in standard deviations
-  const double limit = kFar * quantile(std::move(distances), 0.75) / kUpperQuarter;
+  const double limit = kLoneSample * quantile(std::move(distances), 0.75) / kUpperQuarter;
   std::size_t found = 0;
   for (std::size_t i = 2; i + 2 < n; ++i) {
     const double beside =
         std::max({std::abs(x[i + 1] - x[i - 1]), std::abs(x[i + 2] - x[i + 1]), std::abs(x[i - 1] - x[i - 2])});
-    if (!(limit > 0) || off(i) <= limit || off(i) <= kSteeper * beside) continue;
+    if (!(limit > 0) || off(i) <= limit || off(i) <= kLoneSteepness * beside) continue;
     signal[i] = 0.5 * (x[i - 1] + x[i + 1]);
     ++found;
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "golden_section.hpp"
+#include "limits.hpp"
 
 namespace tribofit {
 
@@ -90,16 +91,13 @@ std::vector<double> periodogram(const std::vector<double>& w) {
 
 /// The clearest line of a centred series; none where nothing stands out.
 std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
-  constexpr std::size_t kFewest = 32;     // values that show a line
-  constexpr std::size_t kTwoPeriods = 4;  // bin of two periods in the record; slower ones are drifts
-  constexpr std::size_t kLeak = 4;        // bins on either side that hold some of a line
-  constexpr double kChance = 1e-3;
+  constexpr std::size_t kLeak = 4;  // bins on either side that hold some of a line
   const std::size_t n = d.size();
-  if (n < kFewest) return std::nullopt;
+  if (n < kFewestOfLine) return std::nullopt;
   const std::vector<double> power = periodogram(prewhitened(d, first_autocorrelation(d)));
   std::size_t peak = 0;
-  double least = kChance / static_cast<double>(n);
-  for (std::size_t k = kTwoPeriods; k + 1 < power.size(); ++k) {
+  double least = kChanceOfPeriod / static_cast<double>(n);
+  for (std::size_t k = kSlowestBinOfLine; k + 1 < power.size(); ++k) {
     if (power[k] < power[k - 1] || power[k] < power[k + 1]) continue;
     // The neighbourhood: an octave to either side, the line itself left out.
     const std::size_t first = std::max<std::size_t>(1, k / 2), last = std::min(power.size() - 1, 2 * k + 2 * kLeak);

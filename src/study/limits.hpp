@@ -60,9 +60,6 @@ inline constexpr double kMostMissing = 0.1;
 
 // ---- the twin
 
-/// Standard errors from which a measure counts as off.
-inline constexpr double kOff = 3;
-
 /// Fewest simulations that show a spread, and the samples over all of them: a minute of work.
 inline constexpr std::size_t kFewestSimulations = 8;
 inline constexpr double kMostSimulatedSamples = 4e7;
@@ -73,6 +70,10 @@ inline constexpr double kMostScatterCorrelation = 0.9, kMostNoiseCorrelation = 0
 
 /// Points a natural period on which recorded load, temperature and disc speed are followed: what is faster is noise.
 inline constexpr double kConditionsAPeriod = 50;
+
+/// Samples of a stick and sticks that are read for the correlation of noise, and fewest samples that show one: the
+/// correlation is then known to 1 %, and a straight line takes little of it.
+inline constexpr std::size_t kNoisePiece = 400, kNoiseSticks = 50, kFewestNoise = 20;
 
 /// Cycles that show a correlation of break-away.
 inline constexpr std::size_t kFewestLevels = 10;

@@ -28,7 +28,7 @@ double std_error_of(const StudiedMachine& studied, std::string_view variable) {
 }
 
 BlockMotion measured_motion(const StudiedMachine& studied, double disc_velocity) {
-  if (!studied.record || !(std::abs(disc_velocity / studied.machine.disc_velocity() - 1) < kSameSpeed)) return {};
+  if (!studied.record || !is_same_speed(disc_velocity, studied.machine.disc_velocity())) return {};
   return block_motion(studied.record->motion, studied.record->segmentation,
                       studied.machine.load / studied.machine.rig.stiffness);
 }

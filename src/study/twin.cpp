@@ -16,6 +16,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 namespace {
@@ -71,27 +72,18 @@ Drive drive_of(const Machine& machine, const Motion& motion) {
 
 /// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
 double noise_colour(const Motion& motion, const Segmentation& segmentation) {
-  constexpr std::size_t kPiece = 400, kSticks = 50;
-  double squares = 0, products = 0;
+  Remainder all;
   std::size_t used = 0;
   for (const Cycle& cycle : segmentation.cycles) {
-    const std::size_t n = std::min(kPiece, cycle.stick.size() / 2), begin = cycle.stick.begin + cycle.stick.size() / 4;
-    if (n < 20 || ++used > kSticks) continue;
-    const double middle = 0.5 * static_cast<double>(n - 1);
-    double sum = 0, slope = 0, spread = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double t = static_cast<double>(i) - middle;
-      sum += motion.friction[begin + i], slope += t * motion.friction[begin + i], spread += t * t;
-    }
-    double before = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double t = static_cast<double>(i) - middle;
-      const double r = motion.friction[begin + i] - sum / static_cast<double>(n) - slope / spread * t;
-      squares += r * r, products += r * before;
-      before = r;
-    }
+    const std::size_t n = std::min(kNoisePiece, cycle.stick.size() / 2);
+    if (n < kFewestNoise || ++used > kNoiseSticks) continue;
+    const std::span<const double> piece =
+        std::span(motion.friction).subspan(cycle.stick.begin + cycle.stick.size() / 4, n);
+    Parabola line = fit_parabola(piece);
+    line.bend = 0;
+    all += remainder_about(line, piece);
   }
-  return squares > 0 ? std::clamp(products / squares, 0.0, kMostNoiseCorrelation) : 0;
+  return all.correlation(kMostNoiseCorrelation);
 }
 
 /// N/k of a machine: what the spring gives for a unit of friction [m].
@@ -146,17 +138,16 @@ class Predictions {
     }
     const auto n = static_cast<double>(y.size());
     if (n < 4 || 2 * n < static_cast<double>(simulations_.size())) return {kNone, kNone, kNone};
-    double mx = 0, my = 0, sxx = 0, sxy = 0, syy = 0;
-    for (std::size_t i = 0; i < y.size(); ++i) mx += x[i] / n, my += y[i] / n;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      sxx += (x[i] - mx) * (x[i] - mx), sxy += (x[i] - mx) * (y[i] - my), syy += (y[i] - my) * (y[i] - my);
-    }
-    const double slope = sxx > 0 ? sxy / sxx : 0, variance = std::max(0.0, syy - slope * sxy) / (n - 1 - (sxx > 0));
-    const double leverage = 1 + 1 / n + (sxx > 0 ? mx * mx / sxx : 0);
+    const StraightLine line = fit_line(x, y);
+    const bool leans = line.squares > 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) squares += std::pow(y[i] - line.at(x[i]), 2);
+    const double variance = squares / (n - (leans ? 2 : 1));
+    const double leverage = 1 + 1 / n + (leans ? line.middle * line.middle / line.squares : 0);
     // A record that scatters more than its twins knows its own mean less well than they do.
     const double own = std::isfinite(measured.std_error) ? std::pow(measured.std_error, 2) : 0;
     TwinMeasure::Simulated out;
-    out.value = my - slope * mx;
+    out.value = line.at(0);
     out.std_error = std::sqrt(variance * leverage);
     const double difference = out.value - measured.value;
     if (std::abs(difference) > kRounding * std::abs(measured.value)) {
@@ -242,7 +233,7 @@ std::vector<std::string> Twin::failures(std::size_t column) const {
   std::vector<std::pair<double, std::string>> off;
   for (const TwinMeasure& m : measures) {
     const double d = std::abs(m.simulated.at(column).difference);
-    if (!(d <= kOff) && std::isfinite(m.measured)) off.emplace_back(-d, m.name);
+    if (!(d <= kTwinIsOff) && std::isfinite(m.measured)) off.emplace_back(-d, m.name);
   }
   std::stable_sort(off.begin(), off.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
@@ -262,7 +253,7 @@ std::string Twin::short_name(std::size_t column) const {
 }
 
 bool TwinIdentification::law_falls_short() const {
-  return !trace.fits.empty() && well_above_floor(trace.fits.back());
+  return !trace.fits.empty() && is_conditional(trace.fits.back());
 }
 
 Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,

@@ -49,6 +49,8 @@ enum class EffectStatus {
 };
 /// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable".
 std::string_view to_string(EffectStatus status);
+/// The same as people read it: "found", "not supported by the data".
+std::string_view status_text(EffectStatus status);
 
 /// A share of the error above the noise floor that goes with one variable.
 struct Share {

@@ -120,6 +120,8 @@ struct Fit {
   std::vector<std::string> messages;
 
   std::vector<double> values() const;
+  /// Of two parameters, from the covariance; NaN where one of them has no error.
+  double correlation(std::size_t first, std::size_t second) const;
   /// Fold in which a cycle was held out.
   std::size_t fold_of(std::size_t cycle) const { return cycle_folds.empty() ? 0 : cycle_folds.at(cycle); }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -9,6 +10,9 @@ namespace tribofit {
 
 /// Speeds whose ratio is nearer to one are the same: far below what a record or a rig lets anybody set.
 inline constexpr double kSameSpeed = 1e-3;
+inline bool is_same_speed(double a, double b) {
+  return std::abs(a / b - 1) < kSameSpeed;
+}
 
 /// Speeds of the disc at which the motion of a machine changes its kind, as v_disc = omega r [m/s].
 struct CriticalSpeed {

@@ -14,6 +14,10 @@
 
 namespace tribofit {
 
+/// Standard errors from which a measure counts as off: of the ten measures of a twin that is right, one in forty twins
+/// has one beyond.
+inline constexpr double kTwinIsOff = 3;
+
 /// One measure of the motion, as measured and as each twin has it. SI; `si` is one of `unit`.
 struct TwinMeasure {
   std::string name, unit;
@@ -39,7 +43,7 @@ struct Twin {
   BlockMotion measured;                ///< three cycles of the record; empty where no three are whole
   std::vector<BlockMotion> simulated;  ///< and of the first simulation of each column
 
-  /// Names of the measures in which a column is off by more than three standard errors, the worst first.
+  /// Names of the measures in which a column is off by more than kTwinIsOff, the worst first.
   std::vector<std::string> failures(std::size_t column) const;
   /// The last column, which the user believes in, is off in none of them.
   bool agrees() const;

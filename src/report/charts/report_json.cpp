@@ -49,6 +49,7 @@ Json styles_json() {
     json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
   }
   json["heat"] = kHeatColours;
+  add_members(json, "grid", kGridColour, "axis", kAxisColour, "text", kTextColour);
   return json;
 }
 

@@ -29,6 +29,9 @@ inline constexpr std::array<ColourStyle, 6> kColours = {{{"black", "#000000"},
                                                          {"green", "#009e73"},
                                                          {"purple", "#a0508a"},
                                                          {"grey", "#6b6b6b"}}};
+/// What is not data: lines of the grid, frames and marks, text.
+inline constexpr std::string_view kGridColour = "#e2e2e2", kAxisColour = "#444444", kTextColour = "#1b1b1b";
+
 constexpr Paint ink(Colour colour) {
   return {kColours[static_cast<std::size_t>(colour)].rgb};
 }

@@ -1,5 +1,7 @@
 #include "report/charts/trace_charts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +14,7 @@
 namespace tribofit {
 namespace {
 
-constexpr double kZoom = 5e-3;  // s, to either side of a break-away or re-stick
+constexpr double kZoom = 0.1;  // of the slip, to either side of its break-away and re-stick
 /// Stretches into which series are cut for drawing.
 constexpr std::size_t kRecordBins = 1200, kCycleBins = 1200, kZoomBins = 300, kMeasureBins = 200, kLineBins = 800;
 constexpr std::size_t kShownCycles = 3;
@@ -80,18 +82,18 @@ void shade_left_out(const DrawnTrace& d, Chart& chart) {
   }
 }
 
-/// Every sample within 5 ms of an event, with the event at zero.
-Chart zoom_chart(const DrawnTrace& d, double at, const char* id, const char* title) {
+/// Every sample within `half` [s] of an event, with the event at zero.
+Chart zoom_chart(const DrawnTrace& d, double at, double half, const char* id, const char* title) {
   const std::vector<double>& time = d.trace.motion.time;
   const auto index_at = [&](double t) {
     return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), t) - time.begin());
   };
-  const std::size_t begin = index_at(at - kZoom), end = index_at(at + kZoom);
+  const std::size_t begin = index_at(at - half), end = index_at(at + half);
   if (end < begin + 2) return {};
   Chart chart = window_chart(d, {begin, end, d.bins(kZoomBins), at, kMillisecond}, true);
   chart.id = d.id + "-" + id;
   chart.title = title;
-  chart.note = "±5 ms about " + significant(at, 6) + " s.";
+  chart.note = fmt::format("±{} ms about {} s.", significant(half / kMillisecond, 2), significant(at, 6));
   chart.x = {.quantity = "time from the event", .unit = "ms", .digits = kTimeDigits};
   chart.marks.push_back({0, true, Dash::dotted, ""});
   chart.height = 400;
@@ -189,8 +191,9 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   for (std::size_t k = first; k < first + kShownCycles; ++k) shade_phases(motion, cycles[k], chart);
   std::vector<Chart> charts = {chart};
   const Cycle& shown = cycles[first + kShownCycles / 2];
-  if (shown.stick.size() > 0) charts.push_back(zoom_chart(d, shown.break_away_time, "break-away", "Break-away"));
-  if (shown.slip_complete) charts.push_back(zoom_chart(d, shown.restick_time, "restick", "Re-stick"));
+  const double half = kZoom * static_cast<double>(shown.slip.size()) * motion.step;
+  if (shown.stick.size() > 0) charts.push_back(zoom_chart(d, shown.break_away_time, half, "break-away", "Break-away"));
+  if (shown.slip_complete) charts.push_back(zoom_chart(d, shown.restick_time, half, "restick", "Re-stick"));
   return charts;
 }
 

@@ -26,8 +26,8 @@ struct DrawnTrace {
   std::size_t bins(std::size_t whole) const;
 };
 
-/// Three cycles with stick and slip shaded, and what happens within 5 ms of a break-away and a re-stick; none where
-/// there are no three cycles. All series are reduced so that no peak is lost.
+/// Three cycles with stick and slip shaded, and what happens within a tenth of a slip of a break-away and a re-stick;
+/// none where there are no three cycles. All series are reduced so that no peak is lost.
 std::vector<Chart> cycle_charts(const DrawnTrace& drawn);
 /// The whole record.
 Chart record_chart(const DrawnTrace& drawn);

@@ -36,7 +36,7 @@ function blockScene(block, animation, bounds) {
   const marks = svgPart("path", { stroke: styles.colours.black, "stroke-width": 1.4 });
   const dot = svgPart("circle", { r: 4.5, fill: styles.colours.red, stroke: "#fff" });
   const label = (x, y, text, anchor = "start", more = {}) =>
-    svgPart("text", { x, y, "text-anchor": anchor, "font-size": 12, fill: "#1b1b1b", ...more }, text);
+    svgPart("text", { x, y, "text-anchor": anchor, "font-size": 12, fill: styles.text, ...more }, text);
   const low = number(bounds.low, 3), high = number(bounds.high, 3);
   const points = block.time.map((t, k) => `${toX(t).toFixed(1)},${toY(block.displacement[k]).toFixed(1)}`);
   const element = svgPart("svg", { viewBox: `0 0 ${s.width} ${s.height}`, role: "img",
@@ -46,7 +46,7 @@ function blockScene(block, animation, bounds) {
   svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: styles.colours.black }), marks,
   label(s.width - 4, s.deck + 28, `disc ${number(animation.disc_velocity, 3)} mm/s \u2192`, "end"),
   svgPart("path", { d: `M${points.join("L")}`, fill: "none", stroke: styles.colours.blue, "stroke-width": 1.4 }),
-  svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: "#444" }),
+  svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: styles.axis }),
   label(s.plotLeft - 4, s.plotTop + 6, high, "end"), label(s.plotLeft - 4, s.plotBottom, low, "end"),
   label(s.plotLeft - 4, (s.plotTop + s.plotBottom) / 2 + 4, "mm", "end"),
   label(s.plotLeft, s.plotTop - 8, "displacement of the block"), label(s.plotLeft, s.plotBottom + 16, "0 s"),

@@ -20,7 +20,7 @@ const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "")
 
 function axisOf(axis, more = {}) {
   const layout = { title: { text: marked(titleOf(axis)), standoff: 8 }, automargin: true, zeroline: false, showline: true,
-    linecolor: "#444", gridcolor: "#e2e2e2", ticks: "outside", tickcolor: "#444", exponentformat: "power",
+    linecolor: styles.axis, gridcolor: styles.grid, ticks: "outside", tickcolor: styles.axis, exponentformat: "power",
     hoverformat: ".7~g", ...more };
   if (axis.names) {
     Object.assign(layout, { tickvals: axis.names.map((_, k) => k), ticktext: axis.names.map(plain), showgrid: false,
@@ -112,7 +112,7 @@ function shapesOf(chart) {
   const shapes = (chart.stretches || []).map((s) => ({ type: "rect", layer: "below", xref: "x", yref: "paper", x0: s.from,
     x1: s.to, y0: 0, y1: 1, line: { width: 0 }, fillcolor: styles.shades[s.shade].fill }));
   for (const mark of chart.marks || []) {
-    const line = { color: "#444", width: 1.3, dash: styles.dashes[mark.dash] };
+    const line = { color: styles.axis, width: 1.3, dash: styles.dashes[mark.dash] };
     shapes.push(mark.upright
       ? { type: "line", xref: "x", yref: "paper", x0: mark.at, x1: mark.at, y0: 0, y1: 1, line }
       : { type: "line", xref: "paper", x0: 0, x1: 1, yref: nth("y", mark.panel), y0: mark.at, y1: mark.at, line });
@@ -139,9 +139,10 @@ function annotationsOf(chart) {
 function layoutOf(chart) {
   const gap = 0.06, count = chart.panels.length;
   const whole = chart.panels.reduce((sum, panel) => sum + panel.part, 0), free = 1 - gap * (count - 1);
-  const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13, color: "#1b1b1b" },
+  const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13,
+    color: styles.text },
     margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest",
-    showlegend: false, hoverlabel: { bgcolor: "#fff", bordercolor: "#444", font: { color: "#1b1b1b" } },
+    showlegend: false, hoverlabel: { bgcolor: "#fff", bordercolor: styles.axis, font: { color: styles.text } },
     height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
     xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
   let top = 1;

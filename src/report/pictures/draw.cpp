@@ -6,7 +6,7 @@
 namespace tribofit {
 namespace {
 
-constexpr Paint kGrid = {"#e2e2e2"}, kMark = {"#444444"};
+constexpr Paint kGrid = {kGridColour}, kMark = {kAxisColour};
 
 /// Everything about one picture but the data.
 class Drawing {

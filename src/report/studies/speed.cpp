@@ -107,7 +107,7 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
     if (!std::isfinite(at)) return;
     for (std::size_t k = first; k < chart.marks.size(); ++k) {
       ChartMark& mark = chart.marks[k];
-      if (std::abs(mark.at * kMillimetre / at - 1) > kSameSpeed) continue;
+      if (!is_same_speed(mark.at * kMillimetre, at)) continue;
       mark.text += std::string(", ") + text;
       return;
     }
