@@ -64,12 +64,6 @@ void give_memory_back() {
 #endif
 }
 
-std::vector<std::string> without_threads(std::vector<std::string> arguments) {
-  const auto at = std::find(arguments.begin(), arguments.end(), "--threads");
-  if (at != arguments.end()) arguments.erase(at, at + 2);
-  return arguments;
-}
-
 /// What identifies a file; nothing where there is none.
 std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
   struct stat status {};
@@ -245,7 +239,7 @@ ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const Ident
                         const std::vector<std::string>& arguments) {
   BatchOptions batch;
   batch.identify = options;
-  batch.arguments = without_threads(arguments);
+  batch.arguments = arguments;
   batch.companions = input_files(s);
   std::erase(batch.companions, "");
   batch.results = s.out.empty() ? default_results(campaign.folder) : s.out;

@@ -4,7 +4,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
@@ -16,10 +15,12 @@ namespace {
 
 constexpr std::size_t kHelpColumn = 30;
 
-/// Options that do not shape the analysis: where results go, and how runs are found and combined.
-constexpr std::array<std::string_view, 11> kNotOwn = {"--json",    "--csv",     "--report", "--quiet",
-                                                      "--figures", "--format",  "--out",    "--shard",
-                                                      "--again",   "--pattern", "--compare"};
+/// Where results go, and how runs are found and combined: that does not shape the analysis.
+bool shapes_analysis(const Command::Typed& option) {
+  const std::string& s = option.section;
+  return !option.is_positional && s != section::kOutput && s != section::kBatch && s != section::kTogether &&
+         s != section::kServer;
+}
 
 /// The option meant by a misspelt one, for the message.
 std::string nearest_option(const CLI::App& app, const std::string& message) {
@@ -182,8 +183,8 @@ std::vector<Command::Typed> Command::typed() const {
   std::vector<Typed> out;
   for (const CLI::Option* option : app_->get_options()) {
     if (option->count() == 0) continue;
-    out.push_back(
-        {option->get_name(), option->results(), option->get_items_expected_max() == 0, option->get_positional()});
+    out.push_back({option->get_name(), option->results(), option->get_items_expected_max() == 0,
+                   option->get_positional(), option->get_group()});
   }
   return out;
 }
@@ -207,18 +208,15 @@ void Command::refuse_empty_values() const {
   }
 }
 
-std::vector<std::string> Command::own_options() const {
-  const bool pools = has_option("--share");  // what is said of all runs together
+std::vector<std::string> Command::own_options(const std::function<bool(const Typed&)>& wanted) const {
   std::vector<std::string> arguments;
   for (const Typed& option : typed()) {
-    const std::string& name = option.name;
-    if (option.is_positional || std::find(kNotOwn.begin(), kNotOwn.end(), name) != kNotOwn.end()) continue;
-    if (pools && (name == "--share" || name == "--vary")) continue;
+    if (!shapes_analysis(option) || (wanted && !wanted(option))) continue;
     if (option.is_flag) {
-      arguments.push_back(option.values.front() == "false" ? "--no-" + name.substr(2) : name);
+      arguments.push_back(option.values.front() == "false" ? "--no-" + option.name.substr(2) : option.name);
       continue;
     }
-    for (const std::string& value : option.values) arguments.insert(arguments.end(), {name, value});
+    for (const std::string& value : option.values) arguments.insert(arguments.end(), {option.name, value});
   }
   return arguments;
 }

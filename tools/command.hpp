@@ -13,6 +13,13 @@ class App;
 class Option;
 }  // namespace CLI
 
+/// Sections of the help. They say what an option is for, too: what shapes the analysis is repeated in the commands that
+/// a result names.
+namespace section {
+inline constexpr const char *kConditions = "Conditions", *kReading = "Reading", *kOutput = "Output", *kBatch = "Batch",
+                            *kTogether = "Runs together", *kServer = "Server", *kStudy = "Study";
+}
+
 /// One option of a command. It is filled in when the command line is parsed.
 class Option {
  public:
@@ -65,6 +72,7 @@ class Command {
     std::string name;
     std::vector<std::string> values;  ///< of a flag: "true" or "false"
     bool is_flag = false, is_positional = false;
+    std::string section;
   };
   std::vector<Typed> typed() const;
   bool has_option(const char* name) const;
@@ -80,8 +88,8 @@ class Command {
 
   /// Usage error: an option given an empty value.
   void refuse_empty_values() const;
-  /// The options as typed that shape the analysis, for the next command.
-  std::vector<std::string> own_options() const;
+  /// The options as typed that shape the analysis, for the next command; where `wanted` is given, those of them.
+  std::vector<std::string> own_options(const std::function<bool(const Typed&)>& wanted = {}) const;
 
  private:
   CLI::App* app_;

@@ -176,7 +176,7 @@ void add_diagnose(const Command& app) {
   verb.add_option("--confirm", settings->confirm,
                   "A run held back from the diagnosis to confirm the finding (repeatable)")
       .one_value_each()
-      .group("Reading");
+      .group(section::kReading);
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
   add_selection_options(verb, *settings);

@@ -47,13 +47,13 @@ void add_options(const Command& app, ExploreSettings& s) {
   add_parameter_options(app, s);
   add_selection_options(app, s);
   app.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)")
-      .group("Server");
+      .group(section::kServer);
   app.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)")
       .range(1, 65535)
-      .group("Server");
+      .group(section::kServer);
   app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
       .range(0, 1024)
-      .group("Server");
+      .group(section::kServer);
 }
 
 std::string text_of_session(const std::string& path) {
@@ -63,8 +63,8 @@ std::string text_of_session(const std::string& path) {
 
 /// What the command line says of the fit without the choice, which the page changes.
 std::vector<std::string> without_choice(const std::vector<std::string>& arguments) {
-  const std::vector<std::string> of_choice = {"--law",    "--effect",  "--formula", "--start",   "--bounds",
-                                              "--cycles", "--exclude", "--port",    "--session", "--threads"};
+  const std::vector<std::string> of_choice = {"--law",    "--effect", "--formula", "--start",
+                                              "--bounds", "--cycles", "--exclude"};
   std::vector<std::string> out;
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     if (std::find(of_choice.begin(), of_choice.end(), arguments[k]) == of_choice.end()) {
@@ -109,7 +109,7 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
 void refuse_beside_session(const std::vector<std::string>& arguments) {
   std::string others;
   for (const std::string& word : arguments) {
-    if (word.rfind("--", 0) != 0 || word == "--session" || word == "--port" || word == "--threads") continue;
+    if (word.rfind("--", 0) != 0) continue;
     if (others.find(word) == std::string::npos) others += (others.empty() ? "" : ", ") + word;
   }
   if (others.empty()) return;

@@ -84,12 +84,13 @@ ExitStatus run_all(const Settings& s, const std::vector<Input>& inputs, const Id
 }
 
 void add_batch_options(const Command& app, Settings& s) {
-  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)").group("Batch");
+  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)")
+      .group(section::kBatch);
   app.add_option("--pattern", s.pattern, "How file names state the conditions: 'r{radius}mm_{repeat}.csv'")
-      .group("Batch");
+      .group(section::kBatch);
   app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` combines them")
-      .group("Batch");
-  app.add_flag("--again", s.again, "Fit runs that already have a result, too").group("Batch");
+      .group(section::kBatch);
+  app.add_flag("--again", s.again, "Fit runs that already have a result, too").group(section::kBatch);
   add_compare_option(app, s);
 }
 

@@ -65,7 +65,7 @@ void add_merge(const Command& app) {
   add_pooling_options(verb, *settings);
   add_compare_option(verb, *settings);
   add_report_option(verb, *settings);
-  verb.add_flag("--quiet", settings->quiet, "Do not print the table").group("Output");
+  verb.add_flag("--quiet", settings->quiet, "Do not print the table").group(section::kOutput);
   verb.on_run([settings, folder, verb] {
     verb.refuse_empty_values();
     std::vector<std::string> arguments = pooling_arguments(*settings);

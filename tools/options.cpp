@@ -6,15 +6,16 @@
 
 void add_input_options(const Command& app, Settings& s) {
   app.add_option("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
-  app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm").group("Conditions");
+  app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm")
+      .group(section::kConditions);
   app.add_option("--speed", s.speed,
                  "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau)")
-      .group("Conditions");
-  app.add_option("--load", s.load, "Normal force, 50N").group("Conditions");
+      .group(section::kConditions);
+  app.add_option("--load", s.load, "Normal force, 50N").group(section::kConditions);
   app.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties")
-      .group("Conditions");
+      .group(section::kConditions);
   const auto input = [&](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help).group("Reading");
+    return app.add_option(name, value, help).group(section::kReading);
   };
   input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)")
       .one_value_each();
@@ -29,10 +30,10 @@ void add_input_options(const Command& app, Settings& s) {
       "--kind", s.kind,
       "What was recorded, stick-slip, sliding, points, spring-slider, motion-only or force-only (identify help kinds)")
       .one_of(tribofit::record_kind_names());
-  app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group("Reading");
+  app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group(section::kReading);
   input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
   app.add_flag("--trim,!--no-trim", s.trim, "Exclude the run-up of the disc (default); --no-trim keeps it")
-      .group("Reading");
+      .group(section::kReading);
 }
 
 void add_spring_options(const Command& app, Settings& s) {
@@ -84,30 +85,31 @@ void add_parameter_options(const Command& app, Settings& s) {
 
 void add_result_options(const Command& app, Settings& s) {
   app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
-      .group("Output");
+      .group(section::kOutput);
   app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
       .range(0, 1024)
-      .group("Output");
-  app.add_flag("--quiet", s.quiet, "Do not print the table").group("Output");
+      .group(section::kOutput);
+  app.add_flag("--quiet", s.quiet, "Do not print the table").group(section::kOutput);
 }
 
 void add_output_options(const Command& app, Settings& s) {
   add_result_options(app, s);
-  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder").group("Output");
+  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder").group(section::kOutput);
 }
 
 void add_report_option(const Command& app, Settings& s) {
-  app.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)").group("Output");
+  app.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)")
+      .group(section::kOutput);
   app.add_option("--figures", s.figures, "Write a picture of each chart into this folder, 85 mm wide, for a paper")
-      .group("Output");
+      .group(section::kOutput);
   app.add_option("--format", s.picture_format, "Of --figures: svg (default), pdf or png")
       .one_of({"svg", "pdf", "png"})
-      .group("Output");
+      .group(section::kOutput);
 }
 
 void add_pooling_options(const Command& app, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* help) {
-    app.add_option(name, value, help).one_value_each().group("Runs together");
+    app.add_option(name, value, help).one_value_each().group(section::kTogether);
   };
   add("--share", s.share, "Parameter common to all runs: --share alpha (repeatable)");
   add("--vary", s.vary, "Parameter with one value for each value of a condition: --vary mu_s:radius (repeatable)");
@@ -116,7 +118,7 @@ void add_pooling_options(const Command& app, Settings& s) {
 void add_compare_option(const Command& app, Settings& s) {
   app.add_option("--compare", s.compare,
                  "Compare pooled values with published or earlier ones: a table such as data/published/table4.csv")
-      .group("Batch");
+      .group(section::kBatch);
 }
 
 std::vector<std::string> pooling_arguments(const Settings& s) {

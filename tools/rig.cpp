@@ -49,7 +49,7 @@ void add_rig(const Command& app) {
   add_input_options(verb, *settings);
   verb.add_flag("--keep-high-pass", settings->keep_high_pass,
                 "Do not undo a high-pass found on the velocity (one that is declared is undone)")
-      .group("Reading");
+      .group(section::kReading);
   add_result_options(verb, *settings);
   verb.on_run([settings, verb] {
     verb.refuse_empty_values();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -110,24 +109,18 @@ RigFit rig_of(const Fit& fit, const Identification& trace, const Instruments& in
   return rig;
 }
 
-/// The diagnosis of the record with the options that say how it is read and what is known of it.
-std::string diagnose_command(const std::string& path, const std::vector<std::string>& arguments) {
-  static constexpr std::array<std::string_view, 13> kValued = {
-      "--radius", "--speed",    "--load",        "--instruments", "--columns", "--units",  "--rate",
-      "--with",   "--continue", "--stick-below", "--law",         "--effect",  "--formula"};
-  static constexpr std::array<std::string_view, 2> kFlags = {"--never-sticks", "--no-trim"};
+/// The diagnosis of the record, with the options that say how it is read and what is known of it.
+std::string diagnose_command(const std::string& path, const Command& kind) {
+  const auto of_record = [](const Command::Typed& option) {
+    return option.section == section::kConditions || option.section == section::kReading || option.name == "--law" ||
+           option.name == "--effect" || option.name == "--formula";
+  };
   std::string command = "identify diagnose";
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const bool valued = std::find(kValued.begin(), kValued.end(), arguments[i]) != kValued.end();
-    const bool flag = std::find(kFlags.begin(), kFlags.end(), arguments[i]) != kFlags.end();
-    if (valued || flag) command += " " + arguments[i];
-    if (valued && i + 1 < arguments.size()) command += " " + shell_quoted(arguments[++i]);
-  }
+  for (const std::string& word : kind.own_options(of_record)) command += " " + shell_quoted(word);
   return command + " " + shell_quoted(path);
 }
 
-StudiedMachine identified(const Settings& settings, const MachineRequest& typed,
-                          const std::vector<std::string>& arguments) {
+StudiedMachine identified(const Settings& settings, const MachineRequest& typed, const Command& kind) {
   const Settings of_trace = settings_of_trace(settings, typed);
   IdentifyOptions options = options_from(of_trace);
   const Input input = only_input(of_trace, options.read, "study");
@@ -147,10 +140,8 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed,
   forget_typed(typed, out.machine.model, out.covariance);
   out.source = "identified from " + input.trace.path;
   if (std::isfinite(found.law_over_floor)) {
-    out.warnings.push_back(fmt::format(
-        "the {} law leaves {:.1f} times the noise floor of the record: the answers are those of another machine until "
-        "the missing effect is found: {}",
-        fit.model.name(), found.law_over_floor, diagnose_command(input.trace.path, arguments)));
+    out.warnings.push_back(other_machine_warning("these answers are", fit, found.law_over_floor,
+                                                 diagnose_command(input.trace.path, kind)));
   }
   out.notes = std::move(found.notes);
   if (rig.per_unit_load) {
@@ -166,23 +157,10 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed,
 
 }  // namespace
 
-StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed,
-                               const std::vector<std::string>& arguments) {
-  return settings.traces.empty() ? given(settings, typed) : identified(settings, typed, arguments);
+StudiedMachine studied_machine(const Settings& settings, const MachineRequest& typed, const Command& kind) {
+  return settings.traces.empty() ? given(settings, typed) : identified(settings, typed, kind);
 }
 
 std::vector<std::string> shared_arguments(const Command& kind) {
-  static constexpr std::array<std::string_view, 11> kOwn = {"--range",     "--at",      "--points", "--cycles",
-                                                            "--harmonics", "--vary",    "--factor", "--x",
-                                                            "--y",         "--measure", "--threads"};
-  std::vector<std::string> out;
-  const std::vector<std::string> all = kind.own_options();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (std::find(kOwn.begin(), kOwn.end(), all[i]) != kOwn.end()) {
-      ++i;  // and its value
-    } else {
-      out.push_back(all[i]);
-    }
-  }
-  return out;
+  return kind.own_options([](const Command::Typed& option) { return option.section != section::kStudy; });
 }

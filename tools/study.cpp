@@ -140,7 +140,7 @@ Begun begin(StudyRequest& r, const Command& kind) {
   Begun out;
   out.settle = settle_options(r);
   out.json.arguments = kind.own_options();
-  out.machine = studied_machine(r.settings, r.machine, out.json.arguments);
+  out.machine = studied_machine(r.settings, r.machine, kind);
   out.machine.sharpness = out.settle.sharpness;
   out.terminal = terminal_options(r.settings, shared_arguments(kind));
   out.terminal.inputs = r.settings.traces;
@@ -263,32 +263,42 @@ void add_study(const Command& app) {
 
   auto r = request();
   Command kind = add_kind(study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed);
-  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm");
-  kind.add_option("--points", r->points, "Number of speeds (default 40)").range(2, 10000);
+  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm").group(section::kStudy);
+  kind.add_option("--points", r->points, "Number of speeds (default 40)").range(2, 10000).group(section::kStudy);
 
   r = request();
   kind = add_kind(study, "phase", "Phase portraits", r, run_phase);
-  kind.add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)");
-  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s");
-  kind.add_option("--points", r->points, "Number of speeds in --range").range(2, 1000);
-  kind.add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)").range(1, 10000);
+  kind.add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)").group(section::kStudy);
+  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s").group(section::kStudy);
+  kind.add_option("--points", r->points, "Number of speeds in --range").range(2, 1000).group(section::kStudy);
+  kind.add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)")
+      .range(1, 10000)
+      .group(section::kStudy);
 
   r = request();
   kind = add_kind(study, "response", "A(omega), and spectra of force and displacement", r, run_response);
-  kind.add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)").range(1, 1000);
+  kind.add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)")
+      .range(1, 1000)
+      .group(section::kStudy);
 
   r = request();
   r->points = 21;
   kind = add_kind(study, "sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity);
-  kind.add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)").one_value_each();
-  kind.add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)").range(1.0001, 1e6);
-  kind.add_option("--points", r->points, "Values of a sweep (default 21)").range(2, 10000);
+  kind.add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)")
+      .one_value_each()
+      .group(section::kStudy);
+  kind.add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)")
+      .range(1.0001, 1e6)
+      .group(section::kStudy);
+  kind.add_option("--points", r->points, "Values of a sweep (default 21)").range(2, 10000).group(section::kStudy);
 
   r = request();
   kind = add_kind(study, "map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map);
-  kind.add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100").required();
-  kind.add_option("--y", r->y, "Down: the same").required();
-  kind.add_option("--measure", r->measure,
-                  "The one printed (all are written): peak-to-peak (default), stick-time, ...");
-  kind.add_flag("--again", r->again, "Compute rows that are known already, too");
+  kind.add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100")
+      .required()
+      .group(section::kStudy);
+  kind.add_option("--y", r->y, "Down: the same").required().group(section::kStudy);
+  kind.add_option("--measure", r->measure, "The one printed (all are written): peak-to-peak (default), stick-time, ...")
+      .group(section::kStudy);
+  kind.add_flag("--again", r->again, "Compute rows that are known already, too").group(section::kOutput);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -63,5 +64,22 @@ struct TraceSections {
 ReportSection run_section(const std::string& command, const std::string& more = "");
 /// The same with the inputs and their checksums, how they were read, what to do next.
 ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next);
+
+/// A quantity of the rig, in the unit people read.
+struct ShownRigValue {
+  const char* name;
+  RigValue value;
+  double si;         ///< of one unit
+  const char* unit;  ///< as a table shows it
+  const char* key;   ///< as JSON names it
+};
+struct ShownRig {
+  ShownRigValue mass, damping, stiffness, natural_frequency, damping_ratio, stick_slope_stiffness;
+  std::array<ShownRigValue, 6> all() const {
+    return {mass, damping, stiffness, natural_frequency, damping_ratio, stick_slope_stiffness};
+  }
+};
+/// Per newton of the load where that is not known.
+ShownRig shown_rig(const RigFit& rig);
 
 }  // namespace tribofit

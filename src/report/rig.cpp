@@ -10,33 +10,26 @@
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
-namespace {
 
-/// A quantity of the rig, in the unit people read.
-struct Shown {
-  const char* name;
-  RigValue value;
-  double si;         // of one unit
-  const char* unit;  // as a table shows it
-  const char* key;   // as JSON names it
-};
-
-std::array<Shown, 6> shown_values(const RigFit& rig) {
+ShownRig shown_rig(const RigFit& rig) {
   const bool per = rig.per_unit_load;
-  return {{{"mass", rig.mass, 1, per ? "kg/N" : "kg", per ? "mass_kg_per_N" : "mass_kg"},
-           {"damping", rig.damping, 1e3, per ? "s/mm" : "N s/mm", per ? "damping_s_per_mm" : "damping_N_s_per_mm"},
-           {"stiffness", rig.stiffness, 1e3, per ? "1/mm" : "N/mm", per ? "stiffness_per_mm" : "stiffness_N_per_mm"},
-           {"natural frequency", rig.natural_frequency, 1, "Hz", "natural_frequency_hz"},
-           {"damping ratio", rig.damping_ratio, 1, "1", "damping_ratio"},
-           {"stiffness by stick", rig.stick_slope_stiffness, 1e3, per ? "1/mm" : "N/mm",
-            per ? "stick_slope_stiffness_per_mm" : "stick_slope_stiffness_N_per_mm"}}};
+  const char *stiffness = per ? "1/mm" : "N/mm", *damping = per ? "s/mm" : "N s/mm";
+  return {{"mass", rig.mass, 1, per ? "kg/N" : "kg", per ? "mass_kg_per_N" : "mass_kg"},
+          {"damping", rig.damping, 1e3, damping, per ? "damping_s_per_mm" : "damping_N_s_per_mm"},
+          {"stiffness", rig.stiffness, 1e3, stiffness, per ? "stiffness_per_mm" : "stiffness_N_per_mm"},
+          {"natural frequency", rig.natural_frequency, 1, "Hz", "natural_frequency_hz"},
+          {"damping ratio", rig.damping_ratio, 1, "1", "damping_ratio"},
+          {"stiffness by stick", rig.stick_slope_stiffness, 1e3, stiffness,
+           per ? "stick_slope_stiffness_per_mm" : "stick_slope_stiffness_N_per_mm"}};
 }
+
+namespace {
 
 ReportTable rig_table(const RigFit& rig) {
   ReportTable table;
   table.text({"quantity"}).numbers({"value", "std error"}).numbers({"relative"}, 1).numbers({"95 % interval"});
   table.text({"unit", ""});
-  for (const Shown& q : shown_values(rig)) {
+  for (const ShownRigValue& q : shown_rig(rig).all()) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
     const int places = places_for(v.std_error / q.si);
@@ -86,10 +79,13 @@ Suggestion next_of(const RigIdentification& result, const TerminalOptions& optio
 
 std::string verdict_on(const RigFit& rig) {
   if (!rig.determined) return "The rig could not be identified: " + rig.reason + ".";
-  std::string text = fmt::format("The block is {} {} on {} {}; its natural frequency is {} Hz, its damping ratio {}.",
-                                 significant(rig.mass.value, 3), rig.per_unit_load ? "kg/N" : "kg",
-                                 significant(1e-3 * rig.stiffness.value, 3), rig.per_unit_load ? "1/mm" : "N/mm",
-                                 significant(rig.natural_frequency.value, 3), significant(rig.damping_ratio.value, 2));
+  const ShownRig shown = shown_rig(rig);
+  const auto text_of = [](const ShownRigValue& q, int digits) {
+    return significant(q.value.value / q.si, digits) + unit_behind(q.unit);
+  };
+  std::string text =
+      fmt::format("The block is {} on {}; its natural frequency is {}, its damping ratio {}.", text_of(shown.mass, 3),
+                  text_of(shown.stiffness, 3), text_of(shown.natural_frequency, 3), text_of(shown.damping_ratio, 2));
   if (rig.damping_doubtful) text += " Do not rely on the damping: a note says why.";
   return text;
 }
@@ -105,8 +101,8 @@ Json value_json(const RigValue& v, double si) {
 Json rig_json(const RigFit& rig) {
   Json json = object("determined", rig.determined, "reason", text_or_null(rig.reason), "per_unit_load",
                      rig.per_unit_load, "cycles", rig.cycles);
-  const auto values = shown_values(rig);
-  for (const Shown& q : values) json[q.key] = value_json(q.value, q.si);
+  const auto values = shown_rig(rig).all();
+  for (const ShownRigValue& q : values) json[q.key] = value_json(q.value, q.si);
   Json rows = Json::array();
   for (std::size_t i = 0; i < 3 && rig.mass.determined; ++i) {
     Json row = Json::array();

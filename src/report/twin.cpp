@@ -10,6 +10,7 @@
 #include "report_parts.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
+#include "tribofit/report/study.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/twin.hpp"
 
@@ -20,11 +21,12 @@ constexpr std::size_t kBins = 400;
 
 /// "0.84990 +/- 0.00022 kg, 16.1970 +/- 0.0021 N/mm, damping ratio ..., 21.9712 +/- 0.0025 Hz".
 std::string rig_text(const RigFit& rig) {
-  const std::string per = rig.per_unit_load ? "/N" : "";
-  return fmt::format("{} kg{}, {} N/mm{}, damping ratio {}, {} Hz", with_error(rig.mass.value, rig.mass.std_error), per,
-                     with_error(1e-3 * rig.stiffness.value, 1e-3 * rig.stiffness.std_error), per,
-                     with_error(rig.damping_ratio.value, rig.damping_ratio.std_error),
-                     with_error(rig.natural_frequency.value, rig.natural_frequency.std_error));
+  const ShownRig shown = shown_rig(rig);
+  const auto text = [](const ShownRigValue& q) {
+    return with_error(q.value.value / q.si, q.value.std_error / q.si) + unit_behind(q.unit);
+  };
+  return fmt::format("{}, {}, {} {}, {}", text(shown.mass), text(shown.stiffness), shown.damping_ratio.name,
+                     text(shown.damping_ratio), text(shown.natural_frequency));
 }
 
 /// "exponential: mu_s 0.5090 +/- 0.0012, ...".
@@ -109,7 +111,7 @@ std::string twin_verdict(const TwinIdentification& result) {
     return text + fmt::format(
                       " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
                       "floor, so an effect is not covered that comes and goes between them.",
-                      fit.error.held_out_rmse / fit.floor.rmse);
+                      over_floor(fit));
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
   return text + fmt::format(
@@ -123,12 +125,9 @@ std::vector<std::string> warnings_of(const TwinIdentification& result, const std
   std::vector<std::string> warnings = result.trace.warnings;
   if (!result.twin.reason.empty() || !result.law_falls_short()) return warnings;
   const Fit& fit = result.trace.fits.back();
-  warnings.insert(
-      warnings.begin(),
-      fmt::format("the {} law leaves {:.1f} times the noise floor of the record: its twin is that of another machine "
-                  "until the missing effect is found: {}",
-                  fit.model.name(), over_floor(fit),
-                  command_line(words_of({"diagnose"}, arguments), {result.trace.path})));
+  warnings.insert(warnings.begin(),
+                  other_machine_warning("its twin is", fit, over_floor(fit),
+                                        command_line(words_of({"diagnose"}, arguments), {result.trace.path})));
   return warnings;
 }
 

@@ -47,6 +47,28 @@ TEST(StudyCommand, WhatWouldMoreDampingDo) {
   EXPECT_GT(before["linear_ci95_mm_s"][1], before["linear_mm_s"][0]);
 }
 
+TEST(StudyCommand, TheDiagnosisItWarnsToRunReadsTheRecordAsItDid) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify("simulate --radius 15mm --duration 8s --rate 5kHz --noise-mu 0.003 --noise-v 0.02mm/s "
+                          "--effect frictional-lag:tau=2ms --out trace.csv")
+                .status,
+            0);
+  // What is of the study or of the machine does not belong to it.
+  const Outcome outcome = shop.identify(
+      "study phase --radius 15mm --load 50N --kind stick-slip --columns v_b=v_b_mm_s:mm/s --mass 0.9kg --at 4mm/s "
+      "--threads 1 trace.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out + outcome.err, HasSubstr("times the noise floor"));
+  std::string text = outcome.out + outcome.err;
+  for (const char* fold : {"\\\n", "\n"}) {
+    for (std::size_t at; (at = text.find(fold)) != std::string::npos;) text.replace(at, std::string(fold).size(), " ");
+  }
+  for (std::size_t at; (at = text.find("  ")) != std::string::npos;) text.erase(at, 1);
+  EXPECT_THAT(text,
+              HasSubstr("identify diagnose --radius 15mm --load 50N --columns v_b=v_b_mm_s:mm/s --kind stick-slip "
+                        "trace.csv"));
+}
+
 TEST(StudyCommand, AMassThatTheLawFindsBelowTheSensorSwingsWithTheBlock) {
   const Workshop shop;
   ASSERT_EQ(shop.identify("simulate --radius 15mm --duration 8s --rate 5kHz --noise-mu 0.003 --noise-v 0.02mm/s "

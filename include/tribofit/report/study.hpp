@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "tribofit/fit/fit.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
@@ -13,6 +15,10 @@
 #include "tribofit/study/sweep.hpp"
 
 namespace tribofit {
+
+/// Said first where law and rig stand for more than they were identified from: a law that leaves `ratio` times the
+/// noise floor describes another machine. subject: "its twin is"; command: the diagnosis of the record.
+std::string other_machine_warning(std::string_view subject, const Fit& fit, double ratio, const std::string& command);
 
 /// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.
 std::string render_study(const StudiedMachine& studied, const SpeedStudy& study, const TerminalOptions& options = {});

@@ -49,7 +49,8 @@ Json styles_json() {
     json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
   }
   json["heat"] = kHeatColours;
-  add_members(json, "grid", kGridColour, "axis", kAxisColour, "text", kTextColour);
+  add_members(json, "grid", kGridColour, "axis", kAxisColour, "text", kTextColour, "disc", kDiscColour, "sticking",
+              kStickingColour, "slipping", kSlippingColour);
   return json;
 }
 

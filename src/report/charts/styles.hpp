@@ -31,6 +31,10 @@ inline constexpr std::array<ColourStyle, 6> kColours = {{{"black", "#000000"},
                                                          {"grey", "#6b6b6b"}}};
 /// What is not data: lines of the grid, frames and marks, text.
 inline constexpr std::string_view kGridColour = "#e2e2e2", kAxisColour = "#444444", kTextColour = "#1b1b1b";
+/// Of the animation: the disc, and the block while it sticks and while it slips.
+inline constexpr std::string_view kDiscColour = "#dcdcdc", kStickingColour = "#cfe3f1", kSlippingColour = "#f7d9b0";
+/// About a sample of a shade in the key.
+inline constexpr std::string_view kKeyColour = "#bbbbbb";
 
 constexpr Paint ink(Colour colour) {
   return {kColours[static_cast<std::size_t>(colour)].rgb};

@@ -43,7 +43,7 @@ function blockScene(block, animation, bounds) {
     "aria-label": `${block.name}: block on its disc, displacement from ${low} to ${high} mm` },
   label(s.wall, 20, block.name, "start", { "font-size": 14, "font-weight": 600 }),
   svgPart("path", { d: `M${s.wall},40V${s.deck}`, stroke: styles.colours.black, "stroke-width": 4 }), spring, body, word,
-  svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: "#dcdcdc", stroke: styles.colours.black }), marks,
+  svgPart("rect", { x: 0, y: s.deck, width: s.width, height: 14, fill: styles.disc, stroke: styles.colours.black }), marks,
   label(s.width - 4, s.deck + 28, `disc ${number(animation.disc_velocity, 3)} mm/s \u2192`, "end"),
   svgPart("path", { d: `M${points.join("L")}`, fill: "none", stroke: styles.colours.blue, "stroke-width": 1.4 }),
   svgPart("path", { d: `M${s.plotLeft},${s.plotTop - 4}V${s.plotBottom}H${s.plotRight}`, fill: "none", stroke: styles.axis }),
@@ -56,7 +56,7 @@ function blockScene(block, animation, bounds) {
     const left = s.rest + (now.displacement - bounds.low) * scale - s.block / 2;
     spring.setAttribute("d", springPath(s.wall, left, s.deck - 17));
     body.setAttribute("x", left);
-    body.setAttribute("fill", now.sticks ? "#cfe3f1" : "#f7d9b0");
+    body.setAttribute("fill", now.sticks ? styles.sticking : styles.slipping);
     word.setAttribute("x", left + s.block / 2);
     word.textContent = now.sticks ? "sticks" : "slips";
     const pitch = 42, shift = (time * animation.disc_velocity * scale) % pitch;

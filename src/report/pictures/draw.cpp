@@ -181,7 +181,7 @@ class Drawing {
     const Area box{key.x, key.y - kHalf, kKeySample, 2 * kHalf};
     if (key.stretch != nullptr) {
       canvas_.fill_path(box.corners(), style_of(key.stretch->shade, kShades).paint);
-      canvas_.stroke_path(closed(box.corners()), {{"#bbbbbb"}, 0.5});
+      canvas_.stroke_path(closed(box.corners()), {{kKeyColour}, 0.5});
     }
     if (key.bars != nullptr) draw_box(canvas_, box, key.bars->colour, key.bars->hatched);
     if (key.band != nullptr) canvas_.fill_path(box.corners(), pale(key.band->stroke.colour));
