@@ -77,7 +77,7 @@ std::vector<double> velocities_from(const std::string& text, std::size_t count, 
     throw InputError("--range: '" + text + "' is not a range", "write it as 1mm/s..20mm/s or 1rpm..8rpm");
   const double low = velocity_from(ends[0], machine, "--range"), high = velocity_from(ends[1], machine, "--range");
   if (!(high > low)) throw InputError("--range: '" + text + "' does not rise", "write the lower speed first");
-  return spread(low, high, count);
+  return evenly_spaced(low, high, count);
 }
 
 /// "stiffness=8N/mm..20N/mm:100"; what is left out is half to twice the machine's own value, and 40 values.
@@ -111,7 +111,7 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
   }
   if (count < 2 || count > kMost) throw bad(fmt::format("{} values; 2 to {} are possible", count, kMost));
   if (!(high > low)) throw bad("the range does not rise");
-  axis.values = spread(low, high, count);
+  axis.values = evenly_spaced(low, high, count);
   return axis;
 }
 

@@ -7,7 +7,7 @@ namespace tribofit::diagnosis {
 namespace {
 
 /// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
-bool bends(const DiagnosisContext& context, const Trial& trial) {
+bool falls_or_levels_off(const DiagnosisContext& context, const Trial& trial) {
   const Law& law = trial.model.law();
   const double fastest = context.fine.observations.fastest;
   const bool falls = friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest);
@@ -42,7 +42,7 @@ std::size_t reported_ladder(const DiagnosisContext& context, const std::vector<L
   std::vector<std::size_t> index = {static_cast<std::size_t>(coulomb - ladders.begin())};
   for (std::size_t k = 0; k < ladders.size(); ++k) {
     const Trial& top = ladders[k].top();
-    if (k == index[0] || !top.usable || !bends(context, top)) continue;
+    if (k == index[0] || !top.usable || !falls_or_levels_off(context, top)) continue;
     worthy.push_back(ladders[k]);
     index.push_back(k);
   }

@@ -10,7 +10,7 @@
 
 namespace tribofit::diagnosis {
 
-/// One effect that may be missing.
+/// One effect that may explain the error.
 struct Candidate {
   Effect effect;
   EffectInfo info;

@@ -274,7 +274,7 @@ std::string_view to_string(EffectStatus status) {
       return "possible";
     case EffectStatus::superseded:
       return "superseded";
-    case EffectStatus::unsupported:
+    case EffectStatus::not_supported:
       return "unsupported";
     case EffectStatus::untestable:
       break;
@@ -284,7 +284,7 @@ std::string_view to_string(EffectStatus status) {
 
 std::string_view status_text(EffectStatus status) {
   if (status == EffectStatus::found) return "found";
-  return status == EffectStatus::unsupported ? "not supported by the data" : to_string(status);
+  return status == EffectStatus::not_supported ? "not supported by the data" : to_string(status);
 }
 
 Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& given, const std::vector<Effect>& own,

@@ -13,13 +13,13 @@
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
-#include "hidden_load.hpp"
 #include "imitations.hpp"
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
+#include "unrecorded_load.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -161,8 +161,8 @@ void describe_last_trial(const FindingInputs& in, const LastResult& last, Effect
   finding.error_reduction = reduction(in, before, squared);
 }
 
-/// All that stands against a candidate that is no chance is that a parameter of it would go beyond its bound: something
-/// that acts like it remains. (Not where the instruments file or the end of the record is against it.)
+/// The candidate is significant, and all that is against it is that a parameter of it would go beyond its bound:
+/// something that acts like it remains. (Not where the instruments file or the end of the record is against it.)
 bool acts_beyond_bounds(const Candidate& candidate, const CandidateResult& judged) {
   const Trial& trial = judged.trial;
   const std::size_t offset = trial.model.offset_of(candidate.info.key);
@@ -188,11 +188,11 @@ bool is_possible(const FindingInputs& in, std::size_t k, const LastResult& last)
 
 /// Status and reason of a candidate that may not be on the ladder.
 void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last, EffectFinding& finding) {
-  finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::unsupported;
+  finding.status = last.ever_passed ? EffectStatus::superseded : EffectStatus::not_supported;
   finding.reason = last.ever_passed         ? "another effect explains the same error better"
                    : last.judged != nullptr ? why_not(*last.judged, in.all[k], in.context.fine.observations)
                                             : "screening predicts no fall of the held-out error";
-  if (finding.status == EffectStatus::unsupported && is_possible(in, k, last)) {
+  if (finding.status == EffectStatus::not_supported && is_possible(in, k, last)) {
     finding.status = EffectStatus::possible;
     finding.reason =
         last.judged->plausible
@@ -202,7 +202,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
                   fmt::format("{:.2g}); to decide: {}", last.judged->p_value, in.all[k].info.experiment);
   }
   if (!contains(in.ladder.withdrawn, k)) return;
-  finding.status = EffectStatus::unsupported;
+  finding.status = EffectStatus::not_supported;
   finding.reason = "the error left over its variable is larger than what it explains";
 }
 

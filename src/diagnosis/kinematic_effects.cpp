@@ -73,7 +73,7 @@ void share_plateau(const Motion& motion, const Instruments& instruments, const E
                    const std::string& corrected, EffectFinding& finding) {
   const bool known =
       plateau_says(instruments, motion.conditions, motion.corrected_ratio).rules_out(other.plateau_correction);
-  finding.status = known ? EffectStatus::unsupported : EffectStatus::equivalent;
+  finding.status = known ? EffectStatus::not_supported : EffectStatus::equivalent;
   finding.reason =
       known ? "the instruments file leaves no room for it" : "with these data not distinguishable from " + corrected;
 }
@@ -132,7 +132,7 @@ EffectFinding not_found(const EffectInfo& info, std::span<const Record> records)
   EffectFinding finding;
   finding.key = info.key;
   finding.held_out_rmse = finding.error_reduction = finding.p_value = kNotFitted;
-  finding.status = EffectStatus::unsupported;
+  finding.status = EffectStatus::not_supported;
   finding.reason = info.needs.plateau ? "the plateau of stick does not show it" : "re-stick does not show it";
   if (const std::string why = obstacle(info, records); !why.empty()) {
     finding.status = EffectStatus::untestable;

@@ -41,7 +41,7 @@ class ModelResiduals final : public Residuals {
  public:
   struct Options {
     Loss loss = Loss::squares;
-    double loss_width = 0;  ///< where the loss bends, for a single sample [1 or N]
+    double loss_width = 0;  ///< where the loss turns from squares to a line, for a single sample [1 or N]
   };
 
   /// How break-away scatter is taken out.

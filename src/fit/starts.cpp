@@ -25,7 +25,7 @@ double mean_break_away(const Observations& observations) {
 
 constexpr std::size_t kBins = 80;
 
-/// Finer near v = 0, where laws bend.
+/// Finer near v = 0, where laws are most curved.
 std::size_t bin_of(const Observations& observations, std::size_t i) {
   const double place =
       observations.fastest > 0 ? std::sqrt(std::abs(observations.velocity[i]) / observations.fastest) : 0;

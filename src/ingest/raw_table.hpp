@@ -72,7 +72,7 @@ struct RawColumn {
   std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
 };
 
-/// A cell that holds no number of a usable size: its value is NaN.
+/// A cell that is not a number of a usable size: its value is NaN.
 struct RawDefect {
   std::size_t row = 0, column = 0;
   std::string problem, advice;

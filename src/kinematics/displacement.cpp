@@ -45,7 +45,8 @@ void note_window(const char* what, std::size_t half, double step, std::vector<st
 /// Of a drive that was not recorded: it stands still.
 LocalDerivatives at_rest(std::size_t n) {
   LocalDerivatives out;
-  for (auto* part : {&out.value, &out.slope, &out.bend, &out.slope_std_error, &out.bend_std_error})
+  for (auto* part :
+       {&out.value, &out.slope, &out.second_derivative, &out.slope_std_error, &out.second_derivative_std_error})
     part->assign(n, 0.0);
   return out;
 }
@@ -114,14 +115,15 @@ Balance balance_forces(const LocalDerivatives& x, const LocalDerivatives& y, Tra
   const double m = trace.spring.mass.value, k = trace.spring.stiffness.value;
   const double c = trace.spring.damping.known() ? trace.spring.damping.value : 0;
   const std::size_t n = trace.size();
-  Balance out{x.bend, std::vector<double>(n)};
+  Balance out{x.second_derivative, std::vector<double>(n)};
   trace.friction.resize(n);
   trace.friction_std_error.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     out.stretch[i] = x.value[i] - y.value[i];
-    trace.friction[i] = -(m * x.bend[i] + c * (x.slope[i] - y.slope[i]) + k * out.stretch[i]);
+    trace.friction[i] = -(m * x.second_derivative[i] + c * (x.slope[i] - y.slope[i]) + k * out.stretch[i]);
     const double of_slopes = c * std::hypot(x.slope_std_error[i], y.slope_std_error[i]);
-    trace.friction_std_error[i] = std::hypot(m * x.bend_std_error[i], std::hypot(of_slopes, k * x.noise, k * y.noise));
+    trace.friction_std_error[i] =
+        std::hypot(m * x.second_derivative_std_error[i], std::hypot(of_slopes, k * x.noise, k * y.noise));
   }
   return out;
 }

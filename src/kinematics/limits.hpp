@@ -207,7 +207,8 @@ inline constexpr double kJumpsPerPlateau = 0.1;
 // ---- derivatives of the pull of a spring
 
 /// Part of the natural period to either side of a sample: a polynomial of fourth degree follows a sixth of a sine to
-/// 1e-4 in its slope and 1e-3 in its bend; wider, slips are rounded; narrower, noise grows with the power -5/2.
+/// 1e-4 in its slope and 1e-3 in its second derivative; wider, slips are rounded; narrower, noise grows with the power
+/// -5/2.
 inline constexpr double kPartOfPeriod = 1.0 / 12;
 /// Samples to either side: fewer leave no degree of freedom that would show a kink; more cost time for nothing.
 inline constexpr std::size_t kShortestHalf = 4, kWidestHalf = 500;

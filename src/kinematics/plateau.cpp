@@ -29,7 +29,7 @@ double half_sample_mode(std::span<const double> sorted) {
 }
 
 // How far the middle of a plateau stands out from its shoulders.
-double bend_of(std::span<const double> run) {
+double curvature_of(std::span<const double> run) {
   const std::size_t n = run.size(), eighth = std::max<std::size_t>(1, n / 8);
   const auto middle = run.subspan(n / 2 - std::min(n / 2, eighth), 2 * eighth);
   const auto left = run.subspan(eighth / 2, 2 * eighth);
@@ -41,13 +41,13 @@ double bend_of(std::span<const double> run) {
 /// its middle stands out, over the band.
 struct FlatRuns {
   std::vector<StickPlateau> runs;
-  double bend = 0, length = 0;
+  double curvature = 0, length = 0;
   std::size_t level = 0, within = 0;  ///< blocks that are flat, of those within the band
 };
 
 FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_band, double flatness) {
   FlatRuns flat;
-  std::vector<double> bends, lengths;
+  std::vector<double> curvatures, lengths;
   for (std::size_t i = 0; i < velocity.size();) {
     if (std::abs(velocity[i] - mode) > half_band) {
       ++i;
@@ -59,26 +59,26 @@ FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_ba
     if (run.size() < kFewestBlocks) continue;
     lengths.push_back(static_cast<double>(run.size()));
     flat.within += run.size();
-    const double bend = bend_of(velocity.subspan(run.begin, run.size())) / (2 * half_band);
-    if (bend >= flatness) continue;
+    const double curvature = curvature_of(velocity.subspan(run.begin, run.size())) / (2 * half_band);
+    if (curvature >= flatness) continue;
     run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
     flat.runs.push_back(run);
     flat.level += run.size();
-    bends.push_back(bend);
+    curvatures.push_back(curvature);
   }
-  if (!bends.empty()) flat.bend = median(std::move(bends));
+  if (!curvatures.empty()) flat.curvature = median(std::move(curvatures));
   if (!lengths.empty()) flat.length = median(std::move(lengths));
   return flat;
 }
 
 /// Noise of neighbours in the middle of runs.
 double noise_within(std::span<const double> velocity, const std::vector<StickPlateau>& runs) {
-  std::vector<double> bends;
+  std::vector<double> curvatures;
   for (const StickPlateau& run : runs) {
     for (std::size_t i = run.inner_begin() + 1; i + 1 < run.inner_end(); ++i)
-      bends.push_back(std::abs(velocity[i - 1] - 2 * velocity[i] + velocity[i + 1]));
+      curvatures.push_back(std::abs(velocity[i - 1] - 2 * velocity[i] + velocity[i + 1]));
   }
-  return bends.empty() ? 0 : kSigmaPerMad * median(std::move(bends)) / std::sqrt(6.0);
+  return curvatures.empty() ? 0 : kSigmaPerMad * median(std::move(curvatures)) / std::sqrt(6.0);
 }
 
 /// In a band that is wide for a short stick the beginning of the slip belongs to the run: a narrower one leaves it out.
@@ -86,7 +86,7 @@ double noise_within(std::span<const double> velocity, const std::vector<StickPla
 std::vector<StickPlateau> runs_about(std::span<const double> velocity, double mode, double half_band) {
   FlatRuns wide = flat_runs(velocity, mode, half_band, kFlatness);
   const bool are_long = static_cast<double>(wide.within) > kLongSticks * static_cast<double>(velocity.size());
-  if (are_long || (2 * wide.level > wide.within && wide.bend < kClearlyFlat)) return std::move(wide.runs);
+  if (are_long || (2 * wide.level > wide.within && wide.curvature < kClearlyFlat)) return std::move(wide.runs);
   double length = wide.length;
   for (double band = kNarrower * half_band; band > kNarrowestBand * half_band; band *= kNarrower) {
     FlatRuns narrow = flat_runs(velocity, mode, band, HUGE_VAL);

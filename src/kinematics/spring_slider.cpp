@@ -78,10 +78,10 @@ Stretches stretches_of(const std::vector<bool>& slips, std::size_t reach) {
   return out;
 }
 
-/// Where the slider slips throughout a stretch: pull, slope and bend as means over it with the same weights, of which
-/// the force balance holds exactly. Stretches with a part of a stick show no law of sliding, and are not used; where
-/// most of the slips are such, all stays as it is. Errors of the velocity stay those of the wider window, by which
-/// stick is distinguished from slip.
+/// Where the slider slips throughout a stretch: pull, slope and second derivative as means over it with the same
+/// weights, for which the force balance is exact. Stretches with a part of a stick show no law of sliding, and are not
+/// used; where most of the slips are such, all stays as it is. Errors of the velocity stay those of the wider window,
+/// by which stick is distinguished from slip.
 void smooth_alike(const LocalDerivatives& pull, const std::vector<double>& raw, std::size_t half, double unit,
                   Trace& trace) {
   if (!trace.spring.velocity.known()) return;
@@ -93,16 +93,17 @@ void smooth_alike(const LocalDerivatives& pull, const std::vector<double>& raw, 
   const double unsure = 2 * kUnsure * usual_error(trace.velocity_std_error);
   trace.smoothing = std::sqrt(mean.variance);
   trace.velocity_variance.assign(trace.size(), 0.0);
-  trace.acceleration = pull.bend;
+  trace.acceleration = pull.second_derivative;
   for (double& a : trace.acceleration) a *= to_speed;
   for (const std::size_t i : stretches.mixed)
     trace.velocity_std_error[i] = std::max(trace.velocity_std_error[i], unsure);
   for (const std::size_t i : stretches.whole) {
     trace.velocity[i] = to_speed * mean.slope[i];
-    trace.acceleration[i] = to_speed * mean.bend[i];
+    trace.acceleration[i] = to_speed * mean.second_derivative[i];
     trace.friction[i] = mean.value[i] + mass * trace.acceleration[i];
     trace.velocity_variance[i] = mean.variance * trace.acceleration[i] * trace.acceleration[i];
-    trace.friction_std_error[i] = pull.noise * std::hypot(mean.value_gain, mass * to_speed * mean.bend_gain);
+    trace.friction_std_error[i] =
+        pull.noise * std::hypot(mean.value_gain, mass * to_speed * mean.second_derivative_gain);
   }
 }
 
@@ -134,8 +135,8 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
     trace.velocity[i] = to_speed * pull.slope[i];
     trace.velocity_std_error[i] = to_speed * pull.slope_std_error[i];
     raw[i] = trace.friction[i];
-    trace.friction[i] += inertia * pull.bend[i];
-    trace.friction_std_error[i] = std::hypot(pull.noise, inertia * pull.bend_std_error[i]);
+    trace.friction[i] += inertia * pull.second_derivative[i];
+    trace.friction_std_error[i] = std::hypot(pull.noise, inertia * pull.second_derivative_std_error[i]);
   }
   smooth_alike(pull, raw, half, unit, trace);
   notes.push_back(

@@ -260,16 +260,16 @@ StickFriction friction_at(const Motion& motion, SampleRange stick, double time, 
   }
   const auto friction = std::span<const double>(motion.friction).subspan(begin, end - begin);
   Parabola parabola = fit_parabola(friction);
-  const double n = parabola.count, bend_norm = parabola.bend_norm();
-  if (n <= 3) parabola.bend = 0;
+  const double n = parabola.count, curvature_norm = parabola.curvature_norm();
+  if (n <= 3) parabola.curvature = 0;
   const Remainder left = remainder_about(parabola, friction);
   const double variance = left.squares / std::max(1.0, n - 3) * variance_inflation(left.correlation(0.98));
   const double x = (time - motion.time[begin]) / motion.step - parabola.centre();
   double factor = 1 / n + x * x / parabola.line_norm();
-  const bool is_bent = n > 20 && parabola.bend * parabola.bend * bend_norm > 25 * variance;
-  if (is_bent) factor += std::pow(x * x - parabola.shift(), 2) / bend_norm;
+  const bool is_curved = n > 20 && parabola.curvature * parabola.curvature * curvature_norm > 25 * variance;
+  if (is_curved) factor += std::pow(x * x - parabola.shift(), 2) / curvature_norm;
   const double line = parabola.mean + parabola.slope * x;
-  result.value = direction * (is_bent ? parabola.at(x) : line);
+  result.value = direction * (is_curved ? parabola.at(x) : line);
   result.std_error = std::sqrt(variance * factor);
   result.slope = direction * parabola.slope / motion.step;
   return result;

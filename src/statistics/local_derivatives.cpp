@@ -120,7 +120,7 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
   const std::size_t n = signal.size();
   LocalDerivatives out;
   out.value.assign(signal.begin(), signal.end());
-  for (auto* derivative : {&out.slope, &out.bend, &out.slope_std_error, &out.bend_std_error})
+  for (auto* derivative : {&out.slope, &out.second_derivative, &out.slope_std_error, &out.second_derivative_std_error})
     derivative->assign(n, 0.0);
   if (n < kFewest) return out;
   half = std::clamp<std::size_t>(half, kFewest / 2, (n - 1) / 2);
@@ -159,9 +159,9 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
     const double* samples = &signal[i - best->at];
     out.value[i] = weighed_sum(best->weights[0], samples);
     out.slope[i] = weighed_sum(best->weights[1], samples) / step;
-    out.bend[i] = weighed_sum(best->weights[2], samples) / (step * step);
+    out.second_derivative[i] = weighed_sum(best->weights[2], samples) / (step * step);
     out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
-    out.bend_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
+    out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
   }
   return out;
 }

@@ -8,9 +8,9 @@ namespace tribofit {
 
 /// A sampled signal with its first two derivatives and their standard errors.
 struct LocalDerivatives {
-  double noise = 0;                        ///< standard deviation of a sample
-  std::vector<double> value, slope, bend;  ///< of the signal, d/dt, d^2/dt^2
-  std::vector<double> slope_std_error, bend_std_error;
+  double noise = 0;                                     ///< standard deviation of a sample
+  std::vector<double> value, slope, second_derivative;  ///< of the signal, d/dt, d^2/dt^2
+  std::vector<double> slope_std_error, second_derivative_std_error;
 };
 
 /// Derivatives by local polynomials of least squares over 2 half + 1 samples at a distance of `step` (A. Savitzky, M.

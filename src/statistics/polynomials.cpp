@@ -80,7 +80,7 @@ Parabola fit_parabola(std::span<const double> samples) {
   }
   out.mean = origin + s0 / out.count;
   if (samples.size() > 1) out.slope = s1 / out.line_norm();
-  if (samples.size() > 2) out.bend = s2 / out.bend_norm();
+  if (samples.size() > 2) out.curvature = s2 / out.curvature_norm();
   return out;
 }
 
@@ -93,8 +93,8 @@ Remainder remainder_about(const Parabola& parabola, std::span<const double> samp
 }
 
 double peak_between(double before, double middle, double after) {
-  const double bend = before - 2 * middle + after;
-  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
+  const double curvature = before - 2 * middle + after;
+  return curvature < 0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0;
 }
 
 std::vector<double> slope_weights(std::size_t left, std::size_t right) {

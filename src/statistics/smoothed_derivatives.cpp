@@ -43,16 +43,16 @@ SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double 
   const Weights weights = bell(half);
   const Weights value = over(weights, {1.0 / 12, 10.0 / 12, 1.0 / 12});
   const Weights slope = over(weights, {-0.5 / step, 0, 0.5 / step});
-  const Weights bend = over(weights, {1 / (step * step), -2 / (step * step), 1 / (step * step)});
+  const Weights second_derivative = over(weights, {1 / (step * step), -2 / (step * step), 1 / (step * step)});
   const std::size_t n = signal.size();
   SmoothedDerivatives out;
   out.value.assign(signal.begin(), signal.end());
   out.slope.assign(n, 0.0);
-  out.bend.assign(n, 0.0);
+  out.second_derivative.assign(n, 0.0);
   out.reach = half + 1;
   out.value_gain = norm(value);
   out.slope_gain = norm(slope);
-  out.bend_gain = norm(bend);
+  out.second_derivative_gain = norm(second_derivative);
   constexpr double kOfTriangle = 1.0 / 6;
   out.variance = kOfTriangle * step * step;
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -65,11 +65,11 @@ SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double 
       const double x = signal[i - out.reach + k];
       v += value[k] * x;
       s += slope[k] * x;
-      b += bend[k] * x;
+      b += second_derivative[k] * x;
     }
     out.value[i] = v;
     out.slope[i] = s;
-    out.bend[i] = b;
+    out.second_derivative[i] = b;
   }
   return out;
 }

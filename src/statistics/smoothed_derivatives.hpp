@@ -9,10 +9,10 @@ namespace tribofit {
 /// A sampled signal and its first two derivatives, all three as means over the same short stretch with the same
 /// weights: what is linear in signal and derivatives holds of the means exactly, however fast the signal turns.
 struct SmoothedDerivatives {
-  std::vector<double> value, slope, bend;                ///< of the signal, d/dt, d^2/dt^2
-  double variance = 0;                                   ///< of the weights over time [s^2]
-  double value_gain = 0, slope_gain = 0, bend_gain = 0;  ///< standard error of each over that of a sample
-  std::size_t reach = 0;                                 ///< samples to either side that a mean takes
+  std::vector<double> value, slope, second_derivative;                ///< of the signal, d/dt, d^2/dt^2
+  double variance = 0;                                                ///< of the weights over time [s^2]
+  double value_gain = 0, slope_gain = 0, second_derivative_gain = 0;  ///< standard error of each over that of a sample
+  std::size_t reach = 0;                                              ///< samples to either side that a mean takes
 };
 
 /// Weights are a bell (Gaussian with a third of `half` as its standard deviation, cut at `half`) over the triangle of

@@ -50,7 +50,7 @@ Response study_response(const Machine& machine, std::size_t harmonics, const Set
   out.amplitude_at_rest = out.force / rig.stiffness;
   out.amplitude_at_natural = out.force / (rig.damping * natural);
   constexpr std::size_t kPoints = 400;
-  out.frequency = spread(0.05 * out.natural_frequency, 5 * out.natural_frequency, kPoints, true);
+  out.frequency = evenly_spaced(0.05 * out.natural_frequency, 5 * out.natural_frequency, kPoints, true);
   for (const double f : out.frequency) {
     const double w = 2 * std::numbers::pi * f;
     out.amplitude.push_back(out.force / std::hypot(rig.stiffness - rig.mass * w * w, rig.damping * w));

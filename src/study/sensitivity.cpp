@@ -38,7 +38,7 @@ std::vector<Sensitivity> study_sensitivity(const Machine& machine, const Sensiti
     if (one.base == 0) {
       throw InputError("'" + name + "' is zero and cannot be varied in proportion", "give it a value first");
     }
-    one.values = spread(one.base / options.factor, one.base * options.factor, options.count, true);
+    one.values = evenly_spaced(one.base / options.factor, one.base * options.factor, options.count, true);
     if (name == "ratio") std::erase_if(one.values, [](double r) { return r > 1; });
     one.settled = sweep(machine, name, one.values, options.settle, options.threads);
     constexpr double kStep = 0.01;

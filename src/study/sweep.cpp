@@ -16,7 +16,7 @@ std::vector<double> default_velocities(const Machine& machine, const CriticalSpe
   double highest = 2 * own;
   for (const double v : critical.linear) highest = std::max(highest, 1.2 * v);
   if (!std::isnan(critical.stick_vanishes)) highest = std::max(highest, 1.2 * critical.stick_vanishes);
-  return spread(0.1 * own, highest, count, highest > 20 * own);
+  return evenly_spaced(0.1 * own, highest, count, highest > 20 * own);
 }
 
 double last_or_nan(const std::vector<double>& values) {
@@ -25,7 +25,7 @@ double last_or_nan(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<double> spread(double low, double high, std::size_t count, bool logarithmic) {
+std::vector<double> evenly_spaced(double low, double high, std::size_t count, bool logarithmic) {
   std::vector<double> out(count, low);
   for (std::size_t i = 1; i < count; ++i) {
     const double part = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -78,13 +78,13 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
     std::vector<double> values;
     values.reserve(list.size());
     for (const auto& one : list) values.push_back(number(one));
-    return range_of(std::move(values));
+    return interval95_of(std::move(values));
   };
-  out.linear_range = over_draws(criticals, [](const CriticalSpeed& c) { return last_or_nan(c.linear); });
-  out.vanishes_range = over_draws(criticals, [](const CriticalSpeed& c) { return c.stick_vanishes; });
-  out.returns_range = over_draws(criticals, [](const CriticalSpeed& c) { return c.stick_returns; });
+  out.linear_interval = over_draws(criticals, [](const CriticalSpeed& c) { return last_or_nan(c.linear); });
+  out.vanishes_interval = over_draws(criticals, [](const CriticalSpeed& c) { return c.stick_vanishes; });
+  out.returns_interval = over_draws(criticals, [](const CriticalSpeed& c) { return c.stick_returns; });
   for (const MeasureInfo& measure : measures()) {
-    out.own_ranges.push_back(over_draws(settled, [&](const Settled& s) { return s.*measure.value; }));
+    out.own_intervals.push_back(over_draws(settled, [&](const Settled& s) { return s.*measure.value; }));
   }
   return out;
 }

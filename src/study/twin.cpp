@@ -80,7 +80,7 @@ double noise_colour(const Motion& motion, const Segmentation& segmentation) {
     const std::span<const double> piece =
         std::span(motion.friction).subspan(cycle.stick.begin + cycle.stick.size() / 4, n);
     Parabola line = fit_parabola(piece);
-    line.bend = 0;
+    line.curvature = 0;
     all += remainder_about(line, piece);
   }
   return all.correlation(kMostNoiseCorrelation);

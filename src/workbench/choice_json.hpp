@@ -22,7 +22,7 @@ FrictionModel model_of(const WorkbenchChoice& choice);
 std::vector<Effect> effects_of(const WorkbenchChoice& choice);
 
 Json choice_json(const WorkbenchChoice& choice);
-/// Throws InputError for what is no choice: unknown names and values that are no numbers.
+/// Throws InputError for what is not a choice: unknown names and values that are not numbers.
 WorkbenchChoice choice_from(const Json& json);
 
 /// The part of the command line that says the choice.

@@ -323,9 +323,9 @@ TEST(Findings, SayWhatBecameOfEveryCandidate) {
 
   EXPECT_EQ(finding_of(found, "channel-delay").status, EffectStatus::equivalent);
   EXPECT_THAT(finding_of(found, "channel-delay").reason, HasSubstr("frictional-lag"));
-  EXPECT_EQ(finding_of(found, "viscous").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "viscous").status, EffectStatus::not_supported);
   EXPECT_THAT(finding_of(found, "viscous").reason, HasSubstr("plausible"));
-  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::not_supported);
   EXPECT_THAT(finding_of(found, "drift").reason, HasSubstr("0.4"));
   EXPECT_EQ(finding_of(found, "runout").status, EffectStatus::untestable);
   EXPECT_EQ(finding_of(found, "runout").reason, all[4].untestable);
@@ -340,7 +340,7 @@ TEST(Findings, AWithdrawnEffectIsNotFound) {
   ladder.last = {result(all, 0, 1e-9, true), result(all, 1, 0.5, false)};
   ladder.withdrawn = {0};
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
-  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::not_supported);
   EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("left over its variable is larger than what it explains"));
 }
 
@@ -364,9 +364,9 @@ TEST(Findings, WhatMayExplainMuchAndIsNotProvenIsPossible) {
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
   EXPECT_EQ(finding_of(found, "viscous").status, EffectStatus::possible);
   EXPECT_THAT(finding_of(found, "viscous").reason, HasSubstr(all[0].info.experiment)) << "what would prove it";
-  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::unsupported);
-  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::unsupported) << "what it explains may well be chance";
-  EXPECT_EQ(finding_of(found, "heating").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(found, "drift").status, EffectStatus::not_supported);
+  EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::not_supported) << "what it explains may well be chance";
+  EXPECT_EQ(finding_of(found, "heating").status, EffectStatus::not_supported);
   EXPECT_EQ(finding_of(found, "asymmetry").status, EffectStatus::possible) << "its bounds alone are against it";
 }
 

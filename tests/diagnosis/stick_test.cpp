@@ -137,7 +137,7 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
     const EffectFinding spin = finding_of(result, "contact-spin");
     ASSERT_EQ(spin.status, EffectStatus::found) << colour << ": " << spin.reason;
     EXPECT_NEAR(spin.parameters[0].value, 0.5e-3, 0.05e-3);
-    EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::unsupported);
+    EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::not_supported);
     EXPECT_EQ(finding_of(result, "bristle").status == EffectStatus::found, false);
     const auto& where = result.diagnosis.where;
     EXPECT_TRUE(std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == "stick"; }));
@@ -147,8 +147,8 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
 TEST(StickEvidence, AWrongRadiusIsNoCreep) {
   const DiagnosedTraces result = diagnose_hidden("radius-offset", {0.97}, 0.9);
   EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::found);
-  EXPECT_EQ(finding_of(result, "contact-spin").status, EffectStatus::unsupported);
-  EXPECT_EQ(finding_of(result, "bristle").status, EffectStatus::unsupported);
+  EXPECT_EQ(finding_of(result, "contact-spin").status, EffectStatus::not_supported);
+  EXPECT_EQ(finding_of(result, "bristle").status, EffectStatus::not_supported);
 }
 
 TEST(StickEvidence, RigidMemoriesAreNoBristle) {

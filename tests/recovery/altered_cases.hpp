@@ -10,7 +10,7 @@
 namespace tribofit::altered {
 
 /// Swings or steps of a load that nobody recorded: friction is Ft over the nominal load.
-struct HiddenLoad {
+struct UnrecordedLoad {
   double swing = 0, period = 1;  ///< [1] of the load, [s]
   double step = 0;               ///< [1] of the load, from the middle of the record on
 };
@@ -22,7 +22,7 @@ struct AlteredCase {
   double slower = 1;  ///< the same record of a rig so many times slower
   Alter apply;
   std::vector<std::string> may_name;  ///< effects that are what was done, or what these data cannot tell from it
-  HiddenLoad load = {};
+  UnrecordedLoad load = {};
   Instruments instruments = {};
 };
 

@@ -16,14 +16,14 @@ namespace tribofit::altered {
 namespace {
 
 /// A record under a load that moves, which its friction channel shows as Ft over the nominal load.
-Trace under_hidden_load(const truth::Rig& rig, const HiddenLoad& hidden) {
+Trace under_unrecorded_load(const truth::Rig& rig, const UnrecordedLoad& load) {
   const Rig machine{rig.mass, 2 * rig.zeta * std::sqrt(rig.mass * rig.stiffness), rig.stiffness};
   Drive drive;
   drive.speed = constant_speed(rig.speed());
   drive.radius = rig.radius, drive.mean_load = rig.load;
   drive.load = [=](double t) {
-    const double w = 2 * std::numbers::pi / hidden.period;
-    return rig.load * (1 + hidden.swing * std::sin(w * t) + (t > 0.5 * rig.duration ? hidden.step : 0));
+    const double w = 2 * std::numbers::pi / load.period;
+    return rig.load * (1 + load.swing * std::sin(w * t) + (t > 0.5 * rig.duration ? load.step : 0));
   };
   const std::vector<double> truth = {rig.static_friction, rig.kinetic_friction, rig.decay};
   SimulationOptions options;
@@ -104,7 +104,7 @@ std::string wrong_names(const Diagnosis& diagnosis, const std::vector<std::strin
 
 Judged judge(const AlteredCase& what) {
   Judged judged;
-  Trace trace = what.load.swing != 0 || what.load.step != 0 ? under_hidden_load(what.rig, what.load)
+  Trace trace = what.load.swing != 0 || what.load.step != 0 ? under_unrecorded_load(what.rig, what.load)
                                                             : truth::simulate(what.rig).trace;
   Random random(what.rig.seed);
   if (what.apply) what.apply(trace, random);

@@ -133,7 +133,7 @@ inline DiagnosedTraces made_up_diagnosis() {
   d.floor_rmse = 0.0031;
   d.effects = {
       {"runout", EffectStatus::found, 0.0032, 0.99, 1e-6, {fit.parameters[3], fit.parameters[4]}, "it is periodic"},
-      {"drift", EffectStatus::unsupported, 0.0088, 0, 0.7, {}, "takes nothing away"},
+      {"drift", EffectStatus::not_supported, 0.0088, 0, 0.7, {}, "takes nothing away"},
       {"heating", EffectStatus::superseded, 0.008, 0.1, 0.01, {}, "helps alone only"},
       {"load-dependence", EffectStatus::untestable, unknown, unknown, unknown, {}, "there is no load channel"},
       {"crosstalk", EffectStatus::untestable, unknown, unknown, unknown, {}, "there is no load channel"}};

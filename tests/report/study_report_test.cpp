@@ -194,8 +194,8 @@ TEST(StudyReport, BarsAreRankedBySize) {
 TEST(StudyReport, ASingleLargeCellOfALargeMapIsDrawn) {
   const Machine machine = tribofit::studies::published_machine();
   MapRequest request{machine,
-                     {variable_named(machine, "stiffness"), spread(8e3, 20e3, 700)},
-                     {variable_named(machine, "mass"), spread(0.5, 1.5, 500)},
+                     {variable_named(machine, "stiffness"), evenly_spaced(8e3, 20e3, 700)},
+                     {variable_named(machine, "mass"), evenly_spaced(0.5, 1.5, 500)},
                      {}};
   MapCell cell{Regime::stick_slip, std::vector<double>(measures().size(), 1e-3)};
   std::vector<std::vector<MapCell>> rows(500, std::vector<MapCell>(700, cell));
@@ -221,7 +221,7 @@ TEST(StudyReport, ASingleLargeCellOfALargeMapIsDrawn) {
 
 TEST(StudyReport, ManyPortraitsStaySmall) {
   const Machine machine = tribofit::studies::published_machine();
-  const std::vector<double> velocities = spread(1e-3, 8e-3, 30);
+  const std::vector<double> velocities = evenly_spaced(1e-3, 8e-3, 30);
   const Report report = report_of(studied(machine), study_phase(machine, velocities));
   std::size_t points = 0;
   for (const Chart* chart : items_of<Chart>(report)) {

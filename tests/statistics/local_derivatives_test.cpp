@@ -28,7 +28,7 @@ TEST(LocalDerivatives, FollowASineOverATwelfthOfItsPeriodToEitherSide) {
   for (std::size_t i = 16; i < 384; ++i) {
     const double t = kStep * static_cast<double>(i);
     EXPECT_NEAR(found.slope[i], w * std::cos(w * t), 5e-4 * w);
-    EXPECT_NEAR(found.bend[i], -w * w * std::sin(w * t), 5e-3 * w * w);
+    EXPECT_NEAR(found.second_derivative[i], -w * w * std::sin(w * t), 5e-3 * w * w);
   }
 }
 
@@ -39,7 +39,7 @@ TEST(LocalDerivatives, APolynomialComesBackAtTheEndsToo) {
     const double t = kStep * static_cast<double>(i);
     EXPECT_NEAR(found.value[i], f(t), 1e-9);
     EXPECT_NEAR(found.slope[i], 2 - 60 * t + 1200 * t * t, 1e-7);
-    EXPECT_NEAR(found.bend[i], -60 + 2400 * t, 1e-3);
+    EXPECT_NEAR(found.second_derivative[i], -60 + 2400 * t, 1e-3);
   }
 }
 
@@ -58,15 +58,16 @@ TEST(LocalDerivatives, ErrorsAreThoseOfTheNoise) {
   const auto wave = [](double t) { return std::sin(60 * t); };
   const LocalDerivatives found = local_derivatives(sampled(20000, wave, 0.01), kStep, 12);
   EXPECT_NEAR(found.noise, 0.01, 0.0005);
-  double slope = 0, bend = 0, count = 0;
+  double slope = 0, second_derivative = 0, count = 0;
   for (std::size_t i = 50; i < 19950; ++i) {
     const double t = kStep * static_cast<double>(i);
     slope += std::pow((found.slope[i] - 60 * std::cos(60 * t)) / found.slope_std_error[i], 2);
-    bend += std::pow((found.bend[i] + 3600 * std::sin(60 * t)) / found.bend_std_error[i], 2);
+    second_derivative +=
+        std::pow((found.second_derivative[i] + 3600 * std::sin(60 * t)) / found.second_derivative_std_error[i], 2);
     count += 1;
   }
   EXPECT_NEAR(std::sqrt(slope / count), 1, 0.1);
-  EXPECT_NEAR(std::sqrt(bend / count), 1, 0.1);
+  EXPECT_NEAR(std::sqrt(second_derivative / count), 1, 0.1);
 }
 
 TEST(LocalDerivatives, ShortSignalsHaveNone) {

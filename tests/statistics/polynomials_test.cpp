@@ -78,14 +78,14 @@ TEST(Parabola, IsGivenBack) {
 
 TEST(Parabola, NormsAreSumsOverTheSamples) {
   const Parabola parabola = fit_parabola(samples_of(9, 1, 2, 3));
-  double line = 0, bend = 0;
+  double line = 0, curvature = 0;
   for (int i = 0; i < 9; ++i) {
     const double x = i - parabola.centre();
     line += x * x;
-    bend += std::pow(x * x - parabola.shift(), 2);
+    curvature += std::pow(x * x - parabola.shift(), 2);
   }
   EXPECT_NEAR(parabola.line_norm(), line, 1e-12);
-  EXPECT_NEAR(parabola.bend_norm(), bend, 1e-12);
+  EXPECT_NEAR(parabola.curvature_norm(), curvature, 1e-12);
 }
 
 /// A parabola takes three degrees of freedom from white noise.
@@ -142,15 +142,16 @@ TEST(SavitzkyGolay, AnyWindowGivesTheSlopeOfAParabola) {
 
 TEST(SavitzkyGolay, SlopesOfAParabolaToItsEnds) {
   for (const std::size_t n : {2u, 3u, 5u, 30u, 9000u}) {
-    const double step = 1e-3, bend = n > 2 ? 4.0 : 0.0;
+    const double step = 1e-3, curvature = n > 2 ? 4.0 : 0.0;
     std::vector<double> y(n);
     for (std::size_t i = 0; i < n; ++i) {
       const double t = step * static_cast<double>(i);
-      y[i] = 7 + 2 * t + bend * t * t;
+      y[i] = 7 + 2 * t + curvature * t * t;
     }
     const std::vector<double> slope = savitzky_golay_slope(y, step, 10);
     ASSERT_EQ(slope.size(), n);
-    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(slope[i], 2 + 2 * bend * step * static_cast<double>(i), 1e-8) << i;
+    for (std::size_t i = 0; i < n; ++i)
+      EXPECT_NEAR(slope[i], 2 + 2 * curvature * step * static_cast<double>(i), 1e-8) << i;
   }
 }
 

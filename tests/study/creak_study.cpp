@@ -92,10 +92,10 @@ double last_stick_from_rest(const Machine& machine) {
 std::vector<Swept> sweeps_of_creak(const Machine& machine) {
   const auto around = [&](const std::string& name) {
     const double own = value_of(machine, name);
-    return swept(machine, name, spread(own / 2, 2 * own, 9, true));
+    return swept(machine, name, evenly_spaced(own / 2, 2 * own, 9, true));
   };
-  return {around("stiffness"), around("mass"), swept(machine, "ratio", spread(0.1, 0.9, 9)), around("alpha"),
-          swept(machine, "velocity", spread(0.25e-3, 2.4e-3, 9))};
+  return {around("stiffness"), around("mass"), swept(machine, "ratio", evenly_spaced(0.1, 0.9, 9)), around("alpha"),
+          swept(machine, "velocity", evenly_spaced(0.25e-3, 2.4e-3, 9))};
 }
 
 Trend trend_of(const std::vector<double>& values) {
@@ -147,7 +147,7 @@ std::vector<Claim> claims_of_creak(const Machine& machine) {
 
 std::vector<Map> maps_of_creak(const Machine& machine, std::size_t count) {
   const auto axis = [&](const char* name, double low, double high, bool logarithmic) {
-    return MapAxis{variable_named(machine, name), spread(low, high, count, logarithmic)};
+    return MapAxis{variable_named(machine, name), evenly_spaced(low, high, count, logarithmic)};
   };
   const double k = machine.rig.stiffness, m = machine.rig.mass, decay = machine.parameters[2];
   const MapAxis speed = axis("velocity", 0.25e-3, 3.5e-3, false);

@@ -83,11 +83,11 @@ TEST(SpeedStudy, CarriesTheUncertaintyOfTheMachine) {
   options.covariance.friction = {sigma * sigma, 0, 0, 0, 0, 0, 0, 0, 0};
   const SpeedStudy study = study_speed(machine, options);
   const double expected = 2 * 1.96 * sigma / drop / machine.parameters[2];
-  EXPECT_NEAR(study.linear_range.upper95 - study.linear_range.lower95, expected, 0.2 * expected);
-  EXPECT_LT(study.linear_range.lower95, study.critical.linear.back());
-  EXPECT_GT(study.linear_range.upper95, study.critical.linear.back());
-  EXPECT_LT(study.own_ranges[0].lower95, study.own.frequency);
-  EXPECT_GT(study.own_ranges[0].upper95, study.own.frequency);
+  EXPECT_NEAR(study.linear_interval.upper95 - study.linear_interval.lower95, expected, 0.2 * expected);
+  EXPECT_LT(study.linear_interval.lower95, study.critical.linear.back());
+  EXPECT_GT(study.linear_interval.upper95, study.critical.linear.back());
+  EXPECT_LT(study.own_intervals[0].lower95, study.own.frequency);
+  EXPECT_GT(study.own_intervals[0].upper95, study.own.frequency);
 }
 
 TEST(SpeedStudy, DoesNotDependOnThreads) {
@@ -116,8 +116,8 @@ TEST(Portraits, HoldTheStartAndASettledCycle) {
 MapRequest small_map() {
   const Machine machine = uradnicek_machine(250, 0.5e-3);
   return {machine,
-          {variable_named(machine, "velocity"), spread(1e-3, 15e-3, 6)},
-          {variable_named(machine, "ratio"), spread(0.1, 0.9, 4)},
+          {variable_named(machine, "velocity"), evenly_spaced(1e-3, 15e-3, 6)},
+          {variable_named(machine, "ratio"), evenly_spaced(0.1, 0.9, 4)},
           {}};
 }
 

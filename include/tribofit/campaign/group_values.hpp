@@ -14,7 +14,8 @@ namespace tribofit {
 
 /// Values of repeats together, as [D] has them in Fig 5 to 9: plain means over the runs of a group.
 
-/// Mean of a value of each run, and its standard error where there is more than one.
+/// Mean of one value of each run and its standard error, in the unit of the values. Both are NaN without values, the
+/// error with a single one.
 ResultMeasure mean_over_runs(std::span<const double> values);
 
 /// The pooled value of that name of the base law or a measure; null where there is none.

@@ -19,6 +19,7 @@ enum class RunStatus {
   failed,     ///< read, but the analysis could not be done; doing it again ends alike
   unreadable  ///< not read, or not to the end; tried again each time
 };
+/// "ok", "failed", "unreadable": as result files and summaries have them.
 std::string_view to_string(RunStatus status);
 
 /// What a result file says of its run besides the analysis, under the key "run".

@@ -40,12 +40,12 @@ std::string_view to_string(Verdict verdict);
 
 /// What became of one effect of the catalogue.
 enum class EffectStatus {
-  found,        ///< it was added to the model
-  equivalent,   ///< it fits as well as one that was added; these data cannot distinguish them
-  possible,     ///< it would take away much of what remains, and these data do not prove it
-  superseded,   ///< it would help alone, but not beside what was added
-  unsupported,  ///< the data do not ask for it
-  untestable,   ///< the data cannot show it; `reason` says why
+  found,          ///< it was added to the model
+  equivalent,     ///< it fits as well as one that was added; these data cannot distinguish them
+  possible,       ///< it would take away much of what remains, and these data do not prove it
+  superseded,     ///< it would help alone, but not beside what was added
+  not_supported,  ///< the data do not ask for it
+  untestable,     ///< the data cannot show it; `reason` says why
 };
 /// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable".
 std::string_view to_string(EffectStatus status);
@@ -62,7 +62,7 @@ struct Share {
 /// What the diagnosis found out about one effect.
 struct EffectFinding {
   std::string key;
-  EffectStatus status = EffectStatus::unsupported;
+  EffectStatus status = EffectStatus::not_supported;
   double held_out_rmse = 0;    ///< with the effect, at the rung where it was judged last [1 or N]; NaN: not fitted
   double error_reduction = 0;  ///< share of the squares above the noise floor that it takes away there; NaN: not fitted
   double p_value = 1;          ///< that it takes away nothing, corrected for the number of candidates; NaN: not fitted

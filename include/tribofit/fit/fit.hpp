@@ -19,9 +19,15 @@ enum class Protocol {
               ///< factor alone
   joint       ///< all parameters together
 };
+/// "published", "joint": as --protocol and JSON have them.
 std::string_view to_string(Protocol protocol);
 
-enum class Loss { squares, huber, soft_l1 };
+/// What a residual adds to the sum that is minimised, by its size u in units of the width (FitOptions::loss_scale).
+enum class Loss {
+  squares,  ///< u^2
+  huber,    ///< u^2 below 1, 2 u - 1 above
+  soft_l1   ///< 2 (sqrt(1 + u^2) - 1)
+};
 
 /// What is said of one parameter beforehand, in SI.
 struct GivenParameter {
@@ -36,7 +42,7 @@ struct GivenParameter {
 struct FitOptions {
   Protocol protocol = Protocol::joint;
   Loss loss = Loss::squares;
-  double loss_scale = 3;  ///< where the robust losses bend, in units of the noise floor
+  double loss_scale = 3;  ///< where the robust losses turn from squares to straight lines, in units of Floor::noise
   int starts = 5;         ///< starting points; the first comes from the data, the others are seeded; 0: a short look
   std::uint64_t seed = 1;
   int folds = 5;              ///< contiguous blocks of cycles held out in turn
@@ -165,10 +171,13 @@ double held_out_std_error(const Fit& fit);
 /// Which of two fits predicts held-out cycles better.
 struct Comparison {
   double difference = 0;  ///< mean over cycles of the squared error of `first` minus that of `second`
+                          ///< [1 or N^2]
   double std_error = 0;
   double p_value = 1;  ///< two-sided
   bool first_better = false;
 };
+/// Paired over the cycles that both fits held out. Fewer than three cycles are not compared: the difference is
+/// 0 and p_value 1.
 Comparison compare_held_out(const Fit& first, const Fit& second);
 
 /// mu(v) of a fit with its pointwise 95 % band (statistical) in steady sliding at the given speeds [m/s], at mean load

@@ -20,16 +20,16 @@ T aged_over(const T& theta, double interval, const T& before, const T& now) {
   const T a = 0.5 * interval * (before + now);
   const T d = 0.5 * interval * (now - before);
   const T e = exp(-a);
-  T mean, bend;
+  T mean, weighted_mean;
   constexpr double kSmall = 0.02;  // below, the closed forms lose their digits
   if (scalar_part(a) > kSmall) {
     mean = (1.0 - e) / a;
-    bend = ((a - 2.0) + (a + 2.0) * e) / (a * a * a);
+    weighted_mean = ((a - 2.0) + (a + 2.0) * e) / (a * a * a);
   } else {
     mean = 1.0 - a * (1.0 / 2 - a * (1.0 / 6 - a * (1.0 / 24)));
-    bend = 1.0 / 6 - a * (1.0 / 12 - a * (1.0 / 40));
+    weighted_mean = 1.0 / 6 - a * (1.0 / 12 - a * (1.0 / 40));
   }
-  return e * theta + interval * mean * mean / (mean + d * bend);
+  return e * theta + interval * mean * mean / (mean + d * weighted_mean);
 }
 
 /// Age with which the contacts came to rest before the stick that precedes `slip` [s]; 0 where that was not recorded.

@@ -56,11 +56,11 @@ struct ReadOptions {
 /// comment lines and footers; units in the header or in a row of their own; Latin-1 and GBK headers; trailing
 /// separators; blocks with a time each beside one another; text between data, which may divide steps and state their
 /// conditions. MATLAB 5 to 7.3, UFF 58 and 58b, TDMS. Any format: radius, speed and load that the file states with a
-/// unit; rows with a cell that is no number left out as gaps, where they are isolated and one in a thousand at most; a
-/// clock that restarts at each step; without a time column the rate of the user, else that of the file; friction as mu,
-/// as tangential force with a load channel or a nominal load, or as torque with a radius. A short table of friction and
-/// sliding velocity without any time is one of points (RecordKind). Throws InputError with file,
-/// line (or value), column, what is wrong and what to do. Cost: linear in bytes.
+/// unit; rows with a cell that is not a number left out as gaps, where they are isolated and one in a thousand at most;
+/// a clock that restarts at each step; without a time column the rate of the user, else that of the file; friction as
+/// mu, as tangential force with a load channel or a nominal load, or as torque with a radius. A short table of friction
+/// and sliding velocity without any time is one of points (RecordKind). Throws InputError with file, line (or value),
+/// column, what is wrong and what to do. Cost: linear in bytes.
 Trace read_trace(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace tribofit

@@ -19,7 +19,9 @@ enum class RecordKind {
 
 /// "stick-slip", "sliding", "points", "spring-slider", "motion-only", "force-only": as --kind and JSON have them.
 std::string_view to_string(RecordKind kind);
+/// The kind of exactly that name; nothing where there is none.
 std::optional<RecordKind> find_record_kind(std::string_view name);
+/// All names, in the order of RecordKind.
 std::vector<std::string> record_kind_names();
 
 }  // namespace tribofit

@@ -30,6 +30,7 @@ std::string printable(std::string_view text);
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 std::vector<std::string> split(std::string_view text, char separator);
 
+/// Whether `name` is exactly one of `names`.
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names);
 
 /// "a, b, c"; of more than `most` the first ones, "and 12 more".

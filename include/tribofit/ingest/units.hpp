@@ -55,8 +55,8 @@ std::string suggest_unit(std::string_view text);
 
 /// A number with a unit ("15mm", "0.015 m", "4 rpm", "0.419rad/s", "20kHz"), in SI.
 /// A bare number is taken in SI except where `bare_unit` names another.
-/// Throws InputError (name is what the user calls the option) for no number, an unknown unit (nearest known one
-/// offered), a unit of another quantity, inf and nan.
+/// Throws InputError (name is what the user calls the option) for a text that is not a number, an unknown unit (nearest
+/// known one offered), a unit of another quantity, inf and nan.
 double parse_quantity(std::string_view text, Quantity quantity, std::string_view name, std::string_view bare_unit = {});
 
 /// "length", "angular velocity", ... for messages.

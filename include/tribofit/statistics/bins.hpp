@@ -35,13 +35,17 @@ class BandOverCycles {
   std::size_t cycles_ = 0;
 };
 
-/// Mean and largest value of samples in bins of equal width: what a typical and what the worst sample does.
+/// Mean and largest value of samples in bins, without the bins that hold none.
 struct BinExtremes {
-  std::vector<double> at, mean, largest;
+  std::vector<double> at;             ///< mean of the abscissa in the bin
+  std::vector<double> mean, largest;  ///< of the ordinate
 };
+
+/// Collects samples into bins of equal width from `from` to `to`: what a typical and what the worst sample does.
 class ExtremesInBins {
  public:
   ExtremesInBins(double from, double to, std::size_t bins);
+  /// What lies outside or has no finite ordinate is left out.
   void add(double x, double y);
   BinExtremes result() const;
 

@@ -38,24 +38,27 @@ struct Remainder {
 double variance_inflation(double rho);
 
 /// Parabola of least squares through samples at equal distances, in orthogonal polynomials:
-/// y(x) = mean + slope x + bend (x^2 - shift), x = i - (n-1)/2 samples from the middle. The three coefficients are
-/// independent, so that without `bend` it is the straight line.
+/// y(x) = mean + slope x + curvature (x^2 - shift), x = i - (n-1)/2 samples from the middle. The three coefficients are
+/// independent, so that without `curvature` it is the straight line.
 struct Parabola {
   double count = 0;
-  double mean = 0, slope = 0, bend = 0;  ///< per sample, per sample squared; 0 where there are too few samples for it
+  double mean = 0;
+  double slope = 0;      ///< per sample; 0 for fewer than two samples
+  double curvature = 0;  ///< per sample squared; 0 for fewer than three
   double centre() const { return 0.5 * (count - 1); }
   double shift() const { return (count * count - 1) / 12; }
-  /// Sums over the samples of x^2 and of (x^2 - shift)^2, by which the variances of slope and bend divide.
+  /// Sums over the samples of x^2 and of (x^2 - shift)^2, by which the variances of slope and curvature divide.
   double line_norm() const { return count * shift(); }
-  double bend_norm() const { return line_norm() * (count * count - 4) / 15; }
+  double curvature_norm() const { return line_norm() * (count * count - 4) / 15; }
   /// Value and slope at x samples from the middle.
-  double at(double x) const { return mean + slope * x + bend * (x * x - shift()); }
-  double slope_at(double x) const { return slope + 2 * bend * x; }
+  double at(double x) const { return mean + slope * x + curvature * (x * x - shift()); }
+  double slope_at(double x) const { return slope + 2 * curvature * x; }
 };
 
 /// Cost: linear, one pass.
 Parabola fit_parabola(std::span<const double> samples);
 
+/// Residuals of samples in order about `parabola`: their squares, and the products of neighbours.
 Remainder remainder_about(const Parabola& parabola, std::span<const double> samples);
 
 /// Where the parabola through three values at -1, 0 and 1 has its extreme, within half a step of the middle one, which

@@ -24,10 +24,12 @@ struct MapCell {
   std::vector<double> values;
 };
 
+/// A machine and two of its variables: one settled motion for each pair of their values. check_map() says what it
+/// needs.
 struct MapRequest {
   Machine machine;
-  MapAxis x, y;
-  SettleOptions settle = {};
+  MapAxis x, y;               ///< columns and rows of the map
+  SettleOptions settle = {};  ///< of every cell
 };
 
 /// The cells of a map, a row for each value of y.

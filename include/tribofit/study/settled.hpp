@@ -21,9 +21,10 @@ enum class Regime {
   not_settled,  ///< none of these within the time given
 };
 inline constexpr std::array kRegimes = {Regime::stick_slip, Regime::vibration, Regime::sliding, Regime::not_settled};
+/// "stick-slip", "vibration", "sliding", "not-settled": as tables, CSV and JSON have them.
 std::string_view to_string(Regime regime);
 
-/// Settled motion and its measures, those of [C] among them. NaN where the regime has no such thing.
+/// Settled motion and its measures, those of [C] among them. A measure that the regime does not have is NaN.
 struct Settled {
   Regime regime = Regime::not_settled;
   bool sticks = false;                                             ///< the last cycles seen have a stick
@@ -32,11 +33,12 @@ struct Settled {
   double peak_to_peak = std::numeric_limits<double>::quiet_NaN();  ///< of the displacement [m]; 0 in sliding
   double energy = std::numeric_limits<double>::quiet_NaN();        ///< before break-away, k (x2 - x1)^2/2 [C] [J]
   double peak_speed = std::numeric_limits<double>::quiet_NaN();    ///< largest |v_r| [m/s]
-  double begin = 0;      ///< of the last whole cycle: its break-away, or a maximum of the displacement [s]
-  double simulated = 0;  ///< [s]
+  double begin = 0;      ///< time at which the last whole cycle begins: a break-away or a largest displacement [s]
+  double simulated = 0;  ///< simulated time [s]
   std::string seen;      ///< where not settled: what was seen, in a sentence
 };
 
+/// Where a simulation begins.
 enum class StartFrom {
   stick,    ///< unloaded and carried by the disc: winds up, breaks away
   sliding,  ///< steady sliding, with a velocity a thousandth of the disc's beside it

@@ -17,13 +17,7 @@ std::vector<Settled> sweep(const Machine& machine, std::string_view variable, st
                            const SettleOptions& options = {}, int threads = 0);
 
 /// `count` values from low to high, both included, equally far apart or (logarithmic) in equal ratios.
-std::vector<double> spread(double low, double high, std::size_t count, bool logarithmic = false);
-
-/// A number with the range that the uncertainty of the machine leaves it; NaN: none is known.
-struct Uncertain {
-  double value = 0;
-  Range range;
-};
+std::vector<double> evenly_spaced(double low, double high, std::size_t count, bool logarithmic = false);
 
 /// How a machine moves over the speed of its disc.
 struct SpeedStudy {
@@ -31,10 +25,10 @@ struct SpeedStudy {
   std::vector<Settled> up, down;    ///< begun in stick, and in steady sliding
   std::vector<double> growth_rate;  ///< of a small vibration about steady sliding [1/s]
   CriticalSpeed critical;
-  Range linear_range, vanishes_range,
-      returns_range;              ///< 95 %, of the last linear one, and of stick_vanishes and _returns
-  Settled own;                    ///< at the machine's own speed
-  std::vector<Range> own_ranges;  ///< of its measures, in the order of measures()
+  Interval95 linear_interval;                      ///< of the last of critical.linear [m/s]
+  Interval95 vanishes_interval, returns_interval;  ///< of critical.stick_vanishes and stick_returns [m/s]
+  Settled own;                                     ///< at the machine's own speed
+  std::vector<Interval95> own_intervals;           ///< of its measures, in the order of measures()
 };
 
 struct SpeedStudyOptions {

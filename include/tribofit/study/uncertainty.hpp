@@ -23,10 +23,11 @@ struct MachineCovariance {
 std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& covariance, std::size_t count,
                               std::uint64_t seed = 1);
 
-/// A range that holds 95 % of `values`, NaNs left out; both NaN where more than a tenth of them are.
-struct Range {
+/// 2.5 % and 97.5 % quantile of values, in their unit; both NaN: not known.
+struct Interval95 {
   double lower95 = 0, upper95 = 0;
 };
-Range range_of(std::vector<double> values);
+/// Of the values that are not NaN. Both ends are NaN where there are none or more than a tenth of `values` is NaN.
+Interval95 interval95_of(std::vector<double> values);
 
 }  // namespace tribofit

@@ -27,8 +27,10 @@ std::vector<Variable> variables_of(const Machine& machine);
 /// The variable of that name. Throws InputError with the nearest known name where there is none.
 Variable variable_named(const Machine& machine, std::string_view name);
 
-double value_of(const Machine& machine, std::string_view name);            ///< SI
-Machine with_value(Machine machine, std::string_view name, double value);  ///< SI
+/// The value of a variable [SI], and the machine with another one. They throw InputError, with the nearest known name,
+/// where the machine has no variable of that name. Whether there can be such a machine is not checked.
+double value_of(const Machine& machine, std::string_view name);
+Machine with_value(Machine machine, std::string_view name, double value);
 
 /// Two at once, in whichever order they stand: `velocity`, `damping-ratio` and `ratio` are set after what they are made
 /// of, so that both values are those of the machine returned. Throws InputError for two that set the same number
@@ -39,15 +41,16 @@ Machine with_values(Machine machine, std::string_view first, double first_value,
 /// A measure of settled motion, as studies print it.
 struct MeasureInfo {
   std::string name;  ///< frequency, stick-time, peak-to-peak, energy, peak-speed
-  std::string unit;
-  double si = 1;
+  std::string unit;  ///< as shown and written
+  double si = 1;     ///< SI value of one unit
   double Settled::*value = nullptr;
   std::string column;   ///< name with its unit, in CSV and JSON
   std::string heading;  ///< the same where there is little room
   std::string meaning;
 };
+/// All of them, in the order in which tables and maps have them.
 const std::vector<MeasureInfo>& measures();
-/// Throws InputError with the nearest known name where there is none.
+/// The measure of that name. Throws InputError with the nearest known name where there is none.
 const MeasureInfo& measure_named(std::string_view name);
 
 }  // namespace tribofit

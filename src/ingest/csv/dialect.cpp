@@ -97,7 +97,7 @@ struct Layout {
   std::size_t numbers = 0;  // in most rows
   bool starts = false;      // most rows do, with a number
 
-  /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is none, and no more is "Samples,100,100".
+  /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is not one of them, nor is "Samples,100,100".
   bool is_row(const Census& line) const {
     return line.cells == columns && line.mostly_numbers() && 2 * line.numbers > numbers && (line.starts || !starts);
   }

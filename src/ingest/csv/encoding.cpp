@@ -16,7 +16,8 @@ unsigned char byte_at(std::string_view text, std::size_t i) {
   return static_cast<unsigned char>(text[i]);
 }
 
-/// Length of the UTF-8 sequence at `i`, 0 when it is none. A sequence cut off by the end of the text is accepted.
+/// Length of the UTF-8 sequence at `i`, 0 where no valid one begins. A sequence cut off by the end of the text is
+/// accepted.
 std::size_t utf8_sequence(std::string_view text, std::size_t i) {
   const unsigned char lead = byte_at(text, i);
   const std::size_t length = lead < 0x80                   ? 1

@@ -31,7 +31,7 @@ class RowParser {
   /// a number after is_gappy().
   Outcome parse(char* line, double* out);
 
-  /// Whether a wanted cell of the last row holds no number.
+  /// Whether a wanted cell of the last row is not a number.
   bool is_gappy() const { return gappy_; }
   const Defect& defect() const { return defect_; }
   /// The last line as it was, after Outcome::text.

@@ -26,7 +26,7 @@ struct Rows {
   LineMap lines;
   std::size_t text_rows = 0;           ///< dropped because they hold text, not numbers
   std::vector<TextLine> text;          ///< the first of them
-  std::optional<RawDefect> first_gap;  ///< the first cell that holds no number of a usable size: its value is NaN
+  std::optional<RawDefect> first_gap;  ///< the first cell that is not a number of a usable size: its value is NaN
 
   std::size_t size() const { return values.empty() ? 0 : values.front().size(); }
 };

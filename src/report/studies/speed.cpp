@@ -10,12 +10,12 @@ namespace tribofit {
 namespace {
 
 /// "[1.2, 1.4]" in `unit`; empty where it is not known.
-std::string range_text(const Range& range, double unit) {
+std::string range_text(const Interval95& range, double unit) {
   if (std::isnan(range.lower95)) return "";
   return fmt::format("[{}, {}]", significant(range.lower95 / unit, 4), significant(range.upper95 / unit, 4));
 }
 
-Json range_json(const Range& range, double unit) {
+Json range_json(const Interval95& range, double unit) {
   return interval_json(range.lower95 / unit, range.upper95 / unit);
 }
 
@@ -23,7 +23,7 @@ Json range_json(const Range& range, double unit) {
 std::vector<std::string> critical_sentences(const StudiedMachine& studied, const SpeedStudy& study) {
   const CriticalSpeed& c = study.critical;
   std::vector<std::string> out;
-  const auto add = [&](const char* what, double value, const Range& range) {
+  const auto add = [&](const char* what, double value, const Interval95& range) {
     if (std::isnan(value)) return;
     std::string sentence = fmt::format("{} {}", what, velocity_text(value, studied.machine));
     if (!std::isnan(range.lower95)) sentence += ",  " + range_text(range, kMillimetre) + " mm/s (95 %)";
@@ -34,7 +34,7 @@ std::vector<std::string> critical_sentences(const StudiedMachine& studied, const
     const char* what =
         c.stable_at_highest ? "steady sliding loses its stability below" : "steady sliding is unstable from";
     add(last ? what : "steady sliding changes its stability at", v,
-        last ? study.linear_range : Range{std::nan(""), std::nan("")});
+        last ? study.linear_interval : Interval95{std::nan(""), std::nan("")});
   }
   const std::string searched =
       fmt::format("from {} to {} mm/s", significant(1e3 * c.lowest, 3), significant(1e3 * c.highest, 3));
@@ -42,8 +42,8 @@ std::vector<std::string> critical_sentences(const StudiedMachine& studied, const
     out.push_back(
         fmt::format("steady sliding is {} at all speeds {}", c.stable_at_highest ? "stable" : "unstable", searched));
   }
-  add("on the way up stick vanishes at", c.stick_vanishes, study.vanishes_range);
-  add("on the way down it comes back at", c.stick_returns, study.returns_range);
+  add("on the way up stick vanishes at", c.stick_vanishes, study.vanishes_interval);
+  add("on the way down it comes back at", c.stick_returns, study.returns_interval);
   if (!std::isnan(c.stick_vanishes) && std::isnan(c.stick_returns)) {
     out.push_back("on the way down it does not come back: sliding goes on");
   }
@@ -71,7 +71,7 @@ ReportTable own_table(const StudiedMachine& studied, const SpeedStudy& study) {
   table.text({"measure"}).numbers({"value", "95 % interval"}).text({"unit"}).text({"meaning"}, 1);
   for (std::size_t k = 0; k < measures().size(); ++k) {
     const MeasureInfo& measure = measures()[k];
-    const std::string range = range_text(study.own_ranges[k], measure.si);
+    const std::string range = range_text(study.own_intervals[k], measure.si);
     table.rows.push_back(
         {measure.name, measure_text(study.own, measure), range.empty() ? "-" : range, measure.unit, measure.meaning});
   }
@@ -120,7 +120,7 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
 }
 
 /// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
-void add_range(const Range& range, std::size_t panel, Chart& chart) {
+void add_range(const Interval95& range, std::size_t panel, Chart& chart) {
   if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
   ChartLine& line = chart.line("95 % range of a critical speed",
                                {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4}, panel);
@@ -176,8 +176,8 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
       chart.marks.push_back({studied.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
     }
     if (name == "stick-time") {
-      add_range(study.vanishes_range, panel, chart);
-      add_range(study.returns_range, panel, chart);
+      add_range(study.vanishes_interval, panel, chart);
+      add_range(study.returns_interval, panel, chart);
     }
   }
   add_critical(study, chart);
@@ -191,7 +191,7 @@ Chart growth_chart(const SpeedStudy& study) {
               .x = speed_axis(study),
               .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
               .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}}};
-  add_range(study.linear_range, 0, chart);
+  add_range(study.linear_interval, 0, chart);
   chart.marks.push_back({0, false, Dash::solid, "", 0});
   add_critical(study, chart);
   return chart;
@@ -218,15 +218,15 @@ std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, c
                             "up", explained_json(study.up[i]), "down", explained_json(study.down[i])));
   }
   Json own = explained_json(study.own);
-  for (std::size_t k = 0; k < study.own_ranges.size(); ++k) {
-    own["ci95"][measures()[k].column] = range_json(study.own_ranges[k], measures()[k].si);
+  for (std::size_t k = 0; k < study.own_intervals.size(); ++k) {
+    own["ci95"][measures()[k].column] = range_json(study.own_intervals[k], measures()[k].si);
   }
   const CriticalSpeed& c = study.critical;
   const Json critical =
       object("linear_mm_s", list_of(c.linear, [](double v) { return number(v / kMillimetre); }), "linear_ci95_mm_s",
-             range_json(study.linear_range, kMillimetre), "stick_vanishes_mm_s", c.stick_vanishes / kMillimetre,
-             "stick_vanishes_ci95_mm_s", range_json(study.vanishes_range, kMillimetre), "stick_returns_mm_s",
-             c.stick_returns / kMillimetre, "stick_returns_ci95_mm_s", range_json(study.returns_range, kMillimetre),
+             range_json(study.linear_interval, kMillimetre), "stick_vanishes_mm_s", c.stick_vanishes / kMillimetre,
+             "stick_vanishes_ci95_mm_s", range_json(study.vanishes_interval, kMillimetre), "stick_returns_mm_s",
+             c.stick_returns / kMillimetre, "stick_returns_ci95_mm_s", range_json(study.returns_interval, kMillimetre),
              "searched_mm_s", interval_json(c.lowest / kMillimetre, c.highest / kMillimetre), "nothing_sticks",
              c.below_range, "always_sticks", c.above_range);
   return study_text(studied, "speed", object("own", own, "critical_speed", critical, "points", points), options);

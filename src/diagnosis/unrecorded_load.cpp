@@ -1,4 +1,4 @@
-#include "hidden_load.hpp"
+#include "unrecorded_load.hpp"
 
 #include <fmt/format.h>
 
