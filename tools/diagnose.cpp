@@ -168,7 +168,7 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
 }  // namespace
 
 void add_diagnose(const Command& app) {
-  const Command verb = app.add_verb("diagnose", "Where a law fails, which effect is missing, what to measure next");
+  const Command verb = app.add_verb("diagnose", "Where a law fails, which effect explains it, what to measure next");
   verb.footer(kDiagnoseFooter);
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);

@@ -140,8 +140,8 @@ StudiedMachine identified(const Settings& settings, const MachineRequest& typed,
   forget_typed(typed, out.machine.model, out.covariance);
   out.source = "identified from " + input.trace.path;
   if (std::isfinite(found.law_over_floor)) {
-    out.warnings.push_back(other_machine_warning("these answers are", fit, found.law_over_floor,
-                                                 diagnose_command(input.trace.path, kind)));
+    out.warnings.push_back(
+        other_machine_warning("these answers do", fit, found.law_over_floor, diagnose_command(input.trace.path, kind)));
   }
   out.notes = std::move(found.notes);
   if (rig.per_unit_load) {

@@ -62,7 +62,7 @@ std::string bound_reached(const CandidateResult& judged, const Candidate& candid
 std::string why_not(const CandidateResult& judged, const Candidate& candidate, const Observations& observations) {
   const double value = judged.trial.p[judged.trial.model.offset_of(candidate.info.key)];
   if (candidate.allowed && !candidate.allowed->holds(value)) {
-    return "it would help only by more than the instruments file leaves room for";
+    return "it would need a value outside the uncertainty in the instruments file";
   }
   if (!judged.plausible) {
     const std::string bound = bound_reached(judged, candidate, observations);

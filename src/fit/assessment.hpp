@@ -40,7 +40,7 @@ double relative_error(double measured, double model);
 /// The fit leaves clearly more than the noise floor, so that a mean that agrees may hide what it misses.
 bool well_above_floor(const Fit& fit);
 
-/// Whether errors and intervals are conditional on a law that does not hold.
+/// Whether errors and intervals assume a law that does not hold.
 bool is_conditional(const Fit& fit);
 
 /// What residuals are measured in: the noise floor, or what they are themselves where none is known.

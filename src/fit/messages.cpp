@@ -31,7 +31,7 @@ void add_correlations(Fit& fit) {
 void add_condition(Fit& fit) {
   if (!is_conditional(fit)) return;
   fit.messages.push_back(fmt::format(
-      "errors and intervals are conditional on a law that does not hold: the held-out error is {:.3g} times "
+      "errors and intervals assume that the law is right, but it is not: the held-out error is {:.3g} times "
       "the noise floor",
       over_floor(fit)));
 }
@@ -84,7 +84,7 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
   if (missing > 0.1) {
     fit.messages.push_back(
         fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the drop to mu_k "
-                    "is already past",
+                    "has already happened",
                     fit.slowest * 1e3, 100 * missing));
   }
   const double reached = remaining_fall(model.law(), p, fit.fastest).value_or(0);

@@ -106,7 +106,7 @@ Parameter read_start(const std::string& name, const std::string& value, const st
   char* end = nullptr;
   const double plain = std::strtod(number.c_str(), &end);
   const std::string unit_text(trimmed(end));
-  if (end == number.c_str() || !std::isfinite(plain)) reject("'" + name + "' has no number as its start", text);
+  if (end == number.c_str() || !std::isfinite(plain)) reject("'" + name + "' needs a number as its start value", text);
   double factor = 1;
   if (!unit_text.empty()) {
     const std::optional<Unit> unit = find_unit(unit_text);

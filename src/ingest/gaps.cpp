@@ -69,7 +69,7 @@ void exclude(const std::vector<std::size_t>& rows, FileRecord& recording) {
   }
   const char* plural = rows.size() == 1 ? "" : "s";
   const char* unit = recording.location(rows.front(), Channel::time).line > 0 ? "line" : "value";
-  recording.warnings.push_back(fmt::format("{} row{} with a cell that holds no number {} left out as {} ({}{} {})",
+  recording.warnings.push_back(fmt::format("{} row{} with a cell that is not a number {} left out as {} ({}{} {})",
                                            rows.size(), plural, rows.size() == 1 ? "was" : "were",
                                            rows.size() == 1 ? "a gap" : "gaps", unit, plural, listed(places)));
   std::size_t size = 0;

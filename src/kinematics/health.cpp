@@ -133,17 +133,17 @@ ClockDrift clock_drift(const std::vector<double>& times, const std::vector<doubl
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
   HealthItem item{health_check::kSaggingPlateau, Status::ok, "no stick plateau to look at"};
   if (declared) {
-    item.message = fmt::format("the declared high-pass of {:.3g} Hz is undone", *declared);
+    item.message = fmt::format("the declared high-pass of {:.3g} Hz is corrected", *declared);
   } else if (undone) {
     item.status = Status::warning;
     item.message = fmt::format(
-        "the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz ({} plateaus); "
-        "undone",
+        "the plateau sags like that of a first-order high-pass at {:.3f} +- {:.4f} Hz ({} plateaus); "
+        "corrected",
         estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (estimate.significant) {
     item.status = Status::problem;
     item.message =
-        fmt::format("the plateau sags as behind a first-order high-pass of {:.3f} +- {:.4f} Hz; left as it is",
+        fmt::format("the plateau sags like that of a first-order high-pass at {:.3f} +- {:.4f} Hz; not corrected",
                     estimate.corner, estimate.std_error);
   } else if (estimate.creeping) {
     item.message = fmt::format(
@@ -166,17 +166,17 @@ double corner_of(const UndoneDistortion& low_pass) {
   return 1 / (2 * std::numbers::pi * low_pass.value);
 }
 
-/// What was found at re-stick and undone, as the end of a sentence.
+/// What was found at re-stick and corrected, as the end of a sentence.
 std::string undone_low_passes(const Motion& motion, std::size_t slips) {
   std::string text;
   if (motion.velocity_low_pass.any()) {
-    text += fmt::format("; v_r trails off at re-stick as behind a first-order low-pass of {:.3g} Hz ({} slips): undone",
+    text += fmt::format("; v_r decays at re-stick as after a first-order low-pass at {:.3g} Hz ({} slips); corrected",
                         corner_of(motion.velocity_low_pass), slips);
   }
   if (motion.friction_low_pass.any()) {
     text += fmt::format(
-        "; friction trails off at re-stick as behind a first-order low-pass of {:.3g} Hz: every law is filtered like "
-        "it",
+        "; friction decays at re-stick as after a first-order low-pass at {:.3g} Hz: each law is filtered the same "
+        "way",
         corner_of(motion.friction_low_pass));
   }
   return text;
@@ -200,7 +200,7 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
-        "; v_r trails off at re-stick as behind a low-pass of {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not those "
+        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not those "
         "of the contact, a bandwidth of {:.2g} Hz is needed",
         restick.corner(), restick.slips, restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless);
     return item;
@@ -211,7 +211,7 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   item.message += ": what is faster than the filter is not in the data";
   const bool differ = low == 0 || other == 0 || std::max(low, other) > 1.5 * std::min(low, other);
   if (!velocity.empty() && differ) {
-    item.message += "; the channels have different filters, one lags behind the other and that looks like memory";
+    item.message += "; the channels have different filters; the lag between them looks like memory";
   }
   return item;
 }
@@ -250,7 +250,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
     item.message = fmt::format(
         "friction falls behind the velocity by {:.2f} ms from the first third of the record to the last ({:.0f} ppm, "
         "{} "
-        "slips): their clocks run apart; mu_k and alpha are unreliable",
+        "slips): their clocks drift apart; mu_k and alpha are unreliable",
         1e3 * drift.gained, 1e6 * drift.gained / drift.time, used);
     return item;
   }
@@ -312,8 +312,8 @@ HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estima
                   100 * ripple.amplitude_std_error, estimate.plateaus);
   if (!estimate.significant) return item;
   item.status = Status::warning;
-  item.message += motion.speed_ripple.order > 0 ? ": the speed of the disc ripples; undone"
-                                                : ": the speed of the disc ripples; left as it is";
+  item.message += motion.speed_ripple.order > 0 ? "; the speed of the disc ripples; corrected"
+                                                : "; the speed of the disc ripples; not corrected";
   return item;
 }
 

@@ -64,7 +64,7 @@ void MotionStages::undo_compression() {
   motion_.compression = found.part;
   motion_.fastest_velocity = found.fastest;
   for (double& v : trace_.velocity) v = decompressed(v, found.part.value, found.fastest);
-  motion_.notes.push_back(fmt::format("velocity: its gain is {:.3g} % {} at the fastest, undone",
+  motion_.notes.push_back(fmt::format("velocity: its gain is {:.3g} % {} at the highest speed; corrected",
                                       100 * std::abs(found.part.value), found.part.value > 0 ? "less" : "more"));
   find_plateau();
 }
@@ -89,7 +89,7 @@ void MotionStages::undo_low_pass() {
     spoilt_->add_smeared({std::min(first, trace_.size()), std::min(end, trace_.size())});
   }
   motion_.notes.push_back(
-      fmt::format("velocity: a low-pass of {:.4g} Hz undone", 1 / (2 * std::numbers::pi * low_pass_.tau)));
+      fmt::format("velocity: a low-pass at {:.4g} Hz; corrected", 1 / (2 * std::numbers::pi * low_pass_.tau)));
   find_plateau();
 }
 

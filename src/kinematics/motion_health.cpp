@@ -86,7 +86,7 @@ HealthItem MotionStages::check_delay() const {
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
       "; friction fell behind the velocity by {:.2f} +- {:.2f} ppm of the time ({} slips), "
-      "their clocks run apart: undone",
+      "their clocks drift apart; corrected",
       1e6 * drift.value, 1e6 * drift.std_error, clocks_.slips);
   return item;
 }

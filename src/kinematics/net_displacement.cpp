@@ -113,19 +113,19 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
       is_zero || compression != 0 ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
   const bool is_guess = std::abs(compression) > kSureOfCompression;
   if (is_guess && !is_zero) item.status = HealthItem::Status::problem;
-  item.message += fmt::format("; the block goes nowhere, yet its velocity is off by {:.3g} mm/s on average: ",
-                              1e3 * zero.mean.value);
   item.message +=
-      is_zero ? "its zero was off by as much, taken off"
+      fmt::format("; the block has no net displacement, but its mean velocity is {:.3g} mm/s: ", 1e3 * zero.mean.value);
+  item.message +=
+      is_zero ? "the velocity has a zero error; corrected"
       : compression != 0
-          ? fmt::format("slips are not read like sticks, the gain is {:.3g} % {} at the fastest; undone{}",
+          ? fmt::format("the velocity channel is nonlinear: the gain is {:.3g} % {} at the highest speed; corrected{}",
                         100 * std::abs(compression), compression > 0 ? "less" : "more",
-                        is_guess ? " as of third order, mu_k and alpha are unreliable" : "")
+                        is_guess ? " with a cubic characteristic, mu_k and alpha are unreliable" : "")
       : speed_was_stated
-          ? "slips are not read like sticks (a compressed velocity), or samples are missing; mu_k and alpha are "
+          ? "the velocity channel is nonlinear, or samples are missing; mu_k and alpha are "
             "unreliable"
-          : "its zero is off, or slips are not read like sticks (a compressed velocity; mu_k and alpha are "
-            "then unreliable); give --speed to decide";
+          : "the velocity has a zero error, or its channel is nonlinear (mu_k and alpha are then unreliable); give "
+            "--speed to decide";
 }
 
 }  // namespace tribofit::kinematics

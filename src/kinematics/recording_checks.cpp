@@ -147,7 +147,7 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
     const bool is_first = item.status == Status::ok;
     item.status = Status::problem;
     item.message = fmt::format(
-        "{}{}{} changes by {:.3g}{} a second and never faster: its amplifier cannot follow; mu_s, "
+        "{}{}{} changes by at most {:.3g}{} per second: the slew rate of its amplifier limits it; mu_s, "
         "mu_k and alpha are unreliable",
         is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * change / trace.interval(),
         channel.unit);
@@ -177,7 +177,7 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
                   fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
   if (still.size() >= kShortestFrozen && 20 * still.size() > n && still.size() < n) {
     item.status = Status::problem;
-    item.message = fmt::format("both channels stand still from {:.4g} s on for {:.4g} s ({:.2g} % of the record)",
+    item.message = fmt::format("both channels do not change from {:.4g} s for {:.4g} s ({:.2g} % of the record)",
                                trace.time[still.begin], trace.time[still.end - 1] - trace.time[still.begin],
                                100 * static_cast<double>(still.size()) / static_cast<double>(n));
     for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
@@ -196,8 +196,8 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   for (const std::string& sentence : spoilt_by) item.message += (item.message.empty() ? "" : "; ") + sentence;
   if (loses) {
     item.message += fmt::format(
-        "{}the velocity jumps {} times where the clock does not (in {:.2g} % of its fast intervals): samples were lost "
-        "and the clock was rewritten; the frequency and all times are unreliable",
+        "{}the velocity jumps {} times without a gap in time ({:.2g} % of the fast intervals): samples were lost "
+        "and the time column was regenerated; the frequency and all times are unreliable",
         item.message.empty() ? "" : "; ", lost.jumps, 100 * lost.part);
   }
   return item;

@@ -138,7 +138,7 @@ void add_ladder(const DiagnosedTraces& result, TerminalText& text) {
   const auto [pale, full] = bar_signs(text.unicode());
   std::string legend =
       fmt::format("{} noise floor: noise and scatter from cycle to cycle; {} error above it", pale, full);
-  if (d.ladder.size() > 1) legend += "; %: how much of that is gone (of its square)";
+  if (d.ladder.size() > 1) legend += "; %: share of its square that is removed";
   text.line(legend);
 }
 

@@ -49,7 +49,7 @@ std::string found_clause(const DiagnosedTraces& result, const Rung& rung) {
 
 std::string found_sentence(const DiagnosedTraces& result) {
   const std::vector<Rung> found = found_effects(result.diagnosis);
-  if (found.empty()) return "The model lacks something.";
+  if (found.empty()) return "The model is incomplete.";
   if (found.size() == 1) return "The effect found is " + found_clause(result, found.front()) + ".";
   std::string text = fmt::format("{} effects were found.", found.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -75,7 +75,7 @@ class Sentences {
       case Verdict::unexplained:
         return unexplained();
       case Verdict::unconfirmed:
-        return fmt::format("{} A run that was held back does not confirm it.", found_sentence(result_));
+        return fmt::format("{} A run not used in the fit does not confirm it.", found_sentence(result_));
       case Verdict::not_enough_data:
         break;
     }
@@ -136,8 +136,7 @@ class Sentences {
       return fmt::format("No effect of the catalogue explains what remains: the held-out error of the {} is {}, {}. {}",
                          law_text(d_), level(last()), floor_clause(), rest);
     }
-    return fmt::format("{} But that is not all: {}, and no effect explains the rest. {}", found_sentence(result_),
-                       fall(), rest);
+    return fmt::format("{} More remains: {}. No effect explains the rest. {}", found_sentence(result_), fall(), rest);
   }
 
   const DiagnosedTraces& result_;
@@ -192,9 +191,9 @@ std::string law_text(const Diagnosis& diagnosis) {
 
 std::string where_sentence(const std::vector<Share>& shares) {
   const Share* top = largest_share(shares);
-  if (top == nullptr) return "The error above the noise floor goes with no single variable.";
-  return fmt::format("{} of the error above the noise floor goes with {}.", is_most(*top) ? "Most" : "The largest part",
-                     variable_text(top->variable));
+  if (top == nullptr) return "The error above the noise floor varies with no single variable.";
+  return fmt::format("{} of the error above the noise floor varies with {}.",
+                     is_most(*top) ? "Most" : "The largest part", variable_text(top->variable));
 }
 
 std::string diagnosis_verdict(const DiagnosedTraces& result) {
@@ -230,7 +229,7 @@ std::string equivalence_sentence(const Diagnosis& diagnosis) {
 
 std::string confirmation_sentence(const Confirmation& c, const DiagnosedTraces& result) {
   if (!std::isfinite(c.final_rmse)) {
-    return c.path + ": could not be tried: this run cannot carry the analysis (identify says why)";
+    return c.path + ": not tried: this run cannot be analysed (run identify on it to see why)";
   }
   const std::string unit = level_unit(result);
   if (result.diagnosis.ladder.size() < 2) {

@@ -11,7 +11,7 @@ namespace tribofit {
 
 /// What is said of a diagnosis, on a terminal and on a page alike.
 
-/// "Most of the error above the noise floor goes with the disc angle."
+/// "Most of the error above the noise floor varies with the disc angle."
 std::string where_sentence(const std::vector<Share>& shares);
 
 /// What the diagnosis comes to, as an engineer would say it.

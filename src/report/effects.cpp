@@ -100,7 +100,7 @@ void add_effect(const EffectInfo& effect, TerminalText& text) {
 
 std::string render_laws(std::span<const Law> laws, const TerminalOptions& options) {
   TerminalText text(options);
-  text.heading("Laws, one of which every model has (--law KEY)");
+  text.heading("Laws (--law KEY); each model has one");
   for (const Law& law : laws) {
     const LawInfo info = describe(law);
     text.raw("  " + text.bold(std::string(to_string(law))) + "\n");

@@ -29,7 +29,7 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
     case FitQuality::floor_too_high:
       return fmt::format(
           "{} has a held-out error of {}, less than the noise floor of {}: the noise floor is overestimated here, so "
-          "the data do not say whether an effect is missing.",
+          "the data do not show whether an effect remains.",
           name, held_out, floor);
     case FitQuality::not_transferable:
       return fmt::format(
@@ -41,11 +41,10 @@ std::string verdict_on(const Identification& r, const Fit& fit) {
           "{} describes this trace as well as its noise allows: the held-out error is {}, the noise floor {}.", name,
           held_out, floor);
     case FitQuality::close:
-      return fmt::format("{} is close (typically {} off), but {}: a small effect may be missing.", name, typical,
-                         remains);
+      return fmt::format("{} is close (typically {} off), but {}: a small effect may remain.", name, typical, remains);
     case FitQuality::outline:
-      return fmt::format("{} gives the outline only (typically {} off): {}, so it lacks an effect.", name, typical,
-                         remains);
+      return fmt::format("{} describes only the general shape (typical error {}): {}. An effect is not modelled.", name,
+                         typical, remains);
     case FitQuality::poor:
     case FitQuality::unusable:
       break;
@@ -113,7 +112,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
     return {"to see which options there are", "identify --help"};
   }
   if (is_above_floor(result.fits[result.best])) {
-    return {"to see where the law fails and which effect is missing",
+    return {"to see where the law fails and which effect explains it",
             command_line(words_of({"diagnose"}, options.arguments, {"--profile"}, {"--protocol"}), {result.path})};
   }
   if (!options.csv_written) return {"to plot the curve, the residuals and the cycles", same_with(csv)};

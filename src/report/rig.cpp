@@ -71,7 +71,7 @@ Suggestion next_of(const RigIdentification& result, const TerminalOptions& optio
     return {"to undo the high-pass", of_verb({"rig"})};
   }
   if (!result.rig.determined) return {"to see the trace, its health and its law", of_verb({})};
-  if (!sticks) return {"to see where its law fails and which effect is missing", of_verb({"diagnose"})};
+  if (!sticks) return {"to see where its law fails and which effect explains it", of_verb({"diagnose"})};
   std::vector<std::string> radius;
   if (!trace.motion.conditions.radius.known()) radius = {"--radius", "15mm"};
   return {"to put the motion that law and rig predict beside the measured one", of_verb({"twin"}, radius)};

@@ -87,7 +87,7 @@ Suggestion next_after_twin(const TwinIdentification& result, const std::vector<s
   if (result.twin.agrees() && !result.law_falls_short()) {
     return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
   }
-  return {"to see where the law fails and which effect is missing", of_verb({"diagnose"})};
+  return {"to see where the law fails and which effect explains it", of_verb({"diagnose"})};
 }
 
 /// Whether the twin moves as the record does, and where it does not.
@@ -110,23 +110,23 @@ std::string twin_verdict(const TwinIdentification& result) {
     const Fit& fit = result.trace.fits.back();
     return text + fmt::format(
                       " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
-                      "floor, so an effect is not covered that comes and goes between them.",
+                      "floor, so an effect that changes from cycle to cycle may remain.",
                       over_floor(fit));
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
   return text + fmt::format(
                     "The twin of the {} law fails over {} (the worst first): the law, the rig or the record "
-                    "holds something else.",
+                    "is not as assumed.",
                     law, fmt::join(twin.failures(last), ", "));
 }
 
-/// Said first: a law that leaves clearly more than noise has the twin of another machine.
+/// Said first: the twin of a law that leaves clearly more than noise does not represent the machine.
 std::vector<std::string> warnings_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
   std::vector<std::string> warnings = result.trace.warnings;
   if (!result.twin.reason.empty() || !result.law_falls_short()) return warnings;
   const Fit& fit = result.trace.fits.back();
   warnings.insert(warnings.begin(),
-                  other_machine_warning("its twin is", fit, over_floor(fit),
+                  other_machine_warning("the twin does", fit, over_floor(fit),
                                         command_line(words_of({"diagnose"}, arguments), {result.trace.path})));
   return warnings;
 }

@@ -59,7 +59,7 @@ TEST(Formula, RefusesWhatItCannotRead) {
   // 300 K is 26.85 degC, but 5 K may be a width.
   EXPECT_NE(problem("h = a*(temperature-T0); a=1, T0=300K").find("in degC"), std::string::npos);
   EXPECT_EQ(problem("h = a*(temperature-T0); a=1, T0=26.85degC"), "accepted");
-  EXPECT_NE(problem("hump = a*v; a=").find("no number"), std::string::npos);
+  EXPECT_NE(problem("hump = a*v; a=").find("needs a number as its start value"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,1]").find("bounds"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,10garbage]").find("bounds"), std::string::npos);
   EXPECT_NE(problem("hump = a*v; a=5[0,inf]").find("bounds"), std::string::npos);

@@ -34,14 +34,14 @@ TEST_F(Gaps, AnIsolatedBadCellIsLeftOutAndSaid) {
     ASSERT_EQ(trace.steps.size(), 2U) << "nothing is taken across a gap";
     EXPECT_EQ(trace.steps[1].begin, 1000U);
     EXPECT_THAT(trace.warnings,
-                Contains(HasSubstr("1 row with a cell that holds no number was left out as a gap (line 1002)")));
+                Contains(HasSubstr("1 row with a cell that is not a number was left out as a gap (line 1002)")));
   }
 }
 
 TEST_F(Gaps, SeveralAreCountedWithTheirLines) {
   const Trace trace = read_trace(write(table({17, 18, 19, 3000}, "NaN")));
   EXPECT_EQ(trace.size(), rows - 4);
-  EXPECT_THAT(trace.warnings, Contains(HasSubstr("4 rows with a cell that holds no number were left out as gaps (lines "
+  EXPECT_THAT(trace.warnings, Contains(HasSubstr("4 rows with a cell that is not a number were left out as gaps (lines "
                                                  "19, 20, 21, 3002)")));
 }
 

@@ -197,7 +197,7 @@ TEST(Health, ChannelsThatStandStill) {
     }
     const HealthItem found = item(compute_motion(std::move(trace)), "drop-outs");
     EXPECT_EQ(found.status, Status::problem);
-    EXPECT_THAT(found.message, ::testing::HasSubstr("both channels stand still"));
+    EXPECT_THAT(found.message, ::testing::HasSubstr("both channels do not change"));
   }
 }
 

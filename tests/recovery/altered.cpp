@@ -218,7 +218,7 @@ TEST(NotAltered, OnlyASlewLimitHasOne) {
     slew_limited({channel}, 0.5)(trace, random);
     const Identification found = identified(std::move(trace));
     EXPECT_EQ(item(found, "clipping").status, HealthItem::Status::problem);
-    EXPECT_THAT(item(found, "clipping").message, ::testing::HasSubstr("never faster"));
+    EXPECT_THAT(item(found, "clipping").message, ::testing::HasSubstr("the slew rate of its amplifier limits it"));
   }
   const Identification sound = identified(truth::simulate(rig_of(11)).trace);
   EXPECT_EQ(item(sound, "clipping").status, HealthItem::Status::ok);
@@ -240,7 +240,7 @@ TEST(NotAltered, AMeasuredVelocityIsHeldAgainstRestAndOmegaR) {
   const HealthItem zero = check(1, 1e-3), gain = check(2, 0), block = check(-1, disc);
   for (const HealthItem& i : {gain, block}) EXPECT_EQ(i.status, HealthItem::Status::problem) << i.message;
   EXPECT_EQ(zero.status, HealthItem::Status::warning) << zero.message;
-  EXPECT_THAT(zero.message, ::testing::HasSubstr("its zero was off by as much, taken off"));
+  EXPECT_THAT(zero.message, ::testing::HasSubstr("the velocity has a zero error; corrected"));
   EXPECT_EQ(check(1.05, 0).status, HealthItem::Status::warning) << check(1.05, 0).message;
   EXPECT_THAT(gain.message, ::testing::HasSubstr("2 times the truth"));
   EXPECT_THAT(block.message, ::testing::HasSubstr("name the column v_b"));

@@ -164,7 +164,7 @@ TEST(DiagnosisPage, TellsTheWholeStoryInOrder) {
   for (const char* part :
        {"runs/r15.csv: stick-slip; 15 mm; 4 rpm; 50 N; 2 cycles", "0 exponential law", "0.00880 +/- 0.00020",
         "1 + runout", "99 %", "floor", "0.00310", "Where the exponential law fails",
-        "Most of the error above the noise floor goes with the disc angle", "angle", "82 %", "Verdict: effect-found",
+        "Most of the error above the noise floor varies with the disc angle", "angle", "82 %", "Verdict: effect-found",
         "The effect found is runout (A = 0.0480 +/- 0.0010)", "falls from 0.00880 to 0.00320", "runout.A",
         "[0.0460, 0.0500]", "load-dependence, crosstalk: there is no load channel",
         "identify --radius 15mm --effect runout runs/r15.csv"}) {
@@ -181,8 +181,8 @@ TEST(DiagnosisPage, EveryVerdictSaysNoMoreThanIsKnown) {
               AllOf(HasSubstr("The exponential law is enough"), HasSubstr("These data show no further effect"),
                     Not(HasSubstr("Where the")), HasSubstr("identify --radius 15mm --csv r15-csv runs/r15.csv")));
   EXPECT_THAT(prose(unexplained()),
-              AllOf(HasSubstr("But that is not all"), HasSubstr("2.0 times the noise floor"),
-                    HasSubstr("no effect explains the rest"), HasSubstr("goes with the sliding speed"),
+              AllOf(HasSubstr("More remains: "), HasSubstr("2.0 times the noise floor"),
+                    HasSubstr("No effect explains the rest"), HasSubstr("varies with the sliding speed"),
                     HasSubstr("--effect runout --formula 'rest = a*exp(-v/w); a=0.02, w=6mm/s'")));
   DiagnosedTraces nothing = unexplained();
   nothing.diagnosis.ladder.pop_back();

@@ -114,7 +114,7 @@ TEST(Terminal, TheVerdictFollowsTheErrorAboveTheFloor) {
   result.fits[0].error.held_out_rmse = 0.0075;
   EXPECT_THAT(rendered(result), HasSubstr("does not carry over"));
   result.fits[0].error.rmse = 0.0074;
-  EXPECT_THAT(rendered(result), HasSubstr("a small effect may be missing"));
+  EXPECT_THAT(rendered(result), HasSubstr("a small effect may remain"));
   result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0020;
   EXPECT_THAT(rendered(result), HasSubstr("is overestimated here"));
   result.fits[0].error.held_out_rmse = result.fits[0].error.rmse = 0.0075;

@@ -17,7 +17,7 @@
 namespace tribofit {
 
 /// Said first where law and rig stand for more than they were identified from: a law that leaves `ratio` times the
-/// noise floor describes another machine. subject: "its twin is"; command: the diagnosis of the record.
+/// noise floor describes another machine. subject: "the twin does"; command: the diagnosis of the record.
 std::string other_machine_warning(std::string_view subject, const Fit& fit, double ratio, const std::string& command);
 
 /// What a person reads of each kind of study, in mm, mm/s, N/mm, ms, rpm.

@@ -201,7 +201,7 @@ Chart record_chart(const DrawnTrace& d) {
   Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(kRecordBins)}, false);
   chart.id = d.id + "-record";
   chart.title = "The whole record";
-  chart.note = "Every stretch is drawn from its least to its largest sample, so that no peak is lost.";
+  chart.note = "Each drawn interval shows its smallest and largest sample, so single-sample spikes stay visible.";
   chart.height = 400;
   shade_left_out(d, chart);
   return chart;

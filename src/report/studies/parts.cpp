@@ -11,8 +11,8 @@ namespace tribofit {
 
 std::string other_machine_warning(std::string_view subject, const Fit& fit, double ratio, const std::string& command) {
   return fmt::format(
-      "the {} law leaves {:.1f} times the noise floor of the record: {} of another machine until the effect behind it "
-      "is found: {}",
+      "the {} law leaves {:.1f} times the noise floor of the record: {} not represent this machine until the effect "
+      "behind it is found: {}",
       fit.model.name(), ratio, subject, command);
 }
 

@@ -26,7 +26,7 @@ std::vector<std::string> critical_sentences(const StudiedMachine& studied, const
   const auto add = [&](const char* what, double value, const Interval95& range) {
     if (std::isnan(value)) return;
     std::string sentence = fmt::format("{} {}", what, velocity_text(value, studied.machine));
-    if (!std::isnan(range.lower95)) sentence += ",  " + range_text(range, kMillimetre) + " mm/s (95 %)";
+    if (!std::isnan(range.lower95)) sentence += ", " + range_text(range, kMillimetre) + " mm/s (95 %)";
     out.push_back(std::move(sentence));
   };
   for (const double v : c.linear) {
@@ -59,8 +59,8 @@ std::vector<std::string> critical_sentences(const StudiedMachine& studied, const
 std::string bistable_sentence(const CriticalSpeed& c) {
   if (!c.is_bistable()) return "";
   return fmt::format(
-      "Between {} and {} mm/s it depends on the past which of the two is seen: stick-slip goes on where it has begun, "
-      "sliding goes on where it has (a subcritical bifurcation).",
+      "Between {} and {} mm/s both motions are stable, and the history decides: stick-slip continues if it has "
+      "started, and so does sliding (a subcritical bifurcation).",
       significant(1e3 * c.stick_returns, 4), significant(1e3 * c.stick_vanishes, 4));
 }
 

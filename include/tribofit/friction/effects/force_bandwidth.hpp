@@ -42,7 +42,7 @@ struct ForceBandwidth {
         .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps)},
         .forms = {{"first-order",
                    "one time constant, as an amplifier has; seen at re-stick, where the reading of "
-                   "friction trails off"}}};
+                   "friction decays"}}};
   }
 
   /// Group delay of the filter far below its corner.

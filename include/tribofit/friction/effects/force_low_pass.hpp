@@ -9,7 +9,7 @@ namespace tribofit {
 
 /// A form of force-bandwidth: the friction channel is a first-order low-pass. In slip that is the equation of
 /// frictional-lag; at re-stick, where friction becomes the spring's at once, a lag of the contact ends and the reading
-/// of a slow channel trails off. There kinematics/ finds it; every law is then filtered like the channel.
+/// of a slow channel decays. There kinematics/ finds it; each law is then filtered like the channel.
 struct ForceLowPass {
   static constexpr std::string_view key = ForceBandwidth::key;
   static constexpr bool kinematic_effect = true;
@@ -33,7 +33,7 @@ struct ForceLowPass {
     if (!tau.any()) return {};
     const double corner = 1 / (2 * std::numbers::pi * tau.value);
     return {.values = {{corner, corner * tau.std_error / tau.value}},
-            .reason = "the reading of friction trails off at re-stick; every law was filtered like it"};
+            .reason = "the reading of friction decays at re-stick; each law was filtered the same way"};
   }
 
   static double friction_low_pass(const double* p) { return p[0]; }

@@ -9,7 +9,7 @@ namespace tribofit {
 /// them before any law is fitted. In a friction model they have no term.
 
 inline constexpr std::string_view kShownByPlateau =
-    "the plateau of stick shows it; it was undone before the law was fitted";
+    "the plateau of stick shows it; it was corrected before the law was fitted";
 
 /// The ratio of the plateau to the stated omega r, where it was corrected: radius and gain show in it alike.
 inline FoundBeforeFit found_on_plateau(const Motion& motion) {

@@ -40,8 +40,8 @@ struct VelocityOffset {
     if (!motion.velocity_zero.any()) return {};
     return {.values = {{motion.velocity_zero.value, motion.velocity_zero.std_error}},
             .reason =
-                "the block goes nowhere, yet its velocity is off on average, and on the plateau of stick by as "
-                "much; it was taken off before the law was fitted"};
+                "the block has no net displacement, but its mean velocity is not zero, and the plateau of stick is off "
+                "by as much; it was corrected before the law was fitted"};
   }
 
   static double velocity_zero(const double* p) { return p[0]; }
@@ -76,7 +76,7 @@ struct VelocityBandwidth {
     if (!tau.any()) return {};
     const double corner = 1 / (2 * std::numbers::pi * tau.value);
     return {.values = {{corner, corner * tau.std_error / tau.value}},
-            .reason = "v_r trails off at re-stick; it was undone before the law was fitted"};
+            .reason = "v_r decays at re-stick; it was corrected before the law was fitted"};
   }
 
   static double velocity_low_pass(const double* p) { return p[0]; }
@@ -109,8 +109,8 @@ struct VelocityCompression {
     if (!motion.compression.any()) return {};
     return {.values = {{motion.compression.value, motion.compression.std_error}},
             .reason =
-                "the plateau of stick is omega r, yet the block would go somewhere; it was undone before the law "
-                "was fitted"};
+                "the plateau of stick is omega r, but the block would have a net displacement; it was corrected before "
+                "the law was fitted"};
   }
 
   static double velocity_compression(const double* p) { return p[0]; }
@@ -141,7 +141,7 @@ struct ClockDrift {
     if (!motion.clock_drift.any()) return {};
     return {.values = {{motion.clock_drift.value, motion.clock_drift.std_error}},
             .reason =
-                "friction jumps ever later (or earlier) than the velocity comes to rest; it was undone before "
+                "friction jumps ever later (or earlier) than the velocity comes to rest; it was corrected before "
                 "the law was fitted"};
   }
 
