@@ -96,6 +96,13 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   return tries[best].p;
 }
 
+/// Two steps of a search that has ended: equal to a hundredth of what any error of a parameter can be seen to.
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double kSame = 1e-6;
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](double x, double y) { return std::abs(x - y) <= kSame * std::max(std::abs(x), std::abs(y)); });
+}
+
 /// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
 /// that scatter taken out.
 Solution joint_estimate(FitContext& context, Fit& fit) {
@@ -108,17 +115,24 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   std::vector<double> p = context.solve(all, best_of_starts(context, starts, search, fit), search).p;
   const std::optional<ChangePoint> change = change_point_of(context.model);
   Bounds held = context.bounds;
-  // The direction in which a slip scatters is that of the law: known better once it has been taken out.
+  // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
+  // is most of what a law leaves, three passes still hold something of the start.
   const ModelResiduals plain(context.model, context.observations, all, context.loss);
-  constexpr int kPasses = 3;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  constexpr int kFewestPasses = 3, kMostPasses = 20;
+  const int most = look ? kFewestPasses : kMostPasses;
+  bool is_settled = false;
+  for (int pass = 0; pass < most && !is_settled; ++pass) {
     context.whitening = plain.whitening_at(p.data());
     if (change) {  // slips at levels of their own would hide a change that is misplaced
       p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p);
       held.lower[change->time] = held.upper[change->time] = p[change->time];
     }
-    if (pass < kPasses - 1) p = context.solve(all, p, search, held).p;
+    if (pass + 1 == most) break;
+    std::vector<double> next = context.solve(all, p, search, held).p;
+    is_settled = pass + 2 >= kFewestPasses && are_alike(p, next);
+    p = std::move(next);
   }
+  if (is_settled) context.whitening = plain.whitening_at(p.data());
   out.result = context.solve(all, p, look ? search : careful_search(), held);
   return out;
 }

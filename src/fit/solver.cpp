@@ -188,6 +188,20 @@ SolverResult unsolved(const Residuals& problem, std::span<const double> start, b
   return result;
 }
 
+/// A step that is cut off at a bound is not the best one for the others, and shorter and shorter ones end far from
+/// where they should. What ended on a bound is held there, and the others go on.
+void finish_beside_bounds(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
+                          std::span<const double> upper, const SolverOptions& options, SolverResult& result) {
+  std::vector<std::size_t> inside;
+  for (const std::size_t k : free) {
+    if (lower.empty() || (result.p[k] > lower[k] && result.p[k] < upper[k])) inside.push_back(k);
+  }
+  if (inside.empty() || inside.size() == free.size()) return;
+  bool ran_away = false;
+  SolverResult finished = descend(problem, result.p, inside, lower, upper, options, ran_away);
+  if (finished.converged && !ran_away && finished.cost <= result.cost) result = std::move(finished);
+}
+
 }  // namespace
 
 SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower,
@@ -207,6 +221,7 @@ SolverResult minimize(const Residuals& problem, std::span<const double> start, s
     SolverResult retry = descend(problem, start, free, lower, upper, cautious, ran_away);
     if (retry.cost < result.cost) result = std::move(retry);
   }
+  finish_beside_bounds(problem, free, lower, upper, options, result);
   return result;
 }
 
