@@ -157,7 +157,7 @@ SlowNoise slow_noise_of(const Linearised& model) {
     const double norm = shape.squaredNorm();
     levels.push_back(norm > 0 ? shape.dot(model.rows[c].col(model.rows[c].cols() - 1)) / norm : 0);
   }
-  return slow_noise(levels);
+  return slow_noise(levels, model.known_flicker);
 }
 
 DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow) {

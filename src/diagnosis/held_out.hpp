@@ -39,6 +39,7 @@ struct Linearised {
   std::vector<Eigen::MatrixXd> rows;  ///< of each cycle
   std::vector<bool> free;             ///< parameters that may move
   Eigen::VectorXd level = {};         ///< change of the parameters that raises all friction alike; empty: none known
+  double known_flicker = 0;           ///< power of 1/f noise of that level, which the record shows without any model
 
   bool finite() const { return !rows.empty(); }
   std::size_t parameters() const { return free.size(); }

@@ -96,7 +96,7 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   const Observations& observations = level.observations;
   const std::vector<std::size_t> all = all_slips(observations);
   ModelResiduals residuals(trial.model, observations, all);
-  if (trial.whitening.part > 0) residuals.whiten(trial.whitening);
+  if (trial.whitening.any()) residuals.whiten(trial.whitening);
   Linearised wide;
   wide.rows = residuals.white_rows(trial.p.data(), columns);
   if (!wide.finite()) return {};
@@ -104,6 +104,7 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   wide.free = trial.linear.free;
   wide.free.resize(width, true);
   wide.level = trial.linear.level;
+  wide.known_flicker = trial.linear.known_flicker;
   const Eigen::VectorXd step = gauss_newton_step(wide);
   const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
   const double after = sum(squares_after(wide, step));

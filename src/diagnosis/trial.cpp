@@ -21,7 +21,7 @@ namespace {
 ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
                             const ModelResiduals::Whitening& whitening) {
   ModelResiduals residuals(model, observations, all_slips(observations));
-  if (whitening.part > 0) residuals.whiten(whitening);
+  if (whitening.any()) residuals.whiten(whitening);
   return residuals;
 }
 
@@ -63,7 +63,10 @@ double judge(const DiagnosisContext& context, const ModelResiduals& residuals, c
     trial.linear.free[k] = !trial.at_bound[k];
   }
   // Several records have levels of their own, which are no noise that wanders from one to the next.
-  if (context.records.size() == 1) trial.linear.level = level_change(trial.model, trial.p);
+  if (context.records.size() == 1) {
+    trial.linear.level = level_change(trial.model, trial.p);
+    trial.linear.known_flicker = context.fine.observations.flicker;
+  }
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
   trial.held_out = held_out_squares(trial.linear, context.blocks);
   pay_for_scatter(trial.whitening, squares);

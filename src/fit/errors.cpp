@@ -64,29 +64,11 @@ std::size_t noise_stretch(std::size_t samples) {
   return std::clamp(samples / 4, kShortestNoiseStretch, kLongestNoiseStretch);
 }
 
-namespace {
-
-/// Samples of a stretch of SampleErrors::levels, of which a stretch of noise has so many.
-std::size_t level_stretch(const Observations& observations, std::size_t& per_noise_stretch) {
-  std::size_t samples = 0, longest = 0;
-  for (const auto& slip : observations.slips) {
-    samples += slip.samples.size();
-    longest = std::max(longest, slip.samples.size());
-  }
-  const std::size_t stretch = noise_stretch(longest);
-  const std::size_t shortest = std::max(kShortestNoiseStretch, samples / kEnoughLevels);
-  per_noise_stretch = std::max<std::size_t>(1, stretch / shortest);
-  return stretch / per_noise_stretch;
-}
-
-}  // namespace
-
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations) {
   SampleErrors out;
   out.squares.assign(observations.cycles, 0.0);
   out.counts.assign(observations.cycles, 0.0);
-  const std::size_t length = level_stretch(observations, out.levels_per_noise_stretch);
   double relative = 0, relative_count = 0, sum = 0, sum_squares = 0, samples = 0;
   std::vector<double> mu;
   for (const auto& range : observations.slips) {
@@ -94,19 +76,13 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
     mu.resize(slip.size());
     evaluate<double>(model, p.data(), slip, slip.velocity, mu);
     const std::span<const double> measured = record.friction(range);
-    double squares = 0, stretch = 0, good = 0;
-    std::size_t in_stretch = 0;
+    double squares = 0, good = 0;
     for (std::size_t i = 0; i < mu.size(); ++i) {
       if (record.is_spoilt(range, i)) continue;
       good += 1;
       const double r = measured[i] - mu[i];
       const double weight = record.weight(range, i);
       squares += weight * r * r;
-      stretch += r;
-      if (++in_stretch == length) {
-        out.levels.push_back(std::exchange(stretch, 0) / static_cast<double>(length));
-        in_stretch = 0;
-      }
       const double level = measured[i] * range.direction;
       sum += weight * level;
       sum_squares += weight * level * level;

@@ -34,13 +34,16 @@ class FullRecord {
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 
-/// 1/f noise as the stick shows it.
-struct FlickerInStick {
-  double variance = 0;  ///< in every e-fold of time; 0: none, or the sticks are too short to show it
-  double samples = 0;   ///< mean length of the stretches that noise was taken over
+/// 1/f noise of friction as it shows over times in which no law changes it but as a parabola: in stick, and where nothing
+/// sticks in stretches of the sliding. No law has to be right for it.
+struct FlickerNoise {
+  double power = 0;    ///< a of the spectrum a/f: half the variance in every e-fold of time; 0: none shows
+  double samples = 0;  ///< length of the stretches that it was taken over
 };
-/// From how the noise in stick grows from shorter stretches to longer ones.
-FlickerInStick flicker_in_stick(const Motion& motion, const Segmentation& segmentation);
+FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
+/// Writes it to the observations of one record, with what it does to each slip: as much in every e-fold of time, from the
+/// slip to the record.
+void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out);
 
 /// What a model leaves on every sample.
 struct SampleErrors {
@@ -48,8 +51,6 @@ struct SampleErrors {
   std::vector<double> squares;  ///< sum of squares of each cycle, break-away included
   std::vector<double> counts;   ///< residuals of each cycle
   double constant_rmse = 0;     ///< what a constant |friction| would leave
-  std::vector<double> levels;   ///< mean residuals of successive stretches of equal length
-  std::size_t levels_per_noise_stretch = 1;
 };
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations);

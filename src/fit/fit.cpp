@@ -20,7 +20,6 @@
 #include "stick.hpp"
 #include "systematic.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit {
 
@@ -94,47 +93,19 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
 }
 
-/// What the model leaves may be 1/f noise, and is not rather of another kind, which may be a cause that was not
-/// recorded.
-bool is_slow_sensor_noise(const SlowNoise& slow) {
-  return slow.is_flicker && !slow.is_rather_other;
-}
-
-/// Standard deviation of 1/f noise over longer times than sensor noise was taken over; 0 where there is none.
-double slow_noise_beyond_stretches(const SampleErrors& errors) {
-  const SlowNoise slow = slow_noise(errors.levels);
-  if (!is_slow_sensor_noise(slow)) return 0;
-  const std::size_t stretch = errors.levels_per_noise_stretch;
-  const std::vector<double> mean(stretch, 1 / static_cast<double>(stretch));
-  const double within_stretch = slow.covariance[0] - slow.variance_of_sum(mean);
-  // What a fit takes away at low frequencies is not left.
-  double squares = 0;
-  for (const double level : errors.levels) squares += level * level / static_cast<double>(errors.levels.size());
-  return std::sqrt(std::clamp(slow.variance_within() - within_stretch, 0.0, squares));
-}
-
-/// The same from one slip to the next, beside the scatter of break-away: slips are far apart, and what 1/f noise does
-/// within them is known from the stick.
-///
-/// 1/f noise has as much in every octave, and those that the stick shows bound what it has over longer times: friction
-/// that wanders by more from slip to slip does so itself.
-double slow_noise_between_slips(const FitContext& context, const std::vector<double>& p,
-                                const NormalEquations& equations, const std::vector<bool>& free) {
-  if (context.records.size() > 1) return 0;  // levels of their own are no noise
-  const SlowLevels slow = slow_levels(equations, level_change(context.model, p), free);
-  if (!is_slow_sensor_noise(slow.noise)) return 0;
-  const Observations& data = context.observations;
-  double squares = 0, weights = 0;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    squares += data.weight[i] * data.friction[i] * data.friction[i];
-    weights += data.weight[i];
+/// Standard deviation of 1/f noise over longer times than sensor noise was taken over, up to the record. 1/f noise has as
+/// much in every e-fold of time, and those in which no law has to be right bound what it has over longer times: friction
+/// that wanders by more does so itself. left: variance of what a model leaves beside other noise; what a fit takes away
+/// at low frequencies is not left.
+double slow_sensor_noise(std::span<const Record> records, double left) {
+  double variance = 0;
+  for (const Record& record : records) {
+    const FlickerNoise flicker = flicker_noise(*record.motion, *record.segmentation);
+    if (!(flicker.power > 0)) continue;
+    const double times = static_cast<double>(record.motion->size()) / (kPartBesideParabola * flicker.samples);
+    variance += 2 * flicker.power * std::log(std::max(1.0, times)) / static_cast<double>(records.size());
   }
-  const auto& [motion, segmentation] = context.records[0];
-  const FlickerInStick flicker = flicker_in_stick(*motion, *segmentation);
-  if (!(flicker.variance > 0)) return 0;
-  const double seen = kPartBesideParabola * flicker.samples;
-  const double most = flicker.variance * std::log(std::max(1.0, static_cast<double>(motion->size()) / seen));
-  return std::sqrt(std::min(most, std::min(slow.noise.variance_within(), slow.mean_square) * squares / weights));
+  return std::sqrt(std::clamp(variance, 0.0, std::max(0.0, left)));
 }
 
 /// What a fit with so many parameters leaves of points, as one value: their noise is no larger, though points that are
@@ -144,24 +115,20 @@ double noise_beside(const Fit& fit, std::size_t parameters) {
   return fit.error.rmse * std::sqrt(count / std::max(1.0, left));
 }
 
-void fill_floor(const FitContext& context, const std::vector<double>& p, const NormalEquations& equations,
-                const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
+void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.records);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
   const ModelResiduals::Whitening whitening =
-      context.whitening.part > 0 ? context.whitening
-                                 : context.residuals(all_slips(context.observations)).whitening_at(p.data());
+      context.whitening.any() ? context.whitening
+                              : context.residuals(all_slips(context.observations)).whitening_at(p.data());
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   const double scatter = std::pow(floor.scatter, 2) * sensitivity / std::max(1.0, count);
-  const bool sticks = std::any_of(context.records.begin(), context.records.end(), [](const Record& record) {
-    return record.segmentation->kind != MotionKind::always_slipping;
-  });
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
   if (!points) {
     floor.slow_noise =
-        sticks ? slow_noise_between_slips(context, p, equations, free) : slow_noise_beyond_stretches(errors);
+        slow_sensor_noise(context.records, std::pow(fit.error.rmse, 2) - std::pow(floor.noise, 2) - scatter);
   }
   floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.slow_noise, 2) + scatter);
   set_floor(floor, fit);
@@ -264,7 +231,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
 
   const SampleErrors errors = sample_errors(model, p, FullRecord(records, observations, model.needs()), observations);
   fill_errors(errors, fit);
-  fill_floor(context, p, equations, freedom.inside, errors, fit);
+  fill_floor(context, p, errors, fit);
   cross_validate(context, solution, equations, freedom.inside, errors, fit);
   fill_errors_of_records(context, p, freedom.inside, fit);
   if (!context.by_extremes()) {

@@ -25,7 +25,7 @@ struct FitContext {
   bool by_extremes() const { return options.protocol == Protocol::published; }
   ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
     ModelResiduals out(model, observations, slips, loss);
-    if (whitening.part > 0) out.whiten(whitening, own_levels);
+    if (whitening.any()) out.whiten(whitening, own_levels);
     return out;
   }
   SolverResult solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,

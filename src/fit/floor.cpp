@@ -13,6 +13,7 @@
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/slow_noise.hpp"
 
 namespace tribofit {
 
@@ -32,7 +33,7 @@ double pooled_noise(const std::vector<Remainder>& parts) {
   std::vector<double> variances;
   for (const Remainder& part : parts) variances.push_back(part.squares / part.count);
   // The quiet quarter sets the scale: ringing after re-stick may fill most stretches of a short stick.
-  const double limit = 3 * quantile(std::move(variances), 0.25);
+  const double limit = kLoudest * quantile(std::move(variances), 0.25);
   Remainder all;
   double used = 0;
   for (const Remainder& part : parts) {
@@ -45,12 +46,6 @@ double pooled_noise(const std::vector<Remainder>& parts) {
   return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
 }
 
-double mean_count(const std::vector<Remainder>& parts) {
-  double count = 0;
-  for (const Remainder& part : parts) count += part.count / static_cast<double>(parts.size());
-  return count;
-}
-
 bool is_spoilt(const Motion& motion, const SampleRange& samples) {
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     if (motion.has_fault(i, SampleFault::friction)) return true;
@@ -60,38 +55,58 @@ bool is_spoilt(const Motion& motion, const SampleRange& samples) {
 
 constexpr std::size_t kStretches = 1000;  ///< enough to know a spread to 0.2 %
 
-/// Every stick without its ends, where the transients of re-stick and break-away are, in stretches of so many samples.
-std::vector<Remainder> stick_residuals(const Motion& motion, const Segmentation& segmentation,
-                                       std::size_t stretch = kLongestNoiseStretch) {
-  std::vector<Remainder> parts;
+/// Every stick without its ends, where the transients of re-stick and break-away are.
+std::vector<SampleRange> stick_stretches(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<SampleRange> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
     if (cycle.stick.size() < kShortestStick || !segmentation.is_selected(cycle)) continue;
     const std::size_t begin = cycle.stick.begin + margin, length = cycle.stick.size() - 2 * margin;
-    const std::size_t pieces = std::max<std::size_t>(1, length / stretch);
+    const std::size_t pieces = std::max<std::size_t>(1, length / kLongestNoiseStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
       const SampleRange piece{begin + k * length / pieces, begin + (k + 1) * length / pieces};
-      if (!is_spoilt(motion, piece)) parts.push_back(about_parabola(motion.friction, piece.begin, piece.end));
+      if (!is_spoilt(motion, piece)) parts.push_back(piece);
     }
-    if (parts.size() * stretch > kStretches * kLongestNoiseStretch) break;
+    if (parts.size() > kStretches) break;
   }
   return parts;
 }
 
 /// Stretches of the slips, as long as friction can be a parabola over them.
-std::vector<Remainder> slip_residuals(const Motion& motion, const Segmentation& segmentation) {
-  std::vector<Remainder> parts;
+std::vector<SampleRange> slip_stretches(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<SampleRange> parts;
   const bool sticks = segmentation.kind == MotionKind::stick_slip;
   for (const Cycle& cycle : segmentation.cycles) {
     if (sticks && !segmentation.is_selected(cycle)) continue;
     const std::size_t stretch = noise_stretch(cycle.slip.size());
     for (std::size_t i = cycle.slip.begin; i + stretch <= cycle.slip.end; i += stretch) {
-      if (segmentation.is_selected(SampleRange{i, i + stretch}) && !is_spoilt(motion, {i, i + stretch})) {
-        parts.push_back(about_parabola(motion.friction, i, i + stretch));
-      }
+      const SampleRange piece{i, i + stretch};
+      if (segmentation.is_selected(piece) && !is_spoilt(motion, piece)) parts.push_back(piece);
     }
   }
   return parts;
+}
+
+std::vector<Remainder> about_parabolas(const Motion& motion, const std::vector<SampleRange>& stretches) {
+  std::vector<Remainder> out;
+  for (const SampleRange& part : stretches) out.push_back(about_parabola(motion.friction, part.begin, part.end));
+  return out;
+}
+
+/// Stretches in which the speed is as near to a parabola as in the quiet ones: where it jumps or turns friction does.
+std::vector<SampleRange> of_even_speed(const Motion& motion, std::vector<SampleRange> stretches) {
+  std::vector<double> variances;
+  for (const SampleRange& part : stretches) {
+    const Remainder left = about_parabola(motion.relative_velocity, part.begin, part.end);
+    variances.push_back(left.squares / left.count);
+  }
+  if (variances.empty()) return stretches;
+  const double limit = kLoudest * quantile(variances, 0.25);
+  std::vector<SampleRange> out;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    if (variances[k] <= limit) out.push_back(stretches[k]);
+  }
+  return out;
 }
 
 /// Standard deviation of the break-away level from cycle to cycle: what is left when its dependence on time, direction,
@@ -141,25 +156,43 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
 
 }  // namespace
 
-FlickerInStick flicker_in_stick(const Motion& motion, const Segmentation& segmentation) {
-  const auto longer = stick_residuals(motion, segmentation);
-  const auto shorter = stick_residuals(motion, segmentation, kLongestNoiseStretch / kShorterNoiseStretch);
-  FlickerInStick flicker;
-  flicker.samples = mean_count(longer);
-  const double ratio = flicker.samples / mean_count(shorter);
-  if (!(ratio >= kLeastStretchRatio)) return flicker;
-  const double growth = std::pow(pooled_noise(longer), 2) - std::pow(pooled_noise(shorter), 2);
-  flicker.variance = std::max(0.0, growth) / std::log(ratio);
-  return flicker;
+FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation) {
+  const bool sticks = segmentation.kind != MotionKind::always_slipping;
+  const auto parts =
+      sticks ? stick_stretches(motion, segmentation) : of_even_speed(motion, slip_stretches(motion, segmentation));
+  std::vector<double> lengths;
+  for (const SampleRange& part : parts) lengths.push_back(static_cast<double>(part.size()));
+  if (lengths.empty()) return {};
+  const auto length = static_cast<std::size_t>(quantile(std::move(lengths), 0.25));  // of all but the shortest
+  std::vector<std::span<const double>> stretches;
+  for (const SampleRange& part : parts) {
+    if (part.size() >= length) stretches.push_back(std::span(motion.friction).subspan(part.begin, length));
+  }
+  return {flicker_power(stretches), static_cast<double>(length)};
+}
+
+void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out) {
+  if (motion.is_points()) return;
+  const double power = flicker_noise(motion, segmentation).power;
+  for (auto& slip : out.slips) {
+    const auto times = static_cast<double>(motion.size()) / static_cast<double>(slip.samples.size());
+    slip.slow_variance = 2 * power * std::log(times);
+  }
+  double squares = 0, weights = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    squares += out.weight[i] * out.friction[i] * out.friction[i];
+    weights += out.weight[i];
+  }
+  if (squares > 0) out.flicker = power * weights / squares;
 }
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
   if (motion.is_points()) return noise_of_points(motion, segmentation);
   Floor floor;
-  std::vector<Remainder> parts = stick_residuals(motion, segmentation);
+  std::vector<Remainder> parts = about_parabolas(motion, stick_stretches(motion, segmentation));
   floor.source = "stick";
   if (parts.size() < 3) {
-    parts = slip_residuals(motion, segmentation);
+    parts = about_parabolas(motion, slip_stretches(motion, segmentation));
     floor.source = "slip";
   }
   floor.noise = pooled_noise(parts);

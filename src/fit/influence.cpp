@@ -141,7 +141,8 @@ Eigen::VectorXd level_change(const FrictionModel& model, const std::vector<doubl
   return change;
 }
 
-SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free) {
+SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free,
+                       double known_flicker) {
   SlowLevels out;
   const std::size_t cycles = equations.curvature.size();
   out.influence.resize(static_cast<Eigen::Index>(cycles), level.size());
@@ -152,9 +153,8 @@ SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& 
     const double norm = level.dot(pull);
     levels.push_back(norm > 0 ? level.dot(equations.gradient[c]) / norm : 0);
     out.influence.row(static_cast<Eigen::Index>(c)) = (inverse * pull).transpose();
-    out.mean_square += levels.back() * levels.back() / static_cast<double>(cycles);
   }
-  out.noise = slow_noise(levels);
+  out.noise = slow_noise(levels, known_flicker);
   return out;
 }
 

@@ -43,9 +43,10 @@ Eigen::VectorXd level_change(const FrictionModel& model, const std::vector<doubl
 struct SlowLevels {
   SlowNoise noise;            ///< of the levels, in parts of friction
   Eigen::MatrixXd influence;  ///< of the level of each cycle on each parameter: cycles x parameters
-  double mean_square = 0;     ///< of the levels, in squared parts of friction
 };
-SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free);
+/// known_flicker: Observations::flicker.
+SlowLevels slow_levels(const NormalEquations& equations, const Eigen::VectorXd& level, const std::vector<bool>& free,
+                       double known_flicker);
 
 /// What the influences say of the parameters. An error is no smaller than slow noise makes it beside scatter that is
 /// independent from cycle to cycle.

@@ -18,23 +18,22 @@ inline constexpr std::size_t kShortestNoiseStretch = 12, kLongestNoiseStretch = 
 /// would be a quarter wider than with one variance for all, which a standard error of each point serves better.
 inline constexpr double kFewestFreeVariances = 5;
 
-/// Whether noise is 1/f noise shows over stretches so much shorter: a quarter of 200 samples is beyond the memory of an
-/// amplifier that follows within ten, and leaves two octaves.
-inline constexpr std::size_t kShorterNoiseStretch = 4;
-/// An octave between the two; with less, as in short sticks, a growth is what few stretches make of white noise.
-inline constexpr double kLeastStretchRatio = 2;
-
 /// A parabola over a stretch takes away what is slower than a third of it.
 inline constexpr double kPartBesideParabola = 1.0 / 3;
-
-/// Levels by which 1/f noise is distinguished from what a wrong model leaves: with 600 it is in four of five records,
-/// with 60 in hardly any; more only cost time.
-inline constexpr std::size_t kEnoughLevels = 2000;
 
 /// Periods in a slip from which a steady line and a ring are looked for. A line with less than half of one moves slips
 /// as a whole, as 1/f noise does: with fewer one is named in empty records with such noise. A ring with fewer than six
 /// is not distinguished from the shape of the law.
 inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
+
+/// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are distinct:
+/// less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more than chance
+/// would make them, before noise that raises whole slips is there: it is one test a model. Less: white noise passes for
+/// it now and then; more: laws are mistaken for one another in 1/f noise.
+inline constexpr double kLeastIndependence = 1e-6, kSigmasOfSlowNoise = 3;
+
+/// Variance of a stretch over that of the quiet quarter, beyond which it holds something else than noise.
+inline constexpr double kLoudest = 3;
 
 // ---- slips
 

@@ -105,7 +105,7 @@ bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p,
 }
 
 bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain) const {
-  const bool whitens = whitening_ != nullptr && whitening_->part > 0 && !plain;
+  const bool whitens = whitening_ != nullptr && whitening_->any() && !plain;
   const double level = whitens && own_levels_ ? whitening_->level[slips_[k]] : 0;
   const auto& range = observations_.slips[slips_[k]];
   const std::size_t n = with_jacobian ? parameter_count() : 0;
@@ -155,9 +155,27 @@ bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector
       wider << block.leftCols(block.cols() - 2), more, block.rightCols(2);
       block = std::move(wider);
     }
+    if (whitening_ != nullptr && whitening_->slow > 0) whiten_level(observations_.slips[slips_[k]], block);
     blocks[k] = triangular_factor(block);
   }
   return true;
+}
+
+Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation& range) const {
+  Eigen::VectorXd out(friction_rows(range));
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
+  }
+  if (range.from_stick) out(out.size() - 1) = range.direction;  // of |friction|
+  return out;
+}
+
+void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Block& block) const {
+  const Eigen::VectorXd level = level_column(range);
+  const double norm = level.squaredNorm();
+  const double part = 1 - 1 / std::sqrt(1 + whitening_->slow * norm);
+  const Eigen::RowVectorXd mean = level.transpose() * block.topRows(level.size()) / norm;
+  block.topRows(level.size()) -= part * level * mean;
 }
 
 std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Block>& blocks) const {
@@ -262,62 +280,6 @@ std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const do
     out[k].rigid = (weights_[range.record] * v).squaredNorm();
     out[k].rows = static_cast<double>(stick_rows(range));
     for (const double r : stick_residuals(range, p)) out[k].left += r * r;
-  }
-  return out;
-}
-
-ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
-  const auto residual = static_cast<Eigen::Index>(parameter_count());
-  Whitening out;
-  out.g.resize(observations_.slips.size());
-  out.level.assign(observations_.slips.size(), 0.0);
-  out.weight.assign(observations_.slips.size(), 0.0);
-  const bool breaks_away =
-      std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
-  if (!breaks_away) return out;
-  // delta_i of each slip by least squares, and what noise is left once it is taken out.
-  std::vector<double> deltas;
-  std::vector<std::size_t> records;
-  double left = 0, freedom = 0, norms = 0;
-  Block block;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, true, block, true)) return out;
-    Eigen::VectorXd& g = out.g[slips_[k]];
-    const Eigen::Index rows = friction_rows(observations_.slips[slips_[k]]);
-    g = block.col(0).head(rows);
-    const double norm = g.squaredNorm();
-    if (!(norm > 0)) continue;
-    const double projection = g.dot(block.col(residual).head(rows));
-    deltas.push_back(projection / norm);
-    out.level[slips_[k]] = -deltas.back();
-    records.push_back(observations_.slips[slips_[k]].record);
-    left += block.col(residual).head(rows).squaredNorm() - projection * projection / norm;
-    freedom += static_cast<double>(g.size()) - 1;
-    norms += norm;
-  }
-  const auto n = static_cast<double>(deltas.size());
-  double mean = 0, scatter = 0;
-  for (const double delta : deltas) mean += delta / n;
-  for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / n;
-  // What differs slowly from cycle to cycle, or between records, may be an effect that the model lacks: only what
-  // neighbours differ by is taken for scatter.
-  double steps = 0, pairs = 0;
-  for (std::size_t k = 1; k < deltas.size(); ++k) {
-    if (records[k] != records[k - 1]) continue;
-    steps += 0.5 * (deltas[k] - deltas[k - 1]) * (deltas[k] - deltas[k - 1]);
-    pairs += 1;
-  }
-  if (pairs > 0) scatter = std::min(scatter, steps / pairs);
-  if (deltas.size() < 2 || !(left > 0) || !(freedom > 0)) return out;
-  const double noise = left / freedom, information = norms / n;  // of a sample; of a slip about its delta
-  scatter = std::max(0.0, scatter - noise / information);
-  out.part = 1 - 1 / std::sqrt(1 + scatter * information / noise);
-  out.noise = noise;
-  for (std::size_t k = 0; k < out.g.size(); ++k) {
-    const double share = scatter * out.g[k].squaredNorm() / noise;
-    out.log_spread.push_back(std::log1p(share));
-    out.weight[k] = share / (1 + share);
-    out.level[k] *= out.weight[k];
   }
   return out;
 }

@@ -33,6 +33,11 @@ std::vector<std::size_t> all_slips(const Observations& observations);
 /// neighbouring cycles differ by (half the mean square), so that a slow change, which may be an effect the model lacks,
 /// is not taken for scatter. In matrix form r becomes M r.
 ///
+/// Noise that wanders over longer times than a slip, as 1/f noise does, raises all of a slip alike: a second random
+/// effect, e_i times 1 ~ N(0, t^2). It looks like delta_i g_i where the law falls little, and a law whose g_i it fits
+/// better would be taken for the true one. Where a record shows 1/f noise without any model, each slip's rows are first
+/// whitened against it; t^2 comes from what neighbours differ by, too.
+///
 /// g_i follows the parameters too: a slip that broke away higher bends differently with them. So each slip is evaluated
 /// at its own level mu_s + delta_i, with delta_i as predicted where the whitening was made (Lindstrom and Bates'
 /// linearisation of a mixed model, Biometrics 46 (1990) 673, doi:10.2307/2532087) and taken back along g_i; without
@@ -52,6 +57,9 @@ class ModelResiduals final : public Residuals {
     std::vector<double> level;   ///< delta_i of every slip as predicted: the least-squares one, shrunk by the scatter
     std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
+    double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
+
+    bool any() const { return part > 0 || slow > 0; }
   };
 
   /// slips: indices into observations.slips.
@@ -120,6 +128,10 @@ class ModelResiduals final : public Residuals {
   bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
+  /// What noise that raises all of a slip alike does to its rows of friction.
+  Eigen::VectorXd level_column(const Observations::SlipObservation& range) const;
+  /// Takes out of the rows of a slip what that noise is expected to do.
+  void whiten_level(const Observations::SlipObservation& range, Block& block) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
   std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
   template <class T, class Write>

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "errors.hpp"
 #include "points.hpp"
 #include "slip_ranges.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -386,6 +387,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   if (out.samples_per_value > 1 || !motion.velocity_variance.empty()) add_velocity_variance(motion, reduce, out);
   add_channels(motion, needs, reduce, out);
   set_extent(out);
+  add_slow_noise(motion, segmentation, out);
   out.scales = scales_of({&out, 1});
   if (needs.lead) add_leads(motion, segmentation, out);
   return out;

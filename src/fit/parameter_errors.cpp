@@ -120,7 +120,8 @@ void fill_parameters(const FitContext& context, const Solution& solution, const 
   const bool points = are_points(context.records);
   // Several records have levels of their own, which are no noise that wanders from one to the next.
   if (!context.by_extremes() && context.records.size() == 1 && !points)
-    slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside);
+    slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside,
+                       context.observations.flicker);
   const Spread spread = points ? spread_between_points(context, equations, freedom, 2 * solution.result.cost)
                                : spread_of(influences_of(context, solution, equations, freedom), slow);
   for (std::size_t k = 0; k < solution.values().size(); ++k) {

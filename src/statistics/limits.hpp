@@ -11,6 +11,10 @@ namespace tribofit {
 /// Values of a series that show slow noise: fewer have no frequencies beside those that a model takes away.
 inline constexpr std::size_t kFewestSlowValues = 16;
 
+/// Stretches, and values in one, whose median periodogram shows 1/f noise: with fewer a median is not yet that of the
+/// distribution, and no octave is left beside a parabola.
+inline constexpr std::size_t kFewestStretches = 20, kShortestStretch = 32;
+
 /// Of the squares of a series: what rounding leaves of one that is constant.
 inline constexpr double kConstantSeries = 1e-20;
 
@@ -21,10 +25,6 @@ inline constexpr double kClearlyLikelier = 5;
 
 /// By how much slow noise must exceed independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
 inline constexpr double kLikelier = 1;
-
-/// By how much another spectrum must exceed that of 1/f noise before it is the likelier one: the best of several gains
-/// as much by chance. More: what a wrong law leaves passes for 1/f noise and raises the noise floor.
-inline constexpr double kRatherLikelier = 1;
 
 /// Below as many periods in the record a model that was fitted has taken power away.
 inline constexpr double kFirstBin = 3;

@@ -8,6 +8,8 @@
 #include <unsupported/Eigen/FFT>
 
 #include "limits.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -75,13 +77,6 @@ std::vector<double> autoregression(const std::vector<double>& frequency, double 
   return out;
 }
 
-/// Spectra that rise more steeply than 1/f, as a level that jumps or drifts has: what a wrong model leaves.
-std::vector<double> steeper(const std::vector<double>& frequency, double power) {
-  std::vector<double> out;
-  for (const double f : frequency) out.push_back(std::pow(f / frequency.front(), -power) / frequency.front());
-  return out;
-}
-
 std::vector<double> covariance_of_flicker(std::size_t n) {
   const std::size_t longer = padded(kLonger * n);
   Transform spectrum(longer), covariance;
@@ -92,6 +87,27 @@ std::vector<double> covariance_of_flicker(std::size_t n) {
   fft.inv(covariance, spectrum);
   std::vector<double> out(n);
   for (std::size_t k = 0; k < n; ++k) out[k] = covariance[k].real();
+  return out;
+}
+
+/// Of several series of one length, about a parabola in each: the median at every frequency, which is that of an
+/// exponential distribution.
+Periodogram median_periodogram(std::span<const std::span<const double>> stretches) {
+  std::vector<Periodogram> all;
+  for (const auto& stretch : stretches) {
+    const Parabola parabola = fit_parabola(stretch);
+    std::vector<double> left(stretch.begin(), stretch.end());
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= parabola.at(static_cast<double>(i) - parabola.centre());
+    all.push_back(windowed_periodogram(left));
+  }
+  Periodogram out = all.front();
+  std::vector<double> values(all.size());
+  for (std::size_t j = 0; j < out.power.size(); ++j) {
+    for (std::size_t k = 0; k < all.size(); ++k) values[k] = all[k].power[j];
+    out.power[j] = median(values) / std::numbers::ln2;
+  }
+  // A median of n such values errs by 1/sqrt(n), its mean by ln 2 of that.
+  out.resolved *= static_cast<double>(all.size()) * std::numbers::ln2 * std::numbers::ln2;
   return out;
 }
 
@@ -123,6 +139,8 @@ Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
   best.gain = best.log_likelihood - without;
   return best;
 }
+
+constexpr double kMemories[] = {0.3, 0.5, 0.65, 0.8, 0.9, 0.95};
 
 /// The same where no value of the periodogram counts for more than chance would give the largest of them.
 Likeliest robust_fit(Periodogram seen, const std::vector<double>& shape) {
@@ -162,7 +180,9 @@ double SlowNoise::variance_within() const {
   return std::max(0.0, covariance[0] - variance_of_sum(std::vector<double>(n, 1 / static_cast<double>(n))));
 }
 
-SlowNoise slow_noise(std::span<const double> series) {
+namespace {
+
+SlowNoise slow_noise_of(std::span<const double> series) {
   const std::size_t n = series.size();
   if (n < kFewestSlowValues) return {};
   const Periodogram seen = windowed_periodogram(series);
@@ -173,7 +193,7 @@ SlowNoise slow_noise(std::span<const double> series) {
   const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
   Likeliest best;
   double memory = 0;
-  for (const double m : {0.3, 0.5, 0.65, 0.8, 0.9, 0.95}) {
+  for (const double m : kMemories) {
     const Likeliest own = robust_fit(seen, autoregression(seen.frequency, m));
     if (own.log_likelihood > best.log_likelihood) best = own, memory = m;
   }
@@ -183,15 +203,33 @@ SlowNoise slow_noise(std::span<const double> series) {
     for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
   } else if (of_flicker.slow > 0) {
     out.is_flicker = true;
-    double likeliest_other = best.log_likelihood;
-    for (const double power : {1.5, 2.0, 3.0}) {
-      likeliest_other = std::max(likeliest_other, robust_fit(seen, steeper(seen.frequency, power)).log_likelihood);
-    }
-    out.is_rather_other = likeliest_other > of_flicker.log_likelihood + kRatherLikelier;
     out.covariance = covariance_of_flicker(n);
     for (double& c : out.covariance) c *= of_flicker.slow;
   }
   return out;
+}
+
+}  // namespace
+
+SlowNoise slow_noise(std::span<const double> series, double known_flicker) {
+  SlowNoise out = slow_noise_of(series);
+  if (!(known_flicker > 0) || series.empty()) return out;
+  std::vector<double> known = covariance_of_flicker(series.size());
+  for (double& c : known) c *= known_flicker;
+  if (out.covariance.empty() || out.covariance[0] < known[0]) out = {std::move(known), true};
+  return out;
+}
+
+double flicker_power(std::span<const std::span<const double>> stretches) {
+  if (stretches.size() < kFewestStretches || stretches.front().size() < kShortestStretch) return 0;
+  const Periodogram seen = median_periodogram(stretches);
+  const Likeliest of_flicker = likeliest(seen, flicker(seen.frequency));
+  if (of_flicker.gain < kLikelier) return 0;
+  for (const double memory : kMemories) {
+    const Likeliest other = likeliest(seen, autoregression(seen.frequency, memory));
+    if (other.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) return 0;
+  }
+  return of_flicker.slow;
 }
 
 }  // namespace tribofit

@@ -32,7 +32,7 @@ std::vector<double> flicker(double variance, std::size_t size, std::mt19937_64& 
 }
 
 /// A record of sticks and slips of so many samples each, with friction as given.
-FlickerInStick in_sticks(std::vector<double> friction, std::size_t samples) {
+FlickerNoise in_sticks(std::vector<double> friction, std::size_t samples) {
   Motion motion;
   motion.step = 1e-4;
   for (std::size_t i = 0; i < friction.size(); ++i) motion.time.push_back(motion.step * static_cast<double>(i));
@@ -46,33 +46,33 @@ FlickerInStick in_sticks(std::vector<double> friction, std::size_t samples) {
     cycle.slip = {begin + samples, begin + 2 * samples};
     segmentation.cycles.push_back(cycle);
   }
-  return flicker_in_stick(motion, segmentation);
+  return flicker_noise(motion, segmentation);
 }
 
 constexpr std::size_t kSamples = 200'000;
 
-TEST(FlickerInStick, HasItsVarianceInEveryEFoldOfTimeWhateverTheStickIsLong) {
+TEST(FlickerNoise, HasItsVarianceInEveryEFoldOfTimeWhateverTheStickIsLong) {
   constexpr double kVariance = 4e-6;
   std::mt19937_64 engine(1);
-  for (const std::size_t samples : {400U, 1000U, 2000U}) {
-    const FlickerInStick found = in_sticks(flicker(kVariance, kSamples, engine), samples);
-    EXPECT_NEAR(found.variance, kVariance, 0.3 * kVariance) << samples;
+  for (const std::size_t samples : {130U, 400U, 1000U, 2000U}) {
+    const FlickerNoise found = in_sticks(flicker(kVariance, kSamples, engine), samples);
+    EXPECT_NEAR(2 * found.power, kVariance, 0.25 * kVariance) << samples;
     EXPECT_LE(found.samples, 300) << samples;
   }
 }
 
-TEST(FlickerInStick, IsNotInWhiteNoiseNorBehindAnAmplifier) {
+TEST(FlickerNoise, IsNotInWhiteNoiseNorBehindAnAmplifier) {
   std::mt19937_64 engine(2);
-  for (const double correlation : {0.0, 0.5}) {
+  for (const double correlation : {0.0, 0.5, 0.9, 0.97}) {
     std::vector<double> noise(kSamples);
     add_coloured(correlation, 0.003, engine, noise);
-    EXPECT_LT(in_sticks(std::move(noise), 1000).variance, 0.05 * 9e-6) << correlation;
+    EXPECT_LT(2 * in_sticks(std::move(noise), 1000).power, 0.01 * 9e-6) << correlation;
   }
 }
 
-TEST(FlickerInStick, IsNotClaimedWhereSticksAreTooShortToShowIt) {
+TEST(FlickerNoise, IsNotClaimedWhereSticksAreTooShortToShowIt) {
   std::mt19937_64 engine(3);
-  EXPECT_EQ(in_sticks(flicker(4e-6, kSamples, engine), 130).variance, 0);
+  EXPECT_EQ(in_sticks(flicker(4e-6, kSamples, engine), 40).power, 0);
 }
 
 }  // namespace

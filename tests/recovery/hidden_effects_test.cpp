@@ -101,6 +101,14 @@ TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
 }
 
 /// What the block shows by how it sticks is not hidden where it never does.
+/// 1/f noise raises whole slips, and wanders over the record: neither is an effect, nor the mark of another law.
+TEST(HiddenEffects, NothingIsNamedInFlickerNoise) {
+  const std::vector<Case> seed1 = plan_record_kinds({"stick-slip-flicker"}, 260, 0, 1);
+  const std::vector<Case> seed2 = plan_record_kinds({"stick-slip-flicker"}, 100, 0, 2);
+  const std::vector<Case> cases = {seed1[126], seed1[256], seed2[61], seed2[86], seed2[92]};
+  EXPECT_EQ(count_right(run_cases(cases, 0)), cases.size());
+}
+
 TEST(HiddenEffects, SlidingHidesOnlyWhatItCanShow) {
   const std::vector<std::string> sliding = {"steps", "ramps", "sines", "reversals"};
   std::set<std::string> hidden;

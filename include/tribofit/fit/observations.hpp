@@ -44,6 +44,7 @@ struct Observations {
     std::size_t cycle = 0;                           ///< unit of evidence it belongs to, from 0, in order of time
     std::size_t segment = 0;                         ///< index in Segmentation::cycles
     double break_away_friction = 0;                  ///< |mu| at break-away; NaN when there is none
+    double slow_variance = 0;  ///< of its level, by the 1/f noise that its record shows [1 or N squared]
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
     std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none
@@ -77,6 +78,7 @@ struct Observations {
   double fastest = 0;           ///< largest |v_r| [m/s]
   double slowest = 0;           ///< least |v_r| [m/s]; 0 where a slip begins in stick
   double largest_friction = 0;  ///< largest |mu|, the scale for bounds where friction is a force
+  double flicker = 0;           ///< power of 1/f noise in the first record, in squared parts of friction
   RecordScales scales;
 
   std::size_t size() const { return time.size(); }

@@ -9,7 +9,6 @@ namespace tribofit {
 struct SlowNoise {
   std::vector<double> covariance;  ///< of values 0, 1, 2 ... apart; empty: there is none
   bool is_flicker = false;         ///< taken for 1/f noise, not for an autoregression
-  bool is_rather_other = false;    ///< though a spectrum of another shape is likelier: it may be no noise at all
 
   /// Variance of the sum of weights[i] times value i. weights: as many as the series has values.
   double variance_of_sum(std::span<const double> weights) const;
@@ -26,6 +25,13 @@ struct SlowNoise {
 /// The mean of a record with 1/f noise errs by more than its own lowest frequencies show, and a slow function fitted to
 /// it takes away the very power that would tell so. Here that power follows from all frequencies. Single lines, which
 /// may be an effect, do not count beyond the largest value that chance would give. None for less than 16 values.
-SlowNoise slow_noise(std::span<const double> series);
+/// known_flicker: a of 1/f noise that the values have for certain; 0: none is known.
+SlowNoise slow_noise(std::span<const double> series, double known_flicker = 0);
+
+/// The power a of 1/f noise, as above, that many stretches of one length show: half its variance in every e-fold of
+/// time, whatever the step between values. From the median of their periodograms, about a parabola in each: few
+/// stretches that hold something else do not matter. 0 where the noise is independent or rather an autoregression, and
+/// for less than 20 stretches or stretches of less than 32 values.
+double flicker_power(std::span<const std::span<const double>> stretches);
 
 }  // namespace tribofit

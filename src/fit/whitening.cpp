@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "limits.hpp"
+#include "model_residuals.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Products of the rows of one slip: g = d model/d mu_s, u its level, r what the model leaves.
+struct Products {
+  std::size_t slip = 0;  ///< index in the observations
+  double rows = 0, gg = 0, gu = 0, uu = 0, gr = 0, ur = 0, rr = 0;
+
+  /// The regression on g and u together: how far they are from being one, the level, and what both leave.
+  double independence() const { return gg * uu - gu * gu; }
+  bool has_both() const { return independence() > kLeastIndependence * gg * uu; }
+  double level() const { return (gg * ur - gu * gr) / independence(); }
+  double left_by_both() const { return rr - (gr * (uu * gr - gu * ur) + ur * (gg * ur - gu * gr)) / independence(); }
+
+  /// The same of rows whitened against noise that raises all of them alike. slow: its variance over that of a row.
+  Products whitened(double slow) const {
+    const double part = slow / (1 + slow * uu);
+    Products out = *this;
+    out.gg -= part * gu * gu;
+    out.gr -= part * gu * ur;
+    out.rr -= part * ur * ur;
+    return out;
+  }
+};
+
+/// Half the mean square of the steps between neighbours of one stretch, and how many steps there are.
+struct Steps {
+  double variance = 0, count = 0;
+};
+
+Steps steps_of(const std::vector<double>& values, const std::vector<std::size_t>& stretch) {
+  Steps out;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (stretch[k] != stretch[k - 1]) continue;
+    out.variance += 0.5 * (values[k] - values[k - 1]) * (values[k] - values[k - 1]);
+    out.count += 1;
+  }
+  if (out.count > 0) out.variance /= out.count;
+  return out;
+}
+
+/// t^2/sigma^2 of the noise that raises whole slips: what levels of neighbours differ by, but no more than the 1/f noise
+/// that the record shows without any model. 0 where chance would make levels differ as much. What a wrong model does to
+/// the levels is thus no noise.
+double slow_noise_of_slips(const std::vector<Products>& slips, const Observations& observations) {
+  std::vector<double> levels;
+  std::vector<std::size_t> stretch;
+  double left = 0, freedom = 0, spread = 0, most = 0;
+  for (const Products& slip : slips) {
+    const auto& range = observations.slips[slip.slip];
+    if (!slip.has_both() || range.slow_variance == 0) continue;
+    most += range.slow_variance;
+    levels.push_back(slip.level());
+    stretch.push_back(2 * range.record + (range.direction > 0 ? 1 : 0));
+    left += slip.left_by_both();
+    freedom += slip.rows - 2;
+    spread += slip.gg / slip.independence();
+  }
+  const Steps steps = steps_of(levels, stretch);
+  if (!(left > 0) || !(freedom > 0) || !(steps.count > 0)) return 0;
+  // The variance from steps of n independent values has a relative standard error of sqrt(3/n) (J. von Neumann, Ann.
+  // Math. Stat. 12 (1941) 367).
+  const auto n = static_cast<double>(levels.size());
+  const double noise = left / freedom, by_chance = noise * spread / n;
+  if (!(steps.variance > by_chance * (1 + kSigmasOfSlowNoise * std::sqrt(3 / steps.count)))) return 0;
+  return std::min(steps.variance - by_chance, most / n) / noise;
+}
+
+/// delta_i of every slip by least squares, and what noise is left once it is taken out.
+void whiten_break_away(const std::vector<Products>& slips, const Observations& observations,
+                       ModelResiduals::Whitening& out) {
+  std::vector<double> deltas;
+  std::vector<std::size_t> records;
+  double left = 0, freedom = 0, norms = 0;
+  for (const Products& slip : slips) {
+    deltas.push_back(slip.gr / slip.gg);
+    out.level[slip.slip] = -deltas.back();
+    records.push_back(observations.slips[slip.slip].record);
+    left += slip.rr - slip.gr * slip.gr / slip.gg;
+    freedom += slip.rows - 1;
+    norms += slip.gg;
+  }
+  const auto n = static_cast<double>(deltas.size());
+  double mean = 0, scatter = 0;
+  for (const double delta : deltas) mean += delta / n;
+  for (const double delta : deltas) scatter += (delta - mean) * (delta - mean) / n;
+  // What differs slowly from cycle to cycle, or between records, may be an effect that the model lacks: only what
+  // neighbours differ by is taken for scatter.
+  const Steps steps = steps_of(deltas, records);
+  if (steps.count > 0) scatter = std::min(scatter, steps.variance);
+  if (deltas.size() < 2 || !(left > 0) || !(freedom > 0)) return;
+  out.noise = left / freedom;               // of a row
+  const double information = norms / n;  // of a slip about its delta
+  scatter = std::max(0.0, scatter - out.noise / information);
+  out.part = 1 - 1 / std::sqrt(1 + scatter * information / out.noise);
+  out.log_spread.assign(out.g.size(), 0.0);
+  for (const Products& slip : slips) {
+    const double share = scatter * slip.gg / out.noise;
+    out.log_spread[slip.slip] = std::log1p(share) + std::log1p(out.slow * slip.uu);
+    out.weight[slip.slip] = share / (1 + share);
+  }
+  for (std::size_t k = 0; k < out.g.size(); ++k) out.level[k] *= out.weight[k];
+}
+
+}  // namespace
+
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
+  const auto residual = static_cast<Eigen::Index>(parameter_count());
+  Whitening out;
+  out.g.resize(observations_.slips.size());
+  out.level.assign(observations_.slips.size(), 0.0);
+  out.weight.assign(observations_.slips.size(), 0.0);
+  const bool breaks_away =
+      std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
+  if (!breaks_away) return out;
+  std::vector<Products> slips;
+  Block block;
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    if (!fill(k, p, true, block, true)) return out;
+    const auto& range = observations_.slips[slips_[k]];
+    const Eigen::Index rows = friction_rows(range);
+    Eigen::VectorXd& g = out.g[slips_[k]];
+    g = block.col(0).head(rows);
+    if (!(g.squaredNorm() > 0)) continue;
+    const Eigen::VectorXd u = level_column(range), r = block.col(residual).head(rows);
+    slips.push_back({slips_[k], static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r),
+                     u.dot(r), r.squaredNorm()});
+  }
+  out.slow = slow_noise_of_slips(slips, observations_);
+  for (Products& slip : slips) slip = slip.whitened(out.slow);
+  whiten_break_away(slips, observations_, out);
+  return out;
+}
+
+}  // namespace tribofit
