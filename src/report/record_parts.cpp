@@ -188,19 +188,13 @@ void add_health(const Motion& motion, TerminalText& text) {
 
 /// Level and fall of the pull over the cycles, which need no velocity.
 void add_levels_of_pull(const Identification& r, Facts& facts) {
-  std::vector<double> levels, drops;
-  for (const Cycle& c : r.segmentation.cycles) {
-    if (!std::isfinite(c.break_away_friction)) continue;
-    levels.push_back(c.break_away_friction);
-    if (c.slip_complete) drops.push_back(c.break_away_friction - c.slip_minimum);
-  }
-  const auto add = [&](const char* name, std::vector<double> values) {
-    const Estimate mean = mean_with_error(std::move(values));
+  const auto add = [&](const char* name, const Estimate& mean) {
     if (std::isfinite(mean.value))
       facts.emplace_back(name, with_error(mean.value, mean.std_error) + unit_behind(friction_unit(r.motion)));
   };
-  add("break-away", std::move(levels));
-  add("drop", std::move(drops));
+  const PullLevels levels = pull_levels(r.segmentation);
+  add("break-away", levels.break_away);
+  add("drop", levels.drop);
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limits.hpp"
 #include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -29,6 +31,16 @@ bool has_uneven_sticks(const Segmentation& segmentation) {
 
 bool follows_drive(const Motion& motion, const Segmentation& segmentation) {
   return segmentation.rms_velocity < segmentation::kSwings * std::abs(motion.constant_disc_velocity);
+}
+
+PullLevels pull_levels(const Segmentation& segmentation) {
+  std::vector<double> levels, drops;
+  for (const Cycle& c : segmentation.cycles) {
+    if (!std::isfinite(c.break_away_friction)) continue;
+    levels.push_back(c.break_away_friction);
+    if (c.slip_complete) drops.push_back(c.break_away_friction - c.slip_minimum);
+  }
+  return {mean_with_error(std::move(levels)), mean_with_error(std::move(drops))};
 }
 
 std::optional<LevelDifference> difference_of(const FrictionLevels& levels) {

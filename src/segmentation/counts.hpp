@@ -39,6 +39,12 @@ struct LevelDifference {
 /// Nothing where there are no two levels with their errors.
 std::optional<LevelDifference> difference_of(const FrictionLevels& levels);
 
+/// Friction at break-away, and how far it falls in a whole slip, over the cycles [1 or N]: neither needs a velocity.
+struct PullLevels {
+  Estimate break_away, drop;
+};
+PullLevels pull_levels(const Segmentation& segmentation);
+
 /// Cycles with a stick and a slip.
 std::size_t count_of_cycles(const Segmentation& segmentation);
 
