@@ -136,6 +136,9 @@ inline constexpr double kTailFirst = 0.4, kTailDecay = 0.1;
 /// What decays after re-stick over the jump: without a filter friction jumps between two samples. Where it begins to
 /// [samples, time constants]: a filter that holds its input for a sample begins half of one early.
 inline constexpr double kTailSize = 0.3, kTailOnset = 1.2, kTailOnsetPart = 0.2;
+/// Median fall over its spread from slip to slip: jumps of friction are alike to a fifth. Noise with a memory decays
+/// too, where friction is recorded early and its jump is over by re-stick, but to either side.
+inline constexpr double kTailAlike = 2;
 /// Samples beside re-stick that are not looked at, for not knowing its place better.
 inline constexpr double kTailGap = 0.4;
 /// Variance left while it decays over that afterwards, and beside it over the size of the decay, squared: filters of

@@ -85,7 +85,7 @@ double squares_left(const std::vector<Tail>& tails, double tau) {
 }
 
 /// What decays at a time constant: where it begins before re-stick [samples]; whether the reading goes on from where it
-/// was, falls by most of the jump, and nothing but noise is left beside it.
+/// was, falls by most of the jump, after every slip by about as much, and nothing but noise is left beside it.
 struct Evidence {
   double early = 0;
   bool is_first_order = false;
@@ -93,20 +93,22 @@ struct Evidence {
 
 Evidence evidence_of(const std::vector<Tail>& tails, double tau) {
   double early = 0, late = 0, samples_early = 0, samples_late = 0, decays = 0;
-  std::vector<double> sizes, onsets;
+  std::vector<double> sizes, onsets, falls;
   for (const Tail& tail : tails) {
     const Decay decay = fit_decay(tail, tau);
     const double jump = tail.before - decay.line,
                  samples = std::min(gone_after(tau), static_cast<double>(tail.friction.size()));
     sizes.push_back(decay.size / jump);
+    falls.push_back(std::copysign(1.0, tail.before) * decay.size);
     onsets.push_back(tau * std::log(std::max(1e-6, jump / decay.size)));
     early += decay.early, late += decay.squares - decay.early;
     decays += decay.size * decay.size / static_cast<double>(tails.size());
     samples_early += samples, samples_late += static_cast<double>(tail.friction.size()) - samples;
   }
   const double size = median(std::move(sizes)), onset = median(std::move(onsets));
+  const double fall = median(falls), spread = kSigmaPerMad * median_absolute_deviation(falls, fall);
   const double noise = late / std::max(1.0, samples_late);
-  const bool holds = size > kTailSize && std::abs(onset) < kTailOnset + kTailOnsetPart * tau &&
+  const bool holds = size > kTailSize && fall > kTailAlike * spread && std::abs(onset) < kTailOnset + kTailOnsetPart * tau &&
                      early / samples_early < kTailLeft * noise + kTailModel * kTailModel * decays;
   return {onset, holds};
 }

@@ -188,6 +188,23 @@ TEST(Distortions, ALowPassOfFrictionAloneIsFound) {
   }
 }
 
+/// Friction that is recorded early has jumped before re-stick; what noise with a memory does from there on is no filter.
+TEST(Distortions, EarlyFrictionWithSlowNoiseIsNotFiltered) {
+  constexpr std::size_t kEarly = 10;
+  const Trace sound = silent(4);
+  for (const double colour : {0.9, 0.97}) {
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      Trace trace = sound;
+      std::copy(sound.friction.begin() + kEarly, sound.friction.end(), trace.friction.begin());
+      std::mt19937_64 random(seed);
+      const auto mu = truth::noise(trace.size(), 0.003, colour, random),
+                 v = truth::noise(trace.size(), 2e-5, colour, random);
+      for (std::size_t i = 0; i < trace.size(); ++i) trace.friction[i] += mu[i], trace.velocity[i] += v[i];
+      EXPECT_FALSE(compute_motion(std::move(trace)).friction_low_pass.any()) << colour << " " << seed;
+    }
+  }
+}
+
 TEST(Distortions, ACompressedGainIsFoundAndUndone) {
   const Trace sound = truth::simulate(rig_of(3)).trace;
   double most = 0;

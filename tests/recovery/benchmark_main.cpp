@@ -24,7 +24,7 @@ struct Options {
   std::size_t records = 20;
   std::string only, one, json_path;
   int threads = 0;
-  bool quiet = false, experiments = true, asked = false, coverage = false, halved = false;
+  bool quiet = false, experiments = true, asked = false, coverage = false, known = false, only_known = false, halved = false;
 };
 
 std::string describe(const Name& name) {
@@ -48,17 +48,23 @@ std::string line(const Outcome& o) {
                      o.last, o.floor, o.seconds);
 }
 
+json to_json(const std::vector<Recovered>& parameters) {
+  json all = json::array();
+  for (const Recovered& p : parameters) {
+    all.push_back({{"effect", p.key},
+                   {"name", p.parameter},
+                   {"truth", p.truth},
+                   {"value", p.value},
+                   {"std_error", p.std_error},
+                   {"ci95", {p.lower95, p.upper95}}});
+  }
+  return all;
+}
+
 json to_json(const Outcome& o) {
-  json named = json::array(), hidden = json::array(), parameters = json::array();
+  json named = json::array(), hidden = json::array();
   for (const Name& name : o.names) named.push_back({{"added", name.added}, {"equivalent", name.equivalent}});
   for (const Ingredient& what : o.tested.hidden) hidden.push_back({{"key", what.key}, {"values", what.values}});
-  for (const Recovered& p : o.parameters) {
-    parameters.push_back({{"effect", p.key},
-                          {"name", p.parameter},
-                          {"truth", p.truth},
-                          {"value", p.value},
-                          {"ci95", {p.lower95, p.upper95}}});
-  }
   return {{"case", o.tested.name},
           {"kind", to_string(o.tested.kind)},
           {"setting", to_string(o.tested.setting)},
@@ -85,7 +91,8 @@ json to_json(const Outcome& o) {
           {"split", o.split},
           {"held_out_rmse", {o.first, o.last}},
           {"floor_rmse", o.floor},
-          {"parameters", parameters},
+          {"parameters", to_json(o.parameters)},
+          {"parameters_where_known", to_json(o.known)},
           {"seconds", o.seconds},
           {"failure", o.failure}};
 }
@@ -100,7 +107,7 @@ void write(const std::string& path, const std::vector<Outcome>& outcomes) {
 
 /// One case in full, as a user would see it.
 void explain(const Case& c) {
-  const Outcome outcome = run_case(c, true);
+  const Outcome outcome = run_case(c, {.experiments = true});
   fmt::print("{}\n{}\n", line(outcome), to_json(outcome).dump(1));
   const auto diagnosed = diagnose_case(simulate_case(c)).diagnosis;
   for (const auto& finding : diagnosed.effects) {
@@ -149,11 +156,14 @@ int run(const Options& options) {
     }
     return !options.only.empty();
   });
-  const auto outcomes = run_cases(cases, options.threads, options.experiments, [&](const Outcome& o, std::size_t done) {
+  const RunOptions run_options = {
+      .experiments = options.experiments, .known = options.known || options.only_known, .diagnose = !options.only_known};
+  const auto outcomes = run_cases(cases, options.threads, run_options, [&](const Outcome& o, std::size_t done) {
     if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
   });
   if (!options.json_path.empty()) write(options.json_path, outcomes);
-  if (options.coverage) fmt::print("{}\n", coverage_table(outcomes));
+  if (options.coverage || options.only_known) fmt::print("{}\n", coverage_table(outcomes));
+  if (options.only_known) return 0;
   if (options.kinds.empty() && !options.asked) {
     fmt::print("{}", tables(outcomes));
     return 0;
@@ -191,6 +201,8 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.plan.seed, "of all cases")->capture_default_str();
   app.add_flag("--halved", options.halved, "records half as long where that is enough, as in the tests");
   app.add_flag("--coverage", options.coverage, "how often the intervals of effects that were named hold the truth");
+  app.add_flag("--known", options.known, "the same where law and effects are known, beside --coverage");
+  app.add_flag("--only-known", options.only_known, "only that: nothing is diagnosed");
   app.add_option(
       "--only", options.only,
       "only cases whose name holds this (or one of these, with ; between), e.g. runout, 'drift=', nothing, +, ~");

@@ -1,5 +1,4 @@
 /// Coverage of the intervals of effects where law and effects are known: what the fit itself does, without the search.
-#include <algorithm>
 #include <utility>
 
 #include "hidden_effects.hpp"
@@ -30,13 +29,15 @@ KnownFit fit_known(const Simulated& simulated) {
   std::vector<Prepared> prepared;
   for (const auto& trace : simulated.traces) prepared.push_back(prepare(*trace));
   const FrictionModel& model = simulated.model;
-  std::size_t cycles = 0;
-  for (const Prepared& p : prepared) cycles += p.segmentation.cycles.size();
   std::vector<Observations> parts;
   std::vector<Record> records;
-  const std::size_t values = std::clamp<std::size_t>(20000 / std::max<std::size_t>(1, cycles), 80, 400);
+  constexpr std::size_t kValues = 1000;  // a slip, as `identify` fits effects
   for (const Prepared& p : prepared) {
-    parts.push_back(observe(p.motion, p.segmentation, model.needs(), values));
+    parts.push_back(observe(p.motion, p.segmentation, model.needs(), kValues));
+    if (model.acts_in_stick()) {
+      const double noise = estimate_floor(p.motion, p.segmentation).noise;
+      add_stick_evidence(p.motion, p.segmentation, noise, parts.back());
+    }
     records.push_back({&p.motion, &p.segmentation});
   }
   const Observations observations = parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));

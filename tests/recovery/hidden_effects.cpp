@@ -106,6 +106,12 @@ bool is_right(const Outcome& out) {
   return false;
 }
 
+Recovered recovered(const Ingredient& what, std::size_t k, const FitParameter& p) {
+  const double unit = p.parameter.si;
+  return {what.key,         p.parameter.name, what.values[k],    p.value / unit,
+          p.lower95 / unit, p.upper95 / unit, p.std_error / unit};
+}
+
 void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
   for (const Ingredient& what : out.tested.hidden) {
     const EffectFinding* found = finding(diagnosis, what.key);
@@ -113,9 +119,23 @@ void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
     for (const std::size_t k : what.main_parameters) {
       if (k >= found->parameters.size()) continue;
       const FitParameter& p = found->parameters[k];
-      const double unit = p.parameter.si;
-      out.parameters.push_back(
-          {what.key, p.parameter.name, what.values[k], p.value / unit, p.lower95 / unit, p.upper95 / unit});
+      out.parameters.push_back(recovered(what, k, p));
+    }
+  }
+}
+
+/// What the fit makes of the parameters where law and effects are known. What is read off the motion is not fitted.
+void compare_known(const Simulated& simulated, Outcome& out) {
+  for (const Ingredient& what : out.tested.hidden) {
+    if (is_kinematic(make_effect(what.key))) return;
+  }
+  const Fit fit = fit_known(simulated).fit;
+  for (const Ingredient& what : out.tested.hidden) {
+    std::vector<FitParameter> own;
+    std::copy_if(fit.parameters.begin(), fit.parameters.end(), std::back_inserter(own),
+                 [&](const FitParameter& p) { return p.effect == what.key; });
+    for (const std::size_t k : what.main_parameters) {
+      if (k < own.size()) out.known.push_back(recovered(what, k, own[k]));
     }
   }
 }
@@ -206,11 +226,13 @@ void try_pair(const Case& c, Outcome& out) {
 
 }  // namespace
 
-Outcome run_case(const Case& c, bool experiments) {
+Outcome run_case(const Case& c, const RunOptions& options) {
   Outcome out;
   out.tested = c;
   try {
     const Simulated simulated = simulate_case(c);
+    if (options.known) compare_known(simulated, out);
+    if (!options.diagnose) return out;
     const double begin = processor_time();
     const DiagnosedTraces diagnosed = diagnose_case(simulated);
     out.seconds = processor_time() - begin;
@@ -235,8 +257,8 @@ Outcome run_case(const Case& c, bool experiments) {
     out.naming = judge(c, out);
     out.right = is_right(out);
     compare_parameters(diagnosis, out);
-    if (experiments && c.kind == Kind::single && out.naming == Naming::group) try_experiment(c, out);
-    if (experiments && c.kind == Kind::look_alike) {
+    if (options.experiments && c.kind == Kind::single && out.naming == Naming::group) try_experiment(c, out);
+    if (options.experiments && c.kind == Kind::look_alike) {
       try_pair(c, out);
       out.right = is_right(out);
     }
@@ -246,13 +268,13 @@ Outcome run_case(const Case& c, bool experiments) {
   return out;
 }
 
-std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool experiments,
+std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, const RunOptions& options,
                                const std::function<void(const Outcome&, std::size_t)>& done) {
   std::vector<Outcome> outcomes(cases.size());
   std::mutex mutex;
   std::size_t count = 0;
   run_tasks(cases.size(), threads, [&](std::size_t i) {
-    outcomes[i] = run_case(cases[i], experiments);
+    outcomes[i] = run_case(cases[i], options);
     const std::lock_guard lock(mutex);
     if (done) done(outcomes[i], ++count);
   });

@@ -174,6 +174,9 @@ struct Name {
 struct Recovered {
   std::string key, parameter;
   double truth = 0, value = 0, lower95 = 0, upper95 = 0;  ///< in the unit of the catalogue
+  double std_error = 0;
+
+  bool is_covered() const { return lower95 <= truth && truth <= upper95; }
 };
 
 /// How well what was hidden was named. Of groups larger than four nothing counts as named.
@@ -202,6 +205,7 @@ struct Outcome {
   bool right = false;                     ///< what the kind of the case asks for
   double first = 0, last = 0, floor = 0;  ///< held-out error of the base law and of the last rung; see Simulated [1]
   std::vector<Recovered> parameters;      ///< main parameters of hidden effects that were added
+  std::vector<Recovered> known;           ///< the same, all of them, where law and effects are known; if asked for
   std::vector<std::string> partners;      ///< that the experiment is to distinguish it from; empty: none was made
   std::vector<Name> after;                ///< names after the experiment
   bool split = false;                     ///< it is named apart from all of them then
@@ -209,15 +213,20 @@ struct Outcome {
   std::string failure;                    ///< what was thrown
 };
 
+struct RunOptions {
+  bool experiments = false;  ///< where a single effect was named in a group, the discriminating runs are simulated too
+  bool known = false;        ///< the fit with law and effects known is made too
+  bool diagnose = true;      ///< false: only that
+};
+
 /// Simulates, diagnoses on one thread and judges. Never throws: what is thrown is in `failure`.
-/// experiments: where a single effect was named in a group, the discriminating runs are simulated too.
-Outcome run_case(const Case& c, bool experiments = false);
+Outcome run_case(const Case& c, const RunOptions& options = {});
 
 /// The diagnosis alone, as run_case() does it.
 tribofit::DiagnosedTraces diagnose_case(const Simulated& simulated);
 
 /// Runs cases side by side. done: called after each with the number done, from one thread at a time.
-std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, bool experiments = false,
+std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, const RunOptions& options = {},
                                const std::function<void(const Outcome&, std::size_t)>& done = {});
 
 /// The tables of data/validation/hidden-effects.md, as Markdown.

@@ -155,7 +155,7 @@ TEST(HiddenEffects, TheNextExperimentTellsWhatLooksAlike) {
                                      "velocity-gain~radius-offset:0"};
   std::erase_if(cases, [&](const Case& c) { return few.count(c.name) == 0; });
   ASSERT_EQ(cases.size(), few.size());
-  const std::vector<Outcome> outcomes = run_cases(cases, 0, true);
+  const std::vector<Outcome> outcomes = run_cases(cases, 0, {.experiments = true});
   EXPECT_EQ(count_right(outcomes), outcomes.size());
   for (const Outcome& o : outcomes) {
     if (o.naming != Naming::group) continue;

@@ -64,13 +64,17 @@ struct Coverage {
 
   void add(const Recovered& p) {
     ++n;
-    covered += p.lower95 <= p.truth && p.truth <= p.upper95 ? 1u : 0u;
+    covered += p.is_covered() ? 1u : 0u;
   }
 };
 
-void add_coverage(std::string& text, const std::string& name, const Coverage& coverage) {
-  fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} |\n", name, coverage.n, coverage.covered,
-                 percent(coverage.covered, coverage.n));
+/// Where the effects were found, and where law and effects were known.
+struct Coverages {
+  Coverage found, known;
+};
+
+std::string cells(const Coverage& coverage) {
+  return fmt::format("{} | {} | {}", coverage.n, coverage.covered, percent(coverage.covered, coverage.n));
 }
 
 std::string noise_of(const Case& c) {
@@ -84,22 +88,30 @@ std::string noise_of(const Case& c) {
 }  // namespace
 
 std::string coverage_table(const std::vector<Outcome>& outcomes) {
-  std::map<std::size_t, Coverage> by_count;
-  std::map<std::string, Coverage> by_noise, by_parameter;
-  Coverage all;
+  constexpr const char* kAll = "all";
+  std::map<std::string, Coverages> by_condition, by_parameter;
   for (const Outcome& o : outcomes) {
-    for (const Recovered& p : o.parameters) {
-      all.add(p);
-      by_count[o.tested.hidden.size()].add(p);
-      by_noise[noise_of(o.tested)].add(p);
-      by_parameter[fmt::format("`{}` {}", p.key, p.parameter)].add(p);
+    const auto add = [&](Coverage Coverages::*which, const Recovered& p) {
+      for (const std::string& name : {fmt::format("{} hidden", o.tested.hidden.size()), noise_of(o.tested),
+                                      fmt::format("named {}", to_string(o.naming)),
+                                      std::string(o.law == o.tested.law ? "the law itself" : "another law"),
+                                      std::string(kAll)}) {
+        (by_condition[name].*which).add(p);
+      }
+      (by_parameter[fmt::format("`{}` {}", p.key, p.parameter)].*which).add(p);
+    };
+    for (const Recovered& p : o.parameters) add(&Coverages::found, p);
+    for (const Recovered& p : o.known) add(&Coverages::known, p);
+  }
+  std::string text =
+      "| 95 % intervals | after naming | hold the truth | | where known | hold the truth | |\n"
+      "|---|--:|--:|--:|--:|--:|--:|\n";
+  for (const auto* rows : {&by_condition, &by_parameter}) {
+    for (const auto& [name, coverages] : *rows) {
+      fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, cells(coverages.found),
+                     cells(coverages.known));
     }
   }
-  std::string text = "| 95 % intervals after naming | n | hold the truth | |\n|---|--:|--:|--:|\n";
-  for (const auto& [count, coverage] : by_count) add_coverage(text, fmt::format("{} hidden", count), coverage);
-  for (const auto& [name, coverage] : by_noise) add_coverage(text, name, coverage);
-  for (const auto& [name, coverage] : by_parameter) add_coverage(text, name, coverage);
-  add_coverage(text, "all", all);
   return text;
 }
 
