@@ -74,7 +74,6 @@ std::vector<T> ModelResiduals::stick_residuals(const Observations::SlipObservati
 /// Calls write(row, residual) for every row of a slip; false where the model is not finite.
 template <class T, class Write>
 bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p, double level, Write&& write) const {
-  const T* mean = p;  // the noise of stick holds what the levels of the slips do there
   std::vector<T> at_level;
   if (level != 0) {
     at_level.assign(p, p + parameter_count());
@@ -92,12 +91,13 @@ bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p,
     write(i, robust_residual(r, options_, root_weight));
   }
   if (range.from_stick) {
-    const T r = range.break_away_friction - break_away_level(model_, p, slip);
+    const double weight = model_.rounds_break_away() ? 0 : 1;
+    const T r = weight * (range.break_away_friction - break_away_level(model_, p, slip));
     if (!std::isfinite(scalar_part(r))) return false;
     write(slip.size(), robust_residual(r, options_, 1.0));
   }
   auto row = static_cast<std::size_t>(friction_rows(range));
-  for (const T& r : stick_residuals(range, mean)) {
+  for (const T& r : stick_residuals(range, p)) {
     if (!std::isfinite(scalar_part(r))) return false;
     write(row++, r);
   }

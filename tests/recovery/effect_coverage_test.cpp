@@ -20,10 +20,10 @@ namespace {
 
 using namespace recovery;
 
-/// Why an effect is left out: its model is an approximation of the simulated contact (contact-spin), it is read off the
-/// motion and not fitted, or a record at hand leaves a parameter of it open (ageing, load-coupling).
+/// Why an effect is left out: it is read off the motion and not fitted, or a record at hand leaves a parameter of it
+/// open (ageing, load-coupling).
 bool is_fitted(const Case& c) {
-  static const char* const kLeftOut[] = {"contact-spin", "ageing", "load-coupling"};
+  static const char* const kLeftOut[] = {"ageing", "load-coupling"};
   return !tribofit::is_kinematic(tribofit::make_effect(c.hidden[0].key)) &&
          std::none_of(std::begin(kLeftOut), std::end(kLeftOut),
                       [&](const char* key) { return c.hidden[0].key == key; });

@@ -12,6 +12,7 @@
 #include "tribofit/friction/contact_age.hpp"
 #include "tribofit/friction/hooks.hpp"
 #include "tribofit/friction/model.hpp"
+#include "tribofit/friction/read_through_low_pass.hpp"
 
 namespace tribofit {
 
@@ -257,41 +258,22 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
-/// By how much a low-pass of the friction channel reads a ramp too low: it comes out late by the time constant. Nothing
-/// where the slope in stick is not known.
-inline double lag_of_ramp(const Slip& slip) {
-  return std::isfinite(slip.stick_slope) ? slip.friction_low_pass * slip.stick_slope : 0;
-}
-
-/// What a first-order low-pass of the friction channel reads of a slip, in place: tau dy/dt = mu - y, exact for
-/// straight lines between values. From those a bent curve is off by a twelfth of the second difference on average,
-/// which is put on before. level: signed friction at break-away, up to which it rose at slip.stick_slope.
+/// Signed friction that memories which act in stick have reached at the break-away which begins `slip`: contacts that
+/// creep let the block go before friction is at its highest. `otherwise` where there are none.
 template <class T>
-void read_through_low_pass(const Slip& slip, const T& level, std::span<T> mu) {
-  const double tau = slip.friction_low_pass;
-  if (!(tau > 0) || mu.empty()) return;
-  T y = mu[0], before = mu[0];
-  double previous = slip.time[0];
-  if (slip.from_stick) {
-    y = level - lag_of_ramp(slip);
-    before = level;
-    previous = slip.break_away_time;
-  }
-  T left = mu[0];  // of the value, before it was filtered
-  for (std::size_t i = 0; i < mu.size(); ++i) {
-    const T here = mu[i];
-    T now = here;
-    if (i > 0 && i + 1 < mu.size()) now = here - (1.0 / 12) * (left - 2.0 * here + mu[i + 1]);
-    left = here;
-    const double a = (slip.time[i] - previous) / tau;
-    if (a > 0) {
-      const double e = std::exp(-a), mean = -std::expm1(-a) / a;
-      y = e * y + (1 - e) * before + (1 - mean) * (now - before);
-      previous = slip.time[i];
-      before = now;
+T friction_after_creep(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip,
+                       const T& otherwise) {
+  T mu = otherwise;
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Remembers<E, T> && hooks::ActsInStick<E>) {
+      if (slip.lead_time.empty() || slip.size() == 0) return;
+      const T v = T(slip.velocity[0] + 0.0 * p[0]);
+      const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
+      mu = steady_at(slip.at(0, v));
+      remember(effect, q, slip, otherwise, steady_at, std::span<const T>(&v, 1), std::span<T>(&mu, 1));
     }
-    mu[i] = y;
-  }
+  });
+  return mu;
 }
 
 /// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
@@ -307,6 +289,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   at.acceleration = 0;
   const LawValues<T> law = law_for(model, p, slip);
   T mu = slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at);
+  if (sensed) mu = friction_after_creep(model, p, law, first, mu);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, T>) {
