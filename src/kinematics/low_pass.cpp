@@ -183,8 +183,8 @@ void refine(const std::vector<Restick>& some, double about, double step, LowPass
                    golden_section(left, about / kKinkNext, about * kKinkNext, kCuts).at);
   }
   found.tau = median(taus);
-  found.std_error =
-      kSigmaPerMad * median_absolute_deviation(taus, found.tau) / std::sqrt(static_cast<double>(taus.size()));
+  const double scatter = kSigmaPerMad * median_absolute_deviation(taus, found.tau);
+  found.std_error = std::hypot(scatter / std::sqrt(static_cast<double>(taus.size())), kKinkModel * found.tau);
 }
 
 }  // namespace

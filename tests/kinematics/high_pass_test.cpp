@@ -29,7 +29,7 @@ TEST(HighPass, CornerIsFoundAndTheVelocityRestored) {
       const auto noise = truth::noise(trace.size(), 2e-5, rho, random);
       for (std::size_t i = 0; i < trace.size(); ++i) trace.velocity[i] += noise[i];
       const Motion motion = compute_motion(std::move(trace));
-      EXPECT_NEAR(motion.high_pass / corner, 1, corner < 0.05 ? 0.1 : 0.02) << corner << " rho " << rho;
+      EXPECT_NEAR(motion.high_pass / corner, 1, corner < 0.05 ? 0.1 : 0.005) << corner << " rho " << rho;
       EXPECT_NEAR(motion.velocity_noise, 2e-5, 3e-6);
       const double disc = rig.speed() * rig.radius;
       double squares = 0;
