@@ -91,8 +91,7 @@ bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p,
     write(i, robust_residual(r, options_, root_weight));
   }
   if (range.from_stick) {
-    const double weight = model_.rounds_break_away() ? 0 : 1;
-    const T r = weight * (range.break_away_friction - break_away_level(model_, p, slip));
+    const T r = range.break_away_friction - break_away_level(model_, p, slip);
     if (!std::isfinite(scalar_part(r))) return false;
     write(slip.size(), robust_residual(r, options_, 1.0));
   }

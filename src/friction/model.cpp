@@ -137,12 +137,6 @@ bool FrictionModel::acts_in_stick() const {
   return std::any_of(effects_.begin(), effects_.end(), in_stick);
 }
 
-bool FrictionModel::rounds_break_away() const {
-  const auto rounds = []<class E>(const E&) { return hooks::Remembers<E, double> && hooks::ActsInStick<E>; };
-  return std::any_of(effects_.begin(), effects_.end(),
-                     [&](const Effect& effect) { return std::visit(rounds, effect); });
-}
-
 bool FrictionModel::acts_with(const Effect& effect) const {
   if (!obstacle_on(law_, effect).empty()) return false;
   if (in_stick(effect)) return !acts_in_stick() && std::none_of(effects_.begin(), effects_.end(), ages);

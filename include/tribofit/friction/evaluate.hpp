@@ -258,24 +258,6 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
-/// Signed friction that memories which act in stick have reached at the break-away which begins `slip`: contacts that
-/// creep let the block go before friction is at its highest. `otherwise` where there are none.
-template <class T>
-T friction_after_creep(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip,
-                       const T& otherwise) {
-  T mu = otherwise;
-  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Remembers<E, T> && hooks::ActsInStick<E>) {
-      if (slip.lead_time.empty() || slip.size() == 0) return;
-      const T v = T(slip.velocity[0] + 0.0 * p[0]);
-      const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
-      mu = steady_at(slip.at(0, v));
-      remember(effect, q, slip, otherwise, steady_at, std::span<const T>(&v, 1), std::span<T>(&mu, 1));
-    }
-  });
-  return mu;
-}
-
 /// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
 template <class T>
 T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
@@ -289,7 +271,6 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   at.acceleration = 0;
   const LawValues<T> law = law_for(model, p, slip);
   T mu = slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at);
-  if (sensed) mu = friction_after_creep(model, p, law, first, mu);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
     if constexpr (hooks::ModulatesAll<E, T>) {

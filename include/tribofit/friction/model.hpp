@@ -69,9 +69,6 @@ class FrictionModel {
   Channels needs() const;
   /// A bristle-like effect is among the effects: the block creeps in stick.
   bool acts_in_stick() const;
-  /// Contacts creep with a memory and round friction off at break-away: a line through the stick reads more than there
-  /// is, by an amount that depends on how it is laid.
-  bool rounds_break_away() const;
   /// Whether `effect` can be added: of what acts in stick, and of what counts the time at rest, there is one at most; a
   /// law without a reduced speed has none that could be changed.
   bool acts_with(const Effect& effect) const;
