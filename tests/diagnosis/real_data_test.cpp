@@ -122,7 +122,8 @@ TEST_F(RealData, DrillStringErrorFallsAndTheRestIsSaid) {
   EXPECT_TRUE(shown || possible || !alone.diagnosis.messages.empty());
 
   read.columns["load"] = "weight_on_bit_N";
-  const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read, one_law);
+  // Of the exponential law a bristle would take as much, but only with a stiffness at its bound, which is no name.
+  const DiagnosedTraces weighted = diagnosed("drill-string/drillstring_175.csv", read);
   ASSERT_TRUE(weighted.analysed);
   EXPECT_GT(fall(weighted), 0.02);  // a tenth is aimed at
   EXPECT_EQ(weighted.diagnosis.verdict, Verdict::unexplained);
