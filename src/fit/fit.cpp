@@ -93,10 +93,10 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
   fit.observations = static_cast<std::size_t>(std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0));
 }
 
-/// Standard deviation of 1/f noise over longer times than sensor noise was taken over, up to the record. 1/f noise has as
-/// much in every e-fold of time, and those in which no law has to be right bound what it has over longer times: friction
-/// that wanders by more does so itself. left: variance of what a model leaves beside other noise; what a fit takes away
-/// at low frequencies is not left.
+/// Standard deviation of 1/f noise over longer times than sensor noise was taken over, up to the record. 1/f noise has
+/// as much in every e-fold of time, and those in which no law has to be right bound what it has over longer times:
+/// friction that wanders by more does so itself. left: variance of what a model leaves beside other noise; what a fit
+/// takes away at low frequencies is not left.
 double slow_sensor_noise(std::span<const Record> records, double left) {
   double variance = 0;
   for (const Record& record : records) {

@@ -26,10 +26,10 @@ inline constexpr double kPartBesideParabola = 1.0 / 3;
 /// is not distinguished from the shape of the law.
 inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
 
-/// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are distinct:
-/// less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more than chance
-/// would make them, before noise that raises whole slips is there: it is one test a model. Less: white noise passes for
-/// it now and then; more: laws are mistaken for one another in 1/f noise.
+/// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are
+/// distinct: less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more
+/// than chance would make them, before noise that raises whole slips is there: it is one test a model. Less: white
+/// noise passes for it now and then; more: laws are mistaken for one another in 1/f noise.
 inline constexpr double kLeastIndependence = 1e-6, kSigmasOfSlowNoise = 3;
 
 /// Variance of a stretch over that of the quiet quarter, beyond which it holds something else than noise.

@@ -48,9 +48,9 @@ Steps steps_of(const std::vector<double>& values, const std::vector<std::size_t>
   return out;
 }
 
-/// t^2/sigma^2 of the noise that raises whole slips: what levels of neighbours differ by, but no more than the 1/f noise
-/// that the record shows without any model. 0 where chance would make levels differ as much. What a wrong model does to
-/// the levels is thus no noise.
+/// t^2/sigma^2 of the noise that raises whole slips: what levels of neighbours differ by, but no more than the 1/f
+/// noise that the record shows without any model. 0 where chance would make levels differ as much. What a wrong model
+/// does to the levels is thus no noise.
 double slow_noise_of_slips(const std::vector<Products>& slips, const Observations& observations) {
   std::vector<double> levels;
   std::vector<std::size_t> stretch;
@@ -98,7 +98,7 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
   const Steps steps = steps_of(deltas, records);
   if (steps.count > 0) scatter = std::min(scatter, steps.variance);
   if (deltas.size() < 2 || !(left > 0) || !(freedom > 0)) return;
-  out.noise = left / freedom;               // of a row
+  out.noise = left / freedom;            // of a row
   const double information = norms / n;  // of a slip about its delta
   scatter = std::max(0.0, scatter - out.noise / information);
   out.part = 1 - 1 / std::sqrt(1 + scatter * information / out.noise);

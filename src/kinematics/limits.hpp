@@ -108,8 +108,8 @@ inline constexpr double kKinkInside = 30;
 inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
 /// Time constants tried [samples], each so many times the one before.
 inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35;
-/// Standard uncertainty of a time constant for the cubic that stands for v_r before re-stick, over it: off by 2 % either
-/// way in simulated records (200 and 800 Hz read at 10 kHz).
+/// Standard uncertainty of a time constant for the cubic that stands for v_r before re-stick, over it: off by 2 %
+/// either way in simulated records (200 and 800 Hz read at 10 kHz).
 inline constexpr double kKinkModel = 0.01;
 /// What v_r reads at re-stick over the fastest: alpha is off by some five times as much; what does not matter.
 inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;

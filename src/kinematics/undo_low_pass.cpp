@@ -108,7 +108,8 @@ Evidence evidence_of(const std::vector<Tail>& tails, double tau) {
   const double size = median(std::move(sizes)), onset = median(std::move(onsets));
   const double fall = median(falls), spread = kSigmaPerMad * median_absolute_deviation(falls, fall);
   const double noise = late / std::max(1.0, samples_late);
-  const bool holds = size > kTailSize && fall > kTailAlike * spread && std::abs(onset) < kTailOnset + kTailOnsetPart * tau &&
+  const bool holds = size > kTailSize && fall > kTailAlike * spread &&
+                     std::abs(onset) < kTailOnset + kTailOnsetPart * tau &&
                      early / samples_early < kTailLeft * noise + kTailModel * kTailModel * decays;
   return {onset, holds};
 }

@@ -188,7 +188,8 @@ TEST(Distortions, ALowPassOfFrictionAloneIsFound) {
   }
 }
 
-/// Friction that is recorded early has jumped before re-stick; what noise with a memory does from there on is no filter.
+/// Friction that is recorded early has jumped before re-stick; what noise with a memory does from there on is no
+/// filter.
 TEST(Distortions, EarlyFrictionWithSlowNoiseIsNotFiltered) {
   constexpr std::size_t kEarly = 10;
   const Trace sound = silent(4);

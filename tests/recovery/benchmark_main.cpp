@@ -24,7 +24,8 @@ struct Options {
   std::size_t records = 20;
   std::string only, one, json_path;
   int threads = 0;
-  bool quiet = false, experiments = true, asked = false, coverage = false, known = false, only_known = false, halved = false;
+  bool quiet = false, experiments = true, asked = false, coverage = false, known = false, only_known = false,
+       halved = false;
 };
 
 std::string describe(const Name& name) {
@@ -156,8 +157,9 @@ int run(const Options& options) {
     }
     return !options.only.empty();
   });
-  const RunOptions run_options = {
-      .experiments = options.experiments, .known = options.known || options.only_known, .diagnose = !options.only_known};
+  const RunOptions run_options = {.experiments = options.experiments,
+                                  .known = options.known || options.only_known,
+                                  .diagnose = !options.only_known};
   const auto outcomes = run_cases(cases, options.threads, run_options, [&](const Outcome& o, std::size_t done) {
     if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
   });

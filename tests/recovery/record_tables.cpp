@@ -92,10 +92,10 @@ std::string coverage_table(const std::vector<Outcome>& outcomes) {
   std::map<std::string, Coverages> by_condition, by_parameter;
   for (const Outcome& o : outcomes) {
     const auto add = [&](Coverage Coverages::*which, const Recovered& p) {
-      for (const std::string& name : {fmt::format("{} hidden", o.tested.hidden.size()), noise_of(o.tested),
-                                      fmt::format("named {}", to_string(o.naming)),
-                                      std::string(o.law == o.tested.law ? "the law itself" : "another law"),
-                                      std::string(kAll)}) {
+      for (const std::string& name :
+           {fmt::format("{} hidden", o.tested.hidden.size()), noise_of(o.tested),
+            fmt::format("named {}", to_string(o.naming)),
+            std::string(o.law == o.tested.law ? "the law itself" : "another law"), std::string(kAll)}) {
         (by_condition[name].*which).add(p);
       }
       (by_parameter[fmt::format("`{}` {}", p.key, p.parameter)].*which).add(p);
