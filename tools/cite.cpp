@@ -58,7 +58,7 @@ std::string value_of(const Json& parameter) {
   if (!parameter.at("std_error").is_number()) return fmt::format("{} = {:.6g}{} (held)", name, value, unit);
   const double error = parameter.at("std_error").get<double>();
   const int places = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-  std::string text = fmt::format("{} = ({:.{}f} +- {:.{}f}){}", name, value, places, error, places, unit);
+  std::string text = fmt::format("{} = ({:.{}f} +/- {:.{}f}){}", name, value, places, error, places, unit);
   const Json& interval = parameter.at("ci95");
   if (interval.is_array() && interval.at(0).is_number() && interval.at(1).is_number()) {
     text +=
@@ -97,7 +97,7 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
                   names[0], effects, result.at("tool").at("version").get<std::string>(), cycles);
   std::string values;
   for (const Json& parameter : fit.at("parameters")) values += (values.empty() ? "" : "; ") + value_of(parameter);
-  text += values + " (value +- standard error [95 % interval]).";
+  text += values + " (value +/- standard error [95 % interval]).";
   const Json& error = fit.at("error").at("held_out_rmse");
   if (error.is_number() && fit.at("floor_rmse").is_number()) {
     text += fmt::format(" The error on cycles held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",

@@ -49,4 +49,13 @@ void CsvLine::add_values(const nlohmann::ordered_json& json) {
   }
 }
 
+std::string csv_names(const nlohmann::ordered_json& object) {
+  std::string names;
+  for (const auto& [name, value] : object.items()) {
+    const bool is_interval = name.starts_with("ci95");
+    names += (names.empty() ? "" : ",") + (is_interval ? name + "_lower," + name + "_upper" : name);
+  }
+  return names;
+}
+
 }  // namespace tribofit

@@ -51,6 +51,10 @@ std::string csv_line(const Cells&... cells) {
   return line.take();
 }
 
+/// Names of the cells that the members of an object fill in a line: theirs, and of an interval ("ci95") those of its
+/// ends, NAME_lower and NAME_upper.
+std::string csv_names(const nlohmann::ordered_json& object);
+
 /// A file of a folder that begins with a header.
 class CsvTable {
  public:

@@ -35,14 +35,14 @@ const char* damping_unit(const RigFit& fit) {
 }
 
 std::string delay_text(const RigFit& fit) {
-  return fmt::format("friction is recorded {:.3g} +- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
+  return fmt::format("friction is recorded {:.3g} +/- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
                      1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
                      fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.without_both.damping, damping_unit(fit));
 }
 
 /// The damping in N s/mm, as tables show it.
 std::string damping_text(const RigFit& fit) {
-  return fmt::format("{:.3g} +- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error, damping_unit(fit));
+  return fmt::format("{:.3g} +/- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error, damping_unit(fit));
 }
 
 std::string why_negative_damping(const RigFit& fit) {
@@ -82,14 +82,14 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
   fit.damping_doubtful = sags || late;
   if (sag_first && fit.high_pass.value > 0) {
     out.push_back(fmt::format(
-        "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on v_b that is not undone (a force "
+        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on v_b that is not undone (a force "
         "follows the integral of the displacement, as in no rig); without it the damping would be {:.3g} {}: undo it, "
         "or "
         "declare it as vibrometer.high_pass",
         fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.without_both.damping, damping_unit(fit)));
   } else if (sag_first) {
     out.push_back(fmt::format(
-        "the damping is wrong: the balance shows a high-pass of {:.3g} +- {:.2g} Hz on the force (a charge amplifier "
+        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on the force (a charge amplifier "
         "drifts back so), or one on v_b undone too far",
         -fit.high_pass.value, fit.high_pass.std_error));
   } else if (late) {
@@ -111,7 +111,7 @@ void add_about_mass(const Instruments& instruments, RigFit& fit) {
   }
   if (fit.mass_below.determined) {
     out.push_back(
-        fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +- {:.2g} kg of it hang "
+        fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +/- {:.2g} kg of it hang "
                     "below the force sensor",
                     fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
     return;

@@ -95,7 +95,8 @@ void balance_directions(Trace& trace, std::vector<std::string>& notes) {
   const double offset = 0.5 * (forth.value + back.value);
   for (double& friction : trace.friction) friction -= offset;
   notes.push_back(fmt::format(
-      "motion: friction was balanced between the two directions by {:+.3g} +- {:.2g} N ({:+.3g} um of the spring): the "
+      "motion: friction was balanced between the two directions by {:+.3g} +/- {:.2g} N ({:+.3g} um of the spring): "
+      "the "
       "zeros of the displacements are arbitrary, so asymmetric friction cannot be seen",
       -offset, 0.5 * std::hypot(forth.std_error, back.std_error), 1e6 * offset / trace.spring.stiffness.value));
 }

@@ -14,6 +14,22 @@
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
+namespace tribofit {
+
+std::string_view to_string(HealthItem::Status status) {
+  switch (status) {
+    case HealthItem::Status::ok:
+      return "ok";
+    case HealthItem::Status::warning:
+      return "warning";
+    case HealthItem::Status::problem:
+      break;
+  }
+  return "problem";
+}
+
+}  // namespace tribofit
+
 namespace tribofit::kinematics {
 namespace {
 
@@ -137,13 +153,13 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
   } else if (undone) {
     item.status = Status::warning;
     item.message = fmt::format(
-        "the plateau sags like that of a first-order high-pass at {:.3f} +- {:.4f} Hz ({} plateaus); "
+        "the plateau sags like that of a first-order high-pass at {:.3f} +/- {:.4f} Hz ({} plateaus); "
         "corrected",
         estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (estimate.significant) {
     item.status = Status::problem;
     item.message =
-        fmt::format("the plateau sags like that of a first-order high-pass at {:.3f} +- {:.4f} Hz; not corrected",
+        fmt::format("the plateau sags like that of a first-order high-pass at {:.3f} +/- {:.4f} Hz; not corrected",
                     estimate.corner, estimate.std_error);
   } else if (estimate.creeping) {
     item.message = fmt::format(
@@ -152,7 +168,7 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
         estimate.first_half, estimate.second_half);
   } else if (estimate.plateaus >= 3) {
     item.message =
-        fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +- {:.4f} Hz ({} plateaus)",
+        fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +/- {:.4f} Hz ({} plateaus)",
                     estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (sticks) {
     item.message = "too few plateaus to look for a high-pass";
@@ -200,7 +216,8 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
-        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not those "
+        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not "
+        "those "
         "of the contact, a bandwidth of {:.2g} Hz is needed",
         restick.corner(), restick.slips, restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless);
     return item;
@@ -307,7 +324,7 @@ HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estima
     return item;
   }
   item.message =
-      fmt::format("the plateau follows the disc angle by {:.2f} % {} a revolution (+- {:.2f} %, {} plateaus)",
+      fmt::format("the plateau follows the disc angle by {:.2f} % {} a revolution (+/- {:.2f} %, {} plateaus)",
                   100 * ripple.amplitude, ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order),
                   100 * ripple.amplitude_std_error, estimate.plateaus);
   if (!estimate.significant) return item;

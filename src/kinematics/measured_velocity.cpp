@@ -73,14 +73,18 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
     item.message += ": this is the velocity of the block; name the column v_b";
   } else if (std::abs(gain - 1) > kGainOff) {
     item.status = Status::problem;
-    item.message +=
-        fmt::format(": v_r reads {:.3g} times the truth, or radius or speed are wrong; alpha is unreliable", gain);
+    item.message += fmt::format(
+        ": v_r reads {:.3g} times the truth, or radius or speed are wrong; alpha is "
+        "unreliable",
+        gain);
   } else if (is_off) {
     item.message += ": its zero is off, and alpha with it";
   } else if (std::abs(gain - 1) > kGainWarned) {
     item.status = Status::warning;
-    item.message +=
-        fmt::format(": v_r may read {:.3g} times the truth, and alpha with it, or radius or speed are off", gain);
+    item.message += fmt::format(
+        ": v_r may read {:.3g} times the truth, and alpha with it, or radius or speed are "
+        "off",
+        gain);
   }
   return item;
 }

@@ -74,7 +74,8 @@ HealthItem MotionStages::check_band() const {
   if (samples >= kFewSlipSamples) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are unreliable",
+      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are "
+      "unreliable",
       samples);
   return item;
 }
@@ -85,7 +86,7 @@ HealthItem MotionStages::check_delay() const {
   if (!drift.any()) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; friction fell behind the velocity by {:.2f} +- {:.2f} ppm of the time ({} slips), "
+      "; friction fell behind the velocity by {:.2f} +/- {:.2f} ppm of the time ({} slips), "
       "their clocks drift apart; corrected",
       1e6 * drift.value, 1e6 * drift.std_error, clocks_.slips);
   return item;

@@ -159,7 +159,7 @@ void correct_plateau(Motion& motion, const PlateauRatio& ratio, PlateauCorrectio
     motion.plateau_velocity += shift * constant;
     for (double& v : motion.disc_velocity) v *= ratio.value;
     motion.constant_disc_velocity *= ratio.value;
-    motion.notes.push_back(fmt::format("disc: omega r times {:.4f} +- {:.4f}, as the plateau of v_b says (radius)",
+    motion.notes.push_back(fmt::format("disc: omega r times {:.4f} +/- {:.4f}, as the plateau of v_b says (radius)",
                                        ratio.value, ratio.std_error));
     return;
   }
@@ -170,7 +170,7 @@ void correct_plateau(Motion& motion, const PlateauRatio& ratio, PlateauCorrectio
   }
   motion.plateau_velocity = corrected(motion.plateau_velocity, constant);
   motion.velocity_noise *= part;
-  motion.notes.push_back(fmt::format("velocity: divided by {:.4f} +- {:.4f}, as the plateau of v_b says (gain)",
+  motion.notes.push_back(fmt::format("velocity: divided by {:.4f} +/- {:.4f}, as the plateau of v_b says (gain)",
                                      ratio.value, ratio.std_error));
 }
 

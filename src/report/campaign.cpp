@@ -29,9 +29,8 @@ Json fit_json(const ResultFit& fit) {
   };
   return object("law", fit.law, "protocol", fit.protocol, "effects", fit.effects, "parameters",
                 list_of(fit.parameters, parameter), "error",
-                object("rmse", fit.rmse, "mean_relative", fit.mean_relative, "max_relative", fit.max_relative,
-                       "held_out_rmse", fit.held_out_rmse),
-                "floor_rmse", fit.floor_rmse, "converged", fit.converged);
+                error_json(fit.rmse, fit.mean_relative, fit.max_relative, fit.held_out_rmse), "floor_rmse",
+                fit.floor_rmse, "converged", fit.converged);
 }
 
 /// The measures of stick-slip; summary.csv has columns of the same names.

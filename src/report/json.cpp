@@ -15,8 +15,6 @@ namespace tribofit {
 namespace {
 
 // In the order of HealthItem::Status and MotionKind.
-constexpr std::array<const char*, 3> kStatus = {"ok", "warning", "problem"};
-constexpr std::array<const char*, 3> kMotion = {"stick-slip", "always-slipping", "always-sticking"};
 
 /// In the units in which the parameters are shown; empty where it is not known.
 Json covariance_json(const Fit& fit) {
@@ -33,24 +31,32 @@ Json covariance_json(const Fit& fit) {
   return rows;
 }
 
+}  // namespace
+
+Json error_json(double rmse, double mean_relative, double max_relative, double held_out_rmse) {
+  return object("rmse", rmse, "mean_relative", mean_relative, "max_relative", max_relative, "held_out_rmse",
+                held_out_rmse);
+}
+
+namespace {
+
 Json fit_json(const Fit& fit, const Motion& motion) {
   const auto parameter = [&](const FitParameter& p) { return parameter_json(p, motion); };
   const auto correlation = [&](const Correlation& c) {
     return object("parameters", Json{fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name},
                   "value", c.value);
   };
-  const Json error = object("rmse", fit.error.rmse, "mean_relative", fit.error.mean_relative, "max_relative",
-                            fit.error.max_relative, "held_out_rmse", fit.error.held_out_rmse);
   const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "slow_noise", fit.floor.slow_noise,
                             "source", fit.floor.source);
   return object("law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects",
                 fit.model.effect_keys(), "effect_names", fit.model.effect_names(), "parameters",
-                list_of(fit.parameters, parameter), "error", error, "floor_rmse", fit.floor.rmse, "converged",
-                fit.converged, "conditional", is_conditional(fit), "messages", fit.messages, "floor", floor,
-                "explained", fit.explained, "stick_creep_rmse_mm_s", fit.stick_rmse / kMillimetre, "fastest_mm_s",
-                fit.fastest / kMillimetre, "samples", fit.observations, "cycles", fit.cycles, "correlations",
-                list_of(fit.correlations, correlation), "covariance", covariance_json(fit), "degrees_of_freedom",
-                fit.degrees_of_freedom);
+                list_of(fit.parameters, parameter), "error",
+                error_json(fit.error.rmse, fit.error.mean_relative, fit.error.max_relative, fit.error.held_out_rmse),
+                "floor_rmse", fit.floor.rmse, "converged", fit.converged, "conditional", is_conditional(fit),
+                "messages", fit.messages, "floor", floor, "explained", fit.explained, "stick_creep_rmse_mm_s",
+                fit.stick_rmse / kMillimetre, "fastest_mm_s", fit.fastest / kMillimetre, "samples", fit.observations,
+                "cycles", fit.cycles, "correlations", list_of(fit.correlations, correlation), "covariance",
+                covariance_json(fit), "degrees_of_freedom", fit.degrees_of_freedom);
 }
 
 Json spread_json(const SlipSpread& spread) {
@@ -110,8 +116,7 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
 
 Json health_json(const Motion& motion) {
   return list_of(motion.health, [](const HealthItem& item) {
-    return object("check", item.check, "status", kStatus.at(static_cast<std::size_t>(item.status)), "message",
-                  item.message);
+    return object("check", item.check, "status", to_string(item.status), "message", item.message);
   });
 }
 
@@ -125,8 +130,7 @@ Json stick_slip_json(const Identification& result) {
                 "slip_time_std_error_s", s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip",
                 samples_in_slip(s), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s", long_sticks(s).longest,
                 "branch_difference", s.branch_difference.value, "branch_difference_std_error",
-                s.branch_difference.std_error, "motion", kMotion.at(static_cast<std::size_t>(s.kind)), "notes", s.notes,
-                "spectrum",
+                s.branch_difference.std_error, "motion", to_string(s.kind), "notes", s.notes, "spectrum",
                 object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
                        peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
 }

@@ -21,6 +21,8 @@ Json conditions_of(const Motion& motion);
 /// In the units people read, which depend on whether friction is a force (`motion`).
 Json parameter_json(const FitParameter& parameter, const Motion& motion);
 Json fits_json(std::span<const Fit> fits, const Motion& motion);
+/// What a fit leaves; see ErrorFigures.
+Json error_json(double rmse, double mean_relative, double max_relative, double held_out_rmse);
 Json rig_json(const RigFit& rig);
 
 /// The whole result of one trace.

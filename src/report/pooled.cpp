@@ -1,6 +1,7 @@
 #include "tribofit/report/pooled.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "campaign/condition_cells.hpp"
@@ -13,14 +14,23 @@
 namespace tribofit {
 namespace {
 
-constexpr const char* kValueColumns =
-    "unit,runs,mean,mean_std_error,value,std_error,ci95_lower,ci95_upper,statistical,between_runs,systematic";
-
-/// The members that kValueColumns names.
+/// Of a pooled value, after what it belongs to: members in JSON, cells in CSV.
 Json numbers_json(const PooledValue& v) {
   return object("unit", v.unit, "runs", v.runs, "mean", v.mean, "mean_std_error", v.standard_error_of_mean, "value",
                 v.value, "std_error", v.std_error, "ci95", interval_json(v.lower95, v.upper95), "statistical",
                 v.statistical, "between_runs", v.between, "systematic", positive_or_null(v.systematic));
+}
+
+/// What a run has for itself beside what it shares: no mean and no parts of its error.
+PooledValue of_one_run(const std::string& unit, double value, double std_error) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  PooledValue own;
+  own.unit = unit;
+  own.runs = 1;
+  own.value = value;
+  own.std_error = std_error;
+  own.lower95 = own.upper95 = own.statistical = own.between = own.mean = own.standard_error_of_mean = kNone;
+  return own;
 }
 
 Json value_json(const PooledValue& v) {
@@ -37,7 +47,7 @@ Json trend_json(const Trend& t) {
 
 std::string pooled_csv(const Pooled& pooled) {
   const ConditionCells columns{std::span<const PooledGroup>(pooled.groups)};
-  std::string text = columns.header() + ",law,protocol,name," + kValueColumns + "\n";
+  std::string text = columns.header() + ",law,protocol,name," + csv_names(numbers_json({})) + "\n";
   for (const PooledGroup& group : pooled.groups) {
     const Json conditions = columns.of(group.conditions, group.others);
     const auto add = [&](const PooledValue& value, const std::string& law, const std::string& protocol) {
@@ -52,7 +62,7 @@ std::string pooled_csv(const Pooled& pooled) {
 }
 
 std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
-  std::string text = "law,name,condition,level,run," + std::string(kValueColumns) + "\n";
+  std::string text = "law,name,condition,level,run," + csv_names(numbers_json({})) + "\n";
   for (const SharedFit& fit : pooled.shared) {
     for (const SharedFit::Parameter& common : fit.common) {
       for (std::size_t l = 0; l < common.values.size(); ++l) {
@@ -61,8 +71,8 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
     }
     for (const SharedFit::OfRun& run : fit.runs) {
       for (std::size_t k = 0; k < fit.names.size(); ++k) {
-        text += csv_line(fit.law, fit.names[k], "", "", runs[run.run].run.name, fit.units[k], 1, "", "", run.value[k],
-                         run.std_error[k], "", "", "", "", "");
+        text += csv_line(fit.law, fit.names[k], "", "", runs[run.run].run.name,
+                         numbers_json(of_one_run(fit.units[k], run.value[k], run.std_error[k])));
       }
     }
   }
@@ -70,8 +80,7 @@ std::string shared_csv(const Pooled& pooled, std::span<const RunResult> runs) {
 }
 
 std::string trends_csv(const Trends& trends) {
-  std::string text =
-      "law,name,unit,condition,condition_unit,runs,slope,std_error,ci95_lower,ci95_upper,p_value,p_corrected\n";
+  std::string text = csv_names(trend_json({})) + "\n";
   for (const Trend& trend : trends.trends) text += csv_line(trend_json(trend));
   return text;
 }
@@ -157,10 +166,7 @@ void write_pooled(const std::string& folder, std::span<const RunResult> runs, co
 }
 
 std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups) {
-  std::string text =
-      "radius_mm,speed_rpm,load_N,others,name,law,protocol,unit,earlier,earlier_std_error,value,std_error,"
-      "systematic_error,lower95,upper95,runs,difference_percent,difference_in_std_errors,earlier_inside_95,line,"
-      "column\n";
+  std::string text = csv_names(group_json({})) + "," + csv_names(compared_json({})) + "\n";
   for (const ComparedValue& v : report.values.values) {
     const PooledGroup& group = groups[v.group];
     Json conditions = group_json(group);

@@ -257,7 +257,7 @@ Facts facts_of(const Identification& r) {
 
 ReportTable health_table(std::span<const Identification> traces) {
   const bool several = traces.size() > 1;
-  constexpr std::array<const char*, 3> kSigns = {"✓ ok", "! warning", "✕ problem"};  // in the order of the status
+  constexpr std::array<const char*, 3> kSigns = {"✓ ", "! ", "✕ "};  // in the order of the status
   ReportTable table("Health of the data");
   if (several) table.text({"trace"});
   table.text({"check", "status", "what was found"});
@@ -266,7 +266,8 @@ ReportTable health_table(std::span<const Identification> traces) {
     for (const Identification& trace : traces) {
       for (const HealthItem& item : trace.motion.health) {
         if (item.status != status) continue;
-        std::vector<std::string> row = {item.check, kSigns.at(static_cast<std::size_t>(status)), item.message};
+        std::vector<std::string> row = {
+            item.check, kSigns.at(static_cast<std::size_t>(status)) + std::string(to_string(status)), item.message};
         if (several) row.insert(row.begin(), trace.path);
         table.rows.push_back(std::move(row));
       }

@@ -316,6 +316,18 @@ Segmentation slips_of_points(const Motion& motion) {
 
 }  // namespace
 
+std::string_view to_string(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::stick_slip:
+      return "stick-slip";
+    case MotionKind::always_slipping:
+      return "always-slipping";
+    case MotionKind::always_sticking:
+      break;
+  }
+  return "always-sticking";
+}
+
 RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation) {
   const bool shows_in_motion =
       !motion.kind || motion.kind == RecordKind::stick_slip || motion.kind == RecordKind::sliding;

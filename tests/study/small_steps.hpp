@@ -43,6 +43,17 @@ inline double frequency_of_smooth(SmallSteps block, double duration) {
   return periods / (last - first);
 }
 
+/// Whether a slip that begins where a rigid stick up to mu_s breaks away ends in stick within `limit` [s].
+inline bool sticks_again(SmallSteps block, double mu_s, double limit) {
+  block.x = (block.load * mu_s - block.damping * block.velocity) / block.stiffness;
+  block.v = block.velocity * (1 - 1e-9);
+  for (double t = 0; t < limit; t += block.step) {
+    block.advance();
+    if (block.v >= block.velocity) return true;
+  }
+  return false;
+}
+
 /// Frequency [Hz] with a rigid stick up to mu_s: the spring stretches at the speed of the disc until it breaks away,
 /// then the block slips until it is as fast as the disc. The cycle repeats after the first slip.
 inline double frequency_of_rigid(SmallSteps block, double mu_s) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace tribofit {
 
@@ -13,5 +14,7 @@ struct HealthItem {
   Status status = Status::ok;
   std::string message;  ///< one sentence with numbers and units people use (mm/s, Hz, ms)
 };
+/// "ok", "warning" or "problem".
+std::string_view to_string(HealthItem::Status status);
 
 }  // namespace tribofit

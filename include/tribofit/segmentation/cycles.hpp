@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tribofit/kinematics/motion.hpp"
@@ -50,6 +51,8 @@ enum class MotionKind {
   always_slipping,  ///< never sticks
   always_sticking,  ///< never slips
 };
+/// "stick-slip", "always-slipping" or "always-sticking".
+std::string_view to_string(MotionKind kind);
 
 /// Stick and slip of a whole record.
 struct Segmentation {
