@@ -96,7 +96,7 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   return tries[best].p;
 }
 
-/// Two steps of a search that has ended: equal to a hundredth of what any error of a parameter can be seen to.
+/// Two ends of quick searches, which stop at steps of 1e-7: no further apart than ten of those.
 bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr double kSame = 1e-6;
   return std::equal(a.begin(), a.end(), b.begin(),

@@ -73,8 +73,8 @@ inline constexpr double kLearntByHeart = 1.5;
 /// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
 inline constexpr double kClose = 0.02, kOutline = 0.08;
 
-/// Correlation of two parameters from which the data determine them together rather than each: either could be three
-/// times as well known if the other were.
+/// Correlation of two parameters from which the data determine them together rather than each: either would be known
+/// more than twice as well if the other were, by 1/sqrt(1 - r^2).
 inline constexpr double kStrongCorrelation = 0.9;
 
 /// p value from which one law is clearly better than another.
