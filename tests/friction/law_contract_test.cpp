@@ -190,8 +190,11 @@ TEST_P(EveryLaw, ComesBackFromASimulatedRecord) {
   EXPECT_NEAR(fit.error.rmse / fit.floor.rmse, 1, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(List, EveryLaw, testing::ValuesIn(law_keys()),
-                         [](const auto& key) { return std::string(key.param); });
+INSTANTIATE_TEST_SUITE_P(List, EveryLaw, testing::ValuesIn(law_keys()), [](const auto& key) {
+  std::string name(key.param);
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
 
 TEST(LawList, RefusesAnUnknownKeyWithTheNearest) {
   EXPECT_FALSE(find_law("exponental"));
