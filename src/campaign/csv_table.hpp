@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "whole_folder.hpp"
 
@@ -55,21 +57,39 @@ std::string csv_line(const Cells&... cells) {
 /// ends, NAME_lower and NAME_upper.
 std::string csv_names(const nlohmann::ordered_json& object);
 
+/// A column of a table: its name, and its cell of a row, which a member or a function gives. One that gives a JSON
+/// object or list has as many names, with commas.
+template <class Row>
+struct CsvColumn {
+  template <class Cell>
+  CsvColumn(std::string header, Cell cell)
+      : name(std::move(header)), add([cell](CsvLine& line, const Row& row) { line.add(std::invoke(cell, row)); }) {}
+
+  std::string name;
+  std::function<void(CsvLine&, const Row&)> add;
+};
+
+/// Digits of what was measured: more than any instrument has.
+constexpr int kMeasuredDigits = 10;
+
 /// A file of a folder that begins with a header.
+template <class Row>
 class CsvTable {
  public:
-  CsvTable(WholeFolder& folder, const std::string& name, std::string_view header, int digits = 0)
-      : file_(folder.add(name)), line_(digits) {
-    file_.write(std::string(header) + "\n");
+  CsvTable(WholeFolder& folder, const std::string& name, std::vector<CsvColumn<Row>> columns, int digits = 0)
+      : file_(folder.add(name)), columns_(std::move(columns)), line_(digits) {
+    std::string header;
+    for (const CsvColumn<Row>& column : columns_) header += (header.empty() ? "" : ",") + column.name;
+    file_.write(header + "\n");
   }
-  template <class... Cells>
-  void row(const Cells&... cells) {
-    (line_.add(cells), ...);
+  void row(const Row& row) {
+    for (const CsvColumn<Row>& column : columns_) column.add(line_, row);
     file_.write(line_.take());
   }
 
  private:
   WholeFile& file_;
+  std::vector<CsvColumn<Row>> columns_;
   CsvLine line_;
 };
 

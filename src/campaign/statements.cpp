@@ -115,8 +115,7 @@ struct ErrorSums {
 };
 
 void add_run(const RunFigures& figures, std::size_t group, std::vector<ErrorSums>& sums) {
-  const double samples =
-      static_cast<double>(std::accumulate(figures.bin_samples.begin(), figures.bin_samples.end(), std::size_t{0}));
+  const double samples = static_cast<double>(figures.slip_samples());
   const double bins = static_cast<double>(
       std::count_if(figures.bin_samples.begin(), figures.bin_samples.end(), [](std::size_t n) { return n > 0; }));
   for (const ErrorCurve& curve : figures.errors) {

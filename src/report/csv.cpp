@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -14,18 +13,9 @@
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/ingest/output_tables.hpp"
 
 namespace tribofit {
 namespace {
-
-/// One of the tables, whose header goes on with `more`.
-CsvTable table_in(WholeFolder& folder, const std::string& name, const std::string& more = "") {
-  constexpr int kDigits = 10;
-  const auto known = std::find_if(output_tables.begin(), output_tables.end(),
-                                  [&](const OutputTable& table) { return table.name == name; });
-  return {folder, name, std::string(known->header) + more, kDigits};
-}
 
 /// An index as a cell, empty where there is none.
 double index_cell(std::size_t index) {
@@ -39,60 +29,100 @@ double time_cell(const Motion& motion, std::size_t i) {
 
 void write_samples(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
                    const Membership& member) {
-  const Motion& motion = result.motion;
-  const std::vector<bool> slips = slipping_samples(motion, result.segmentation);
-  // Of a record whose velocity and friction were made from another channel.
-  const bool with_errors = !motion.velocity_std_error.empty();
-  CsvTable table = table_in(folder, "samples.csv", with_errors ? ",relative_velocity_std_error_mm_s,mu_std_error" : "");
-  auto errors = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < motion.size(); ++i) {
-    if (with_errors) errors = {motion.velocity_std_error[i] / kMillimetre, motion.friction_std_error[i]};
-    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i],
-              model.empty() ? std::nan("") : model[i], slips[i] ? "slip" : "stick", index_cell(member.cycle[i]),
-              index_cell(member.fold[i]), errors);
+  const Motion& m = result.motion;
+  const std::vector<bool> slips = slipping_samples(m, result.segmentation);
+  std::vector<CsvColumn<std::size_t>> columns = {
+      {"time_s", [&](std::size_t i) { return time_cell(m, i); }},
+      {"relative_velocity_mm_s", [&](std::size_t i) { return m.relative_velocity[i] / kMillimetre; }},
+      {"mu", [&](std::size_t i) { return m.friction[i]; }},
+      {"mu_model", [&](std::size_t i) { return model.empty() ? std::nan("") : model[i]; }},
+      {"phase", [&](std::size_t i) { return slips[i] ? "slip" : "stick"; }},
+      {"cycle", [&](std::size_t i) { return index_cell(member.cycle[i]); }},
+      {"held_out_fold", [&](std::size_t i) { return index_cell(member.fold[i]); }},
+  };
+  if (!m.velocity_std_error.empty()) {  // velocity and friction were made from another channel
+    columns.emplace_back("relative_velocity_std_error_mm_s",
+                         [&](std::size_t i) { return m.velocity_std_error[i] / kMillimetre; });
+    columns.emplace_back("mu_std_error", [&](std::size_t i) { return m.friction_std_error[i]; });
   }
+  CsvTable table(folder, "samples.csv", std::move(columns), kMeasuredDigits);
+  for (std::size_t i = 0; i < m.size(); ++i) table.row(i);
 }
 
 void write_cycles(WholeFolder& folder, const Identification& result, const Membership& member) {
   const bool force = friction_unit(result.motion) == "N";
-  CsvTable table = table_in(
-      folder, "cycles.csv",
-      fmt::format("stick_time_s,slip_time_s,period_s,break_away_friction{0},break_away_friction_std_error{0},stick_"
-                  "slope{1},static_friction{0},kinetic_friction{0},"
-                  "peak_velocity_mm_s,plateau_velocity_mm_s,stick_complete,slip_complete,held_out_fold",
-                  force ? "_N" : "", force ? "_N_s" : "_1_s"));
+  const std::string unit = force ? "_N" : "";
   const std::vector<Cycle>& cycles = result.segmentation.cycles;
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    const Cycle& c = cycles[k];
-    const bool held = c.slip.size() > 0 && c.slip.begin < member.fold.size();
-    table.row(k, c.direction, c.break_away_time, c.break_away_time_std_error, c.restick_time, c.stick_time, c.slip_time,
-              c.period, c.break_away_friction, c.break_away_friction_std_error, c.stick_slope, c.stick_maximum,
-              c.slip_minimum, c.peak_velocity / kMillimetre, c.plateau_velocity / kMillimetre, c.stick_complete,
-              c.slip_complete, index_cell(held ? member.fold[c.slip.begin] : Membership::none));
-  }
+  std::vector<CsvColumn<Cycle>> columns = {
+      {"cycle", [&](const Cycle& c) { return static_cast<std::size_t>(&c - cycles.data()); }},
+      {"direction", &Cycle::direction},
+      {"break_away_time_s", &Cycle::break_away_time},
+      {"break_away_time_std_error_s", &Cycle::break_away_time_std_error},
+      {"restick_time_s", &Cycle::restick_time},
+      {"stick_time_s", &Cycle::stick_time},
+      {"slip_time_s", &Cycle::slip_time},
+      {"period_s", &Cycle::period},
+      {"break_away_friction" + unit, &Cycle::break_away_friction},
+      {"break_away_friction_std_error" + unit, &Cycle::break_away_friction_std_error},
+      {force ? "stick_slope_N_s" : "stick_slope_1_s", &Cycle::stick_slope},
+      {"static_friction" + unit, &Cycle::stick_maximum},
+      {"kinetic_friction" + unit, &Cycle::slip_minimum},
+      {"peak_velocity_mm_s", [](const Cycle& c) { return c.peak_velocity / kMillimetre; }},
+      {"plateau_velocity_mm_s", [](const Cycle& c) { return c.plateau_velocity / kMillimetre; }},
+      {"stick_complete", &Cycle::stick_complete},
+      {"slip_complete", &Cycle::slip_complete},
+      {"held_out_fold",
+       [&](const Cycle& c) {
+         const bool held = c.slip.size() > 0 && c.slip.begin < member.fold.size();
+         return index_cell(held ? member.fold[c.slip.begin] : Membership::none);
+       }},
+  };
+  CsvTable table(folder, "cycles.csv", std::move(columns), kMeasuredDigits);
+  for (const Cycle& cycle : cycles) table.row(cycle);
 }
+
+struct CurvePoint {
+  const Fit& fit;
+  const std::string& effects;
+  const Curve& curve;
+  std::size_t i;
+};
 
 void write_curves(WholeFolder& folder, std::span<const Fit> fits) {
   constexpr std::size_t kPoints = 201;
-  CsvTable table = table_in(folder, "curves.csv");
+  using P = CurvePoint;
+  std::vector<CsvColumn<P>> columns = {
+      {"law", [](const P& p) { return to_string(p.fit.model.law()); }},
+      {"effects", [](const P& p) { return p.effects; }},
+      {"protocol", [](const P& p) { return to_string(p.fit.protocol); }},
+      {"relative_velocity_mm_s", [](const P& p) { return p.curve.velocity[p.i] / kMillimetre; }},
+      {"mu", [](const P& p) { return p.curve.mu[p.i]; }},
+      {"mu_lower95", [](const P& p) { return p.curve.lower95[p.i]; }},
+      {"mu_upper95", [](const P& p) { return p.curve.upper95[p.i]; }},
+      {"within_data", [](const P& p) { return p.curve.velocity[p.i] <= p.fit.fastest; }},
+  };
+  CsvTable table(folder, "curves.csv", std::move(columns), kMeasuredDigits);
   for (const Fit& fit : fits) {
     const std::string effects = fmt::format("{}", fmt::join(fit.model.effect_names(), "+"));
     const Curve curve = curve_of(fit, kPoints);
-    for (std::size_t i = 0; i < curve.velocity.size(); ++i) {
-      table.row(to_string(fit.model.law()), effects, to_string(fit.protocol), curve.velocity[i] / kMillimetre,
-                curve.mu[i], curve.lower95[i], curve.upper95[i], curve.velocity[i] <= fit.fastest);
-    }
+    for (std::size_t i = 0; i < curve.velocity.size(); ++i) table.row({fit, effects, curve, i});
   }
 }
 
 void write_errors(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
                   const Membership& member) {
-  const Motion& motion = result.motion;
-  CsvTable table = table_in(folder, "errors.csv", friction_unit(motion) + ",relative_error_1,cycle,held_out_fold");
+  const Motion& m = result.motion;
+  std::vector<CsvColumn<std::size_t>> columns = {
+      {"time_s", [&](std::size_t i) { return time_cell(m, i); }},
+      {"relative_velocity_mm_s", [&](std::size_t i) { return m.relative_velocity[i] / kMillimetre; }},
+      {"residual_" + friction_unit(m), [&](std::size_t i) { return m.friction[i] - model[i]; }},
+      {"relative_error_1", [&](std::size_t i) { return relative_error(m.friction[i], model[i]); }},
+      {"cycle", [&](std::size_t i) { return index_cell(member.cycle[i]); }},
+      {"held_out_fold", [&](std::size_t i) { return index_cell(member.fold[i]); }},
+  };
+  CsvTable table(folder, "errors.csv", std::move(columns), kMeasuredDigits);
   for (std::size_t i = 0; i < model.size(); ++i) {
-    if (!std::isfinite(model[i])) continue;
-    table.row(time_cell(motion, i), motion.relative_velocity[i] / kMillimetre, motion.friction[i] - model[i],
-              relative_error(motion.friction[i], model[i]), index_cell(member.cycle[i]), index_cell(member.fold[i]));
+    if (std::isfinite(model[i])) table.row(i);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct RunFigures {
   std::vector<double> bin_friction;      ///< their mean friction (Fig 10, 11); NaN where there are none
   std::vector<ErrorCurve> errors;        ///< one a fit (Fig 12)
 
+  std::size_t slip_samples() const { return std::accumulate(bin_samples.begin(), bin_samples.end(), std::size_t{0}); }
   /// e of the mean friction of a bin.
   double error_of_mean(const ErrorCurve& curve, std::size_t bin) const {
     return std::abs((bin_friction[bin] - curve.fitted[bin]) / bin_friction[bin]);

@@ -6,14 +6,14 @@
 
 namespace tribofit {
 
-/// A table that `--csv FOLDER` writes: its name, and how its header begins.
+/// A table that `--csv FOLDER` writes: its name, and the beginning of its header, by which it is known again.
 struct OutputTable {
   std::string_view name, header;
 };
 inline constexpr std::array<OutputTable, 4> output_tables = {
-    {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold"},
-     {"cycles.csv", "cycle,direction,break_away_time_s,break_away_time_std_error_s,restick_time_s,"},
-     {"curves.csv", "law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data"},
+    {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model"},
+     {"cycles.csv", "cycle,direction,break_away_time_s"},
+     {"curves.csv", "law,effects,protocol,relative_velocity_mm_s"},
      {"errors.csv", "time_s,relative_velocity_mm_s,residual_"}}};
 
 /// Whether the file is one of those tables, by its name and its header: a result, not a run. A file that cannot be read

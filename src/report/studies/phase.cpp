@@ -115,12 +115,16 @@ Json motion_json(const SimulatedMotion& motion) {
 
 void write_motion(WholeFolder& files, const std::string& name, const SimulatedMotion& motion) {
   constexpr int kDigits = 9;
-  CsvTable table(files, name, "time_s,displacement_mm,block_velocity_mm_s,relative_velocity_mm_s,friction,phase",
-                 kDigits);
-  for (std::size_t i = 0; i < motion.size(); ++i) {
-    table.row(motion.time[i], 1e3 * motion.displacement[i], 1e3 * motion.velocity[i], 1e3 * motion.relative_velocity[i],
-              motion.friction[i], motion.sticks[i] != 0 ? "stick" : "slip");
-  }
+  std::vector<CsvColumn<std::size_t>> columns = {
+      {"time_s", [&](std::size_t i) { return motion.time[i]; }},
+      {"displacement_mm", [&](std::size_t i) { return 1e3 * motion.displacement[i]; }},
+      {"block_velocity_mm_s", [&](std::size_t i) { return 1e3 * motion.velocity[i]; }},
+      {"relative_velocity_mm_s", [&](std::size_t i) { return 1e3 * motion.relative_velocity[i]; }},
+      {"friction", [&](std::size_t i) { return motion.friction[i]; }},
+      {"phase", [&](std::size_t i) { return motion.sticks[i] != 0 ? "stick" : "slip"; }},
+  };
+  CsvTable table(files, name, std::move(columns), kDigits);
+  for (std::size_t i = 0; i < motion.size(); ++i) table.row(i);
 }
 
 }  // namespace
@@ -147,11 +151,16 @@ std::string study_json(const StudiedMachine& studied, const std::vector<Portrait
 
 void write_study(const std::string& folder, const std::vector<Portrait>& study) {
   WholeFolder files(folder);
-  CsvTable list(files, "portraits.csv", "portrait,velocity_mm_s,regime" + measure_columns());
-  for (std::size_t i = 0; i < study.size(); ++i) {
-    const Portrait& portrait = study[i];
-    const std::string name = std::to_string(i + 1);
-    list.row(name, 1e3 * portrait.velocity, settled_json(portrait.settled));
+  const auto number_of = [&](const Portrait& p) { return std::to_string(&p - study.data() + 1); };
+  std::vector<CsvColumn<Portrait>> columns = {
+      {"portrait", number_of},
+      {"velocity_mm_s", [](const Portrait& p) { return 1e3 * p.velocity; }},
+      {"regime" + measure_columns(), [](const Portrait& p) { return settled_json(p.settled); }},
+  };
+  CsvTable list(files, "portraits.csv", std::move(columns));
+  for (const Portrait& portrait : study) {
+    const std::string name = number_of(portrait);
+    list.row(portrait);
     write_motion(files, "phase_" + name + ".csv", portrait.start);
     if (portrait.cycle.size() > 0) write_motion(files, "cycle_" + name + ".csv", portrait.cycle);
   }

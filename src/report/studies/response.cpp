@@ -116,10 +116,14 @@ std::string study_json(const StudiedMachine& studied, const Response& study, con
 
 void write_study(const std::string& folder, const Response& study) {
   WholeFolder files(folder);
-  CsvTable curve(files, "response.csv", "frequency_hz,displacement_amplitude_mm");
-  for (std::size_t i = 0; i < study.frequency.size(); ++i) curve.row(study.frequency[i], 1e3 * study.amplitude[i]);
-  CsvTable lines(files, "harmonics.csv", "harmonic,frequency_hz,force_N,displacement_mm,velocity_mm_s");
-  for (std::size_t n = 0; n < study.harmonics.size(); ++n) lines.row(n + 1, harmonic_json(study.harmonics[n]));
+  using Columns = std::vector<CsvColumn<std::size_t>>;
+  Columns of_curve = {{"frequency_hz", [&](std::size_t i) { return study.frequency[i]; }},
+                      {"displacement_amplitude_mm", [&](std::size_t i) { return 1e3 * study.amplitude[i]; }}};
+  Columns of_lines = {{"harmonic", [](std::size_t n) { return n + 1; }},
+                      {csv_names(harmonic_json({})), [&](std::size_t n) { return harmonic_json(study.harmonics[n]); }}};
+  CsvTable curve(files, "response.csv", std::move(of_curve)), lines(files, "harmonics.csv", std::move(of_lines));
+  for (std::size_t i = 0; i < study.frequency.size(); ++i) curve.row(i);
+  for (std::size_t n = 0; n < study.harmonics.size(); ++n) lines.row(n);
   files.commit();
 }
 

@@ -109,16 +109,29 @@ std::string study_json(const StudiedMachine& studied, const std::vector<Sensitiv
 
 void write_study(const std::string& folder, const std::vector<Sensitivity>& study) {
   WholeFolder files(folder);
-  CsvTable sweeps(files, "sensitivity.csv", "variable,unit,value,relative_value,regime" + measure_columns());
-  std::string header = "variable,unit,value";
-  for (const MeasureInfo& measure : measures()) header += "," + measure.name;
-  CsvTable table(files, "elasticities.csv", header);
+  struct Row {
+    const Sensitivity& of;
+    std::size_t i;
+  };
+  const CsvColumn<Row> name = {"variable", [](const Row&r) { return r.of.variable.name; }},
+                       unit = {"unit", [](const Row&r) { return r.of.variable.unit; }};
+  std::vector<CsvColumn<Row>> swept_columns = {
+      name,
+      unit,
+      {"value", [](const Row& r) { return r.of.values[r.i] / r.of.variable.si; }},
+      {"relative_value", [](const Row& r) { return r.of.values[r.i] / r.of.base; }},
+      {"regime" + measure_columns(), [](const Row& r) { return settled_json(r.of.settled[r.i]); }},
+  };
+  std::vector<CsvColumn<Row>> ranked_columns = {
+      name, unit, {"value", [](const Row& r) { return r.of.base / r.of.variable.si; }}};
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    ranked_columns.emplace_back(measures()[k].name, [k](const Row& r) { return r.of.elasticities[k]; });
+  }
+  CsvTable sweeps(files, "sensitivity.csv", std::move(swept_columns)),
+      table(files, "elasticities.csv", std::move(ranked_columns));
   for (const Sensitivity& one : study) {
-    const Variable& v = one.variable;
-    for (std::size_t i = 0; i < one.values.size(); ++i) {
-      sweeps.row(v.name, v.unit, one.values[i] / v.si, one.values[i] / one.base, settled_json(one.settled[i]));
-    }
-    table.row(v.name, v.unit, one.base / v.si, list_of(one.elasticities, number));
+    for (std::size_t i = 0; i < one.values.size(); ++i) sweeps.row({one, i});
+    table.row({one, 0});
   }
   files.commit();
 }

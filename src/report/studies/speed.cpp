@@ -234,12 +234,14 @@ std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, c
 
 void write_study(const std::string& folder, const SpeedStudy& study) {
   WholeFolder files(folder);
-  CsvTable table(
-      files, "speed.csv",
-      "velocity_mm_s,growth_rate_1_s,regime_up" + measure_columns("up_") + ",regime_down" + measure_columns("down_"));
-  for (std::size_t i = 0; i < study.velocity.size(); ++i) {
-    table.row(1e3 * study.velocity[i], study.growth_rate[i], settled_json(study.up[i]), settled_json(study.down[i]));
-  }
+  std::vector<CsvColumn<std::size_t>> columns = {
+      {"velocity_mm_s", [&](std::size_t i) { return 1e3 * study.velocity[i]; }},
+      {"growth_rate_1_s", [&](std::size_t i) { return study.growth_rate[i]; }},
+      {"regime_up" + measure_columns("up_"), [&](std::size_t i) { return settled_json(study.up[i]); }},
+      {"regime_down" + measure_columns("down_"), [&](std::size_t i) { return settled_json(study.down[i]); }},
+  };
+  CsvTable table(files, "speed.csv", std::move(columns));
+  for (std::size_t i = 0; i < study.velocity.size(); ++i) table.row(i);
   files.commit();
 }
 
