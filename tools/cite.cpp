@@ -12,6 +12,7 @@
 #include "exit_status.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/friction/laws/all.hpp"
+#include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/version.hpp"
@@ -70,11 +71,10 @@ std::string value_of(const Json& parameter) {
 std::string conditions_of(const Json& result) {
   const Json& conditions = result.at("conditions");
   std::string text;
-  for (const auto& [key, unit] :
-       {std::pair("radius_mm", "mm"), std::pair("speed_rpm", "rpm"), std::pair("load_N", "N")}) {
-    const auto at = conditions.find(key);
+  for (const ConditionInfo& info : condition_infos) {
+    const auto at = conditions.find(info.column);
     if (at == conditions.end() || !at->is_number()) continue;
-    text += fmt::format("{}{:.4g} {}", text.empty() ? "" : ", ", at->get<double>(), unit);
+    text += fmt::format("{}{:.4g} {}", text.empty() ? "" : ", ", at->get<double>(), info.unit);
   }
   return text.empty() ? "" : " (" + text + ")";
 }

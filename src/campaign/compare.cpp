@@ -79,9 +79,10 @@ void add_partners(const EarlierValue& earlier, const PooledGroup& group, std::si
 std::string conditions_text(const Conditions& conditions, const std::vector<OtherCondition>& others) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (conditions.radius.known()) add(fmt::format("{:.4g} mm", conditions.radius.value / kMillimetre));
-  if (conditions.speed.known()) add(fmt::format("{:.4g} rpm", conditions.speed.value / kRpm));
-  if (conditions.load.known()) add(fmt::format("{:.4g} N", conditions.load.value));
+  for (const ConditionInfo& info : condition_infos) {
+    const Condition& condition = conditions.*info.member;
+    if (condition.known()) add(fmt::format("{:.4g} {}", condition.value / info.si, info.unit));
+  }
   for (const OtherCondition& other : others) {
     if (!other.value.empty()) add(other.name + " " + other.value);
   }

@@ -13,6 +13,20 @@
 
 namespace tribofit {
 
+/// "radius_source".
+inline std::string source_key(const ConditionInfo& info) {
+  return std::string(info.name) + "_source";
+}
+
+/// {"radius_mm", "speed_rpm", "load_N"}, null where not known.
+inline Json condition_values(const Conditions& conditions) {
+  Json values = Json::object();
+  for (const ConditionInfo& info : condition_infos) {
+    values[info.column] = number((conditions.*info.member).value / info.si);
+  }
+  return values;
+}
+
 /// The columns of conditions in tables of a campaign: radius_mm, speed_rpm, load_N and those that any run states.
 class ConditionCells {
  public:
@@ -24,13 +38,13 @@ class ConditionCells {
   }
 
   std::string header() const {
-    const std::string line = csv_line("radius_mm", "speed_rpm", "load_N", Json(names_));
-    return line.substr(0, line.size() - 1);
+    const std::string line = csv_line(Json(names_));
+    return csv_names(condition_values({})) + (names_.empty() ? "" : "," + line.substr(0, line.size() - 1));
   }
 
   /// The cells of a row, as a list.
   Json of(const Conditions& c, const std::vector<OtherCondition>& others) const {
-    Json row = {number(c.radius.value / kMillimetre), number(c.speed.value / kRpm), number(c.load.value)};
+    Json row = {condition_values(c)};
     for (const std::string& name : names_) {
       const auto found =
           std::find_if(others.begin(), others.end(), [&](const OtherCondition& other) { return other.name == name; });

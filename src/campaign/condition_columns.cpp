@@ -10,14 +10,13 @@
 namespace tribofit {
 namespace {
 
-ConditionColumn column_of(std::span<const RunResult> runs, const char* name, const char* unit, double si,
-                          Condition Conditions::*which) {
-  ConditionColumn out{name, unit, {}, {}};
+ConditionColumn column_of(std::span<const RunResult> runs, const ConditionInfo& which) {
+  ConditionColumn out{std::string(which.name), std::string(which.unit), {}, {}};
   for (const RunResult& run : runs) {
-    const Condition& said = run.run.conditions.*which;
-    const Condition& used = said.known() ? said : run.conditions.*which;
-    out.number.push_back(used.known() ? std::optional(used.value / si) : std::nullopt);
-    out.text.push_back(used.known() ? fmt::format("{:.6g} {}", used.value / si, unit) : "");
+    const Condition& said = run.run.conditions.*which.member;
+    const Condition& used = said.known() ? said : run.conditions.*which.member;
+    out.number.push_back(used.known() ? std::optional(used.value / which.si) : std::nullopt);
+    out.text.push_back(used.known() ? fmt::format("{:.6g} {}", used.value / which.si, which.unit) : "");
   }
   return out;
 }
@@ -25,15 +24,13 @@ ConditionColumn column_of(std::span<const RunResult> runs, const char* name, con
 }  // namespace
 
 std::vector<ConditionColumn> condition_columns(std::span<const RunResult> runs) {
-  std::vector<ConditionColumn> out = {
-      column_of(runs, "radius", "mm", 1e-3, &Conditions::radius),
-      column_of(runs, "speed", "rpm", kRpm, &Conditions::speed),
-      column_of(runs, "load", "N", 1, &Conditions::load),
-  };
+  std::vector<ConditionColumn> out;
+  for (const ConditionInfo& condition : condition_infos) out.push_back(column_of(runs, condition));
   for (std::size_t r = 0; r < runs.size(); ++r) {
     for (const OtherCondition& other : runs[r].run.others) {
       if (tells_order(other.name)) continue;
-      auto at = std::find_if(out.begin() + 3, out.end(), [&](const auto& column) { return column.name == other.name; });
+      auto at = std::find_if(out.begin() + condition_infos.size(), out.end(),
+                             [&](const auto& column) { return column.name == other.name; });
       if (at == out.end()) {
         out.push_back(
             {other.name, "", std::vector<std::string>(runs.size()), std::vector<std::optional<double>>(runs.size())});

@@ -32,11 +32,15 @@ class Draft {
     ManifestDraft draft;
     draft.runs = rows_.size();
     CsvLine line;
-    for (const char* name : {"file", "radius", "speed", "load", "repeat"}) line.add(name);
+    line.add("file");
+    for (const ConditionInfo& condition : condition_infos) line.add(condition.name);
+    line.add("repeat");
     for (const std::string& name : others_) line.add(name);
     std::string table = line.take();
     for (const auto& [file, fields] : rows_) {
-      for (const std::string& text : {file, fields.radius, fields.speed, fields.load, fields.repeat}) line.add(text);
+      line.add(file);
+      for (const auto field : stated_conditions) line.add(fields.*field);
+      line.add(fields.repeat);
       for (const std::string& name : others_) {
         const std::string* value = value_of(fields, name);
         line.add(value ? *value : std::string());
@@ -74,7 +78,7 @@ class Draft {
   /// What the header says where the name says nothing; where both speak and differ, a remark.
   void take_header(const StatedFields& header, const std::string& file, StatedFields& fields) {
     const ManifestRow in_header = row_from(header, file, "file");
-    const auto take = [&](const char* name, std::string StatedFields::*field, Condition Conditions::*condition) {
+    const auto take = [&](std::string StatedFields::*field, const ConditionInfo& condition) {
       const std::string& said = header.*field;
       if (said.empty()) return;
       if ((fields.*field).empty()) {
@@ -89,15 +93,13 @@ class Draft {
       } catch (const InputError&) {  // the reader of the manifest will say what is wrong with it
         return;
       }
-      const double a = (in_name.conditions.*condition).value, b = (in_header.conditions.*condition).value;
+      const double a = (in_name.conditions.*condition.member).value, b = (in_header.conditions.*condition.member).value;
       if (std::abs(a - b) > kSameStatement * std::abs(b)) {
         remarks_.push_back(fmt::format("{}: the {} of its header is {}, that of its name {}; check which is right",
-                                       file, name, said, fields.*field));
+                                       file, condition.name, said, fields.*field));
       }
     };
-    take("radius", &StatedFields::radius, &Conditions::radius);
-    take("speed", &StatedFields::speed, &Conditions::speed);
-    take("load", &StatedFields::load, &Conditions::load);
+    for (std::size_t k = 0; k < condition_infos.size(); ++k) take(stated_conditions[k], condition_infos[k]);
   }
 
   std::vector<std::pair<std::string, StatedFields>> rows_;

@@ -200,7 +200,10 @@ void EarlierColumns::check(std::size_t line) {
     }
   }
   if (!conditions) {
-    throw InputError("there is no column of conditions", "add radius_mm, speed_rpm or load_N", {path_, line, ""});
+    throw InputError("there is no column of conditions",
+                     fmt::format("add {}, {} or {}", condition_infos[0].column, condition_infos[1].column,
+                                 condition_infos[2].column),
+                     {path_, line, ""});
   }
   if (!values) {
     std::vector<std::string> names;

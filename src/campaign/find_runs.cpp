@@ -38,29 +38,31 @@ Named named_as(const fs::path& path) {
 }
 
 /// The manifest's condition where the command line says nothing; where both speak and differ, a warning.
-void merge(const Condition& manifest, Condition& merged, const char* option, double unit, const char* unit_name,
-           const std::string& place, std::vector<std::string>& warnings) {
+void merge(const ConditionInfo& info, const Conditions& in_manifest, Conditions& used, const std::string& place,
+           std::vector<std::string>& warnings) {
+  const Condition& manifest = in_manifest.*info.member;
+  Condition& merged = used.*info.member;
   if (!manifest.known()) return;
   if (!merged.known()) {
     merged = manifest;
     return;
   }
   if (std::abs(merged.value - manifest.value) <= kSameStatement * std::abs(manifest.value)) return;
-  warnings.push_back(fmt::format("{} {:.4g} {} is used, not the {:.4g} {} of {}", option, merged.value / unit,
-                                 unit_name, manifest.value / unit, unit_name, place));
+  warnings.push_back(fmt::format("--{} {:.4g} {} is used, not the {:.4g} {} of {}", info.name, merged.value / info.si,
+                                 info.unit, manifest.value / info.si, info.unit, place));
 }
 
 /// What is stated of a run in `place`, under what the user says (`read`).
 Run stated_run(const ManifestRow& row, const std::string& place, const ReadOptions& read) {
   Run run = run_of(row.path, read);
   Conditions& merged = run.trace.read.conditions;
-  if (read.step_radii.empty()) {
-    merge(row.conditions.radius, merged.radius, "--radius", 1e-3, "mm", place, run.warnings);
-  } else if (row.conditions.radius.known()) {
-    run.warnings.push_back("the radii of the steps given with --radius are used, not the radius of " + place);
+  for (const ConditionInfo& info : condition_infos) {
+    if (info.member != &Conditions::radius || read.step_radii.empty()) {
+      merge(info, row.conditions, merged, place, run.warnings);
+    } else if (row.conditions.radius.known()) {
+      run.warnings.push_back("the radii of the steps given with --radius are used, not the radius of " + place);
+    }
   }
-  merge(row.conditions.speed, merged.speed, "--speed", kRpm, "rpm", place, run.warnings);
-  merge(row.conditions.load, merged.load, "--load", 1, "N", place, run.warnings);
   run.known = row;
   run.known.conditions = merged;
   run.problem = row.problem;

@@ -21,19 +21,14 @@ namespace {
 constexpr const char* kNumber = "[0-9]+(?:[.,][0-9]+)?";
 constexpr const char* kAdvice = "write it as in 'r{radius}mm_{repeat}.csv'";
 
-struct Measured {
-  const char* name;
-  Quantity quantity;
-  std::string StatedFields::*field;
-};
-constexpr std::array<Measured, 3> kMeasured = {{{"radius", Quantity::length, &StatedFields::radius},
-                                                {"speed", Quantity::angular_velocity, &StatedFields::speed},
-                                                {"load", Quantity::force, &StatedFields::load}}};
+const ConditionInfo* measured(const std::string& name) {
+  const auto found = std::find_if(condition_infos.begin(), condition_infos.end(),
+                                  [&](const ConditionInfo& condition) { return condition.name == name; });
+  return found == condition_infos.end() ? nullptr : &*found;
+}
 
-const Measured* measured(const std::string& name) {
-  const auto found =
-      std::find_if(kMeasured.begin(), kMeasured.end(), [&](const Measured& m) { return m.name == name; });
-  return found == kMeasured.end() ? nullptr : &*found;
+std::string StatedFields::*field_of(const ConditionInfo& what) {
+  return stated_conditions.at(static_cast<std::size_t>(&what - condition_infos.data()));
 }
 
 /// The longest beginning of `text` that is a unit of the quantity, as letters.
@@ -69,7 +64,7 @@ std::regex regex_of(const std::string& text) {
   return std::regex(text, std::regex::ECMAScript | std::regex::icase);
 }
 
-Condition condition_from(const std::string& text, const Measured& what, const std::string& source) {
+Condition condition_from(const std::string& text, const ConditionInfo& what, const std::string& source) {
   if (text.empty()) return {};
   if (text.find_first_not_of("+-.0123456789 ") == std::string::npos) {
     throw InputError(fmt::format("the {} '{}' has no unit", what.name, text),
@@ -90,9 +85,9 @@ void take_fact(const RawFact& fact, StatedFields& stated) {
   std::string value = replaced(fact.value, ",", ".");
   if (value.find_first_of("0123456789") == std::string::npos) return;
   if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
-  const Measured& what = kMeasured[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
+  const ConditionInfo& what = condition_infos[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
   try {
-    if (condition_from(value, what, "file").known()) stated.*(what.field) = value;
+    if (condition_from(value, what, "file").known()) stated.*field_of(what) = value;
   } catch (const InputError&) {  // a line that only looks like one
   }
 }
@@ -128,7 +123,7 @@ void NamePattern::add_field(const std::string& name, std::string_view behind, st
     throw InputError("--pattern: {" + name + "} is given twice", "use each name once; * stands for anything");
   }
   Field field{name, ""};
-  if (const Measured* what = measured(name)) {
+  if (const ConditionInfo* what = measured(name)) {
     field.unit = unit_at_beginning(behind, what->quantity);
     expression += field.unit.empty() ? fmt::format("({} ?[A-Za-z]*)", kNumber) : fmt::format("({})", kNumber);
   } else {
@@ -145,8 +140,8 @@ std::optional<StatedFields> NamePattern::read(const std::string& file_name) cons
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     const std::string text = match[k + 1].str();
     const Field& field = fields_[k];
-    if (const Measured* what = measured(field.name)) {
-      stated.*(what->field) = replaced(text, ",", ".") + field.unit;
+    if (const ConditionInfo* what = measured(field.name)) {
+      stated.*field_of(*what) = replaced(text, ",", ".") + field.unit;
     } else if (field.name == "repeat") {
       stated.repeat = text;
     } else {
@@ -194,9 +189,9 @@ StatedFields header_fields(const std::string& path) {
 ManifestRow row_from(const StatedFields& fields, const std::string& path, const std::string& source) {
   ManifestRow row;
   row.path = path;
-  row.conditions.radius = condition_from(fields.radius, kMeasured[0], source);
-  row.conditions.speed = condition_from(fields.speed, kMeasured[1], source);
-  row.conditions.load = condition_from(fields.load, kMeasured[2], source);
+  for (const ConditionInfo& what : condition_infos) {
+    row.conditions.*what.member = condition_from(fields.*field_of(what), what, source);
+  }
   int repeat = 0;
   const auto [end, error] = std::from_chars(fields.repeat.data(), fields.repeat.data() + fields.repeat.size(), repeat);
   if (!fields.repeat.empty() && error == std::errc{}) row.repeat = repeat;

@@ -2,7 +2,6 @@
 #include "limits.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "statistics/thinning.hpp"
@@ -11,16 +10,6 @@
 
 namespace tribofit {
 namespace {
-
-struct NumericCondition {
-  Condition Conditions::*which;
-  const char* quantity;
-  const char* unit;
-  double si;
-};
-constexpr std::array kNumeric = {NumericCondition{&Conditions::radius, "friction radius", "mm", kMillimetre},
-                                 NumericCondition{&Conditions::speed, "speed", "rpm", kRpm},
-                                 NumericCondition{&Conditions::load, "load", "N", 1}};
 
 /// Values of a condition that differ by more than what a reading off a plateau does.
 std::size_t count_of_values(std::span<const PooledGroup> groups, Condition Conditions::*which) {
@@ -50,15 +39,15 @@ std::string without(const PooledGroup& group, Condition Conditions::*which) {
 
 OverConditions::OverConditions(std::span<const PooledGroup> groups) {
   std::size_t most = 1;
-  const NumericCondition* most_varied = nullptr;
-  for (const NumericCondition& condition : kNumeric) {
-    const std::size_t count = count_of_values(groups, condition.which);
+  const ConditionInfo* most_varied = nullptr;
+  for (const ConditionInfo& condition : condition_infos) {
+    const std::size_t count = count_of_values(groups, condition.member);
     if (count > most) most = count, most_varied = &condition;
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    x_.push_back(most_varied != nullptr ? (groups[g].conditions.*(most_varied->which)).value / most_varied->si
+    x_.push_back(most_varied != nullptr ? (groups[g].conditions.*(most_varied->member)).value / most_varied->si
                                         : static_cast<double>(g));
-    const std::string name = most_varied != nullptr ? without(groups[g], most_varied->which) : "";
+    const std::string name = most_varied != nullptr ? without(groups[g], most_varied->member) : "";
     auto found = std::find_if(series_.begin(), series_.end(), [&](const Series& s) { return s.name == name; });
     if (found == series_.end()) found = series_.insert(series_.end(), {name, {}, {}});
     found->groups.push_back(g);
@@ -68,7 +57,7 @@ OverConditions::OverConditions(std::span<const PooledGroup> groups) {
     for (const std::size_t g : one.groups) one.x.push_back(x_[g]);
   }
   if (most_varied != nullptr) {
-    quantity_ = most_varied->quantity;
+    quantity_ = most_varied->meaning;
     unit_ = most_varied->unit;
     return;
   }

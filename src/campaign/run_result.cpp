@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "condition_cells.hpp"
 #include "figures_json.hpp"
 #include "ingest/content_hash.hpp"
 #include "json.hpp"
@@ -45,9 +46,11 @@ std::vector<std::string> texts(const Json& json, const char* key) {
 }
 
 Conditions conditions_of(const Json& json) {
-  return {{number(json, "radius_mm") * kMillimetre, text(json, "radius_source")},
-          {number(json, "speed_rpm") * kRpm, text(json, "speed_source")},
-          {number(json, "load_N"), text(json, "load_source")}};
+  Conditions conditions;
+  for (const ConditionInfo& info : condition_infos) {
+    conditions.*info.member = {number(json, info.column) * info.si, text(json, source_key(info).c_str())};
+  }
+  return conditions;
 }
 
 RunStatus status_of(const std::string& name) {

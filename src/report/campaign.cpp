@@ -71,18 +71,18 @@ void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) 
 }
 
 SummaryRow summary_row(const std::string& name, const std::string& file, std::string_view status) {
-  return {object("run", name, "file", file, "status", status, "message", nullptr, "radius_mm", nullptr, "speed_rpm",
-                 nullptr, "load_N", nullptr, "repeat", nullptr),
-          Json::object(), Json::object()};
+  Json fixed = object("run", name, "file", file, "status", status, "message", nullptr);
+  fixed.update(condition_values({}));
+  fixed["repeat"] = nullptr;
+  return {std::move(fixed), Json::object(), Json::object()};
 }
 
 SummaryRow summary_row(const RunResult& result) {
   const RunRecord& run = result.run;
-  const Conditions& c = result.known_conditions();
   SummaryRow row = summary_row(run.name, run.file, to_string(run.status));
   auto& [fixed, conditions, analysis] = row;
-  add_members(fixed, "message", run.message, "radius_mm", c.radius.value / kMillimetre, "speed_rpm",
-              c.speed.value / kRpm, "load_N", c.load.value, "repeat", repeat_json(run));
+  fixed.update(condition_values(result.known_conditions()));
+  add_members(fixed, "message", run.message, "repeat", repeat_json(run));
   for (const OtherCondition& other : run.others) conditions[other.name] = other.value;
   if (!result.was_read()) return row;
   analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);

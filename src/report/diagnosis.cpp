@@ -43,12 +43,12 @@ std::vector<std::string> distinct(const DiagnosedTraces& result, Text text) {
 }
 
 /// The distinct values of one condition over the traces, "1, 2, 4, 8 rpm"; empty where none is known.
-std::string condition(const DiagnosedTraces& result, Condition Conditions::*which, double unit, const char* name) {
+std::string condition(const DiagnosedTraces& result, const ConditionInfo& which) {
   const std::vector<std::string> values = distinct(result, [&](const Identification& trace) {
-    const Condition& c = trace.motion.conditions.*which;
-    return c.known() ? brief(c.value / unit) : "";
+    const Condition& c = trace.motion.conditions.*which.member;
+    return c.known() ? brief(c.value / which.si) : "";
   });
-  return values.empty() ? "" : fmt::format("{} {}", fmt::join(values, ", "), name);
+  return values.empty() ? "" : fmt::format("{} {}", fmt::join(values, ", "), which.unit);
 }
 
 /// A path too long for the terminal loses its middle.
@@ -81,10 +81,9 @@ void add_header(const DiagnosedTraces& result, TerminalText& text) {
   const bool one = result.traces.size() == 1;
   const std::string title =
       one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size());
-  std::vector<std::string> known = {enumerated(distinct(result, kind_text)),
-                                    condition(result, &Conditions::radius, kMillimetre, "mm"),
-                                    condition(result, &Conditions::speed, kRpm, "rpm"),
-                                    condition(result, &Conditions::load, 1, "N"), amount_of_data(result)};
+  std::vector<std::string> known = {enumerated(distinct(result, kind_text))};
+  for (const ConditionInfo& which : condition_infos) known.push_back(condition(result, which));
+  known.push_back(amount_of_data(result));
   std::erase(known, "");
   const std::string facts = fmt::format("{}", fmt::join(known, "; "));
   const std::string rest = wrapped(facts, text.width(), 2);

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "campaign/condition_cells.hpp"
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
@@ -170,9 +171,9 @@ Json tool_json(const JsonOptions& options) {
 }
 
 Json conditions_json(const Conditions& c) {
-  return object("radius_mm", c.radius.value / kMillimetre, "speed_rpm", c.speed.value / kRpm, "speed_source",
-                text_or_null(c.speed.source), "load_N", c.load.value, "radius_source", text_or_null(c.radius.source),
-                "load_source", text_or_null(c.load.source));
+  Json json = condition_values(c);
+  for (const ConditionInfo& info : condition_infos) json[source_key(info)] = text_or_null((c.*info.member).source);
+  return json;
 }
 
 Json trace_json(const Identification& r) {

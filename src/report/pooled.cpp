@@ -122,9 +122,9 @@ std::string pooled_json(const Pooled& pooled, std::span<const RunResult> runs) {
 Json group_json(const PooledGroup& group) {
   Json others = Json::object();
   for (const OtherCondition& other : group.others) others[other.name] = other.value;
-  return object("radius_mm", group.conditions.radius.value / kMillimetre, "speed_rpm",
-                group.conditions.speed.value / kRpm, "load_N", group.conditions.load.value, "others",
-                std::move(others));
+  Json json = condition_values(group.conditions);
+  json["others"] = std::move(others);
+  return json;
 }
 
 /// A compared value in the order of comparison.csv, without its conditions.

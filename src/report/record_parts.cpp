@@ -16,26 +16,26 @@ namespace tribofit {
 namespace {
 
 /// "15 mm (command line)", or every step's own where they differ.
-std::string condition(const Motion& motion, Condition Conditions::*which, double unit, std::string_view name) {
-  const Condition& whole = motion.conditions.*which;
+std::string condition(const Motion& motion, const ConditionInfo& which) {
+  const Condition& whole = motion.conditions.*which.member;
   const auto with_source = [](std::string text, const std::string& source) {
     return source.empty() ? text : text + " (" + source + ")";
   };
-  if (whole.known()) return with_source(fmt::format("{} {}", brief(whole.value / unit), name), whole.source);
+  if (whole.known()) return with_source(fmt::format("{} {}", brief(whole.value / which.si), which.unit), whole.source);
   std::vector<std::string> values;
   std::string source;
   for (const Step& step : motion.steps) {
-    const Condition& own = step.conditions.*which;
+    const Condition& own = step.conditions.*which.member;
     if (!own.known()) continue;
-    values.push_back(brief(own.value / unit));
+    values.push_back(brief(own.value / which.si));
     source = own.source;
   }
   if (values.empty()) return "not known";
-  return with_source(fmt::format("{} {} by step", fmt::join(values, ", "), name), source);
+  return with_source(fmt::format("{} {} by step", fmt::join(values, ", "), which.unit), source);
 }
 
 std::string speed_text(const Motion& motion) {
-  if (motion.disc_speed.empty()) return condition(motion, &Conditions::speed, kRpm, "rpm");
+  if (motion.disc_speed.empty()) return condition(motion, condition_infos[1]);
   const auto [low, high] = std::minmax_element(motion.disc_speed.begin(), motion.disc_speed.end());
   return fmt::format("{} to {} rpm (recorded)", brief(*low / kRpm), brief(*high / kRpm));
 }
@@ -153,7 +153,8 @@ std::string spring_text(const Condition& known, double unit, std::string_view na
 Facts condition_facts(const Motion& motion) {
   constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
   const SpringDrive& s = motion.spring;
-  const std::pair<std::string, std::string> load = {"load", condition(motion, &Conditions::load, 1, "N")};
+  const auto& [of_radius, of_speed, of_load] = condition_infos;
+  const std::pair<std::string, std::string> load = {std::string(of_load.name), condition(motion, of_load)};
   if (motion.kind == RecordKind::spring_slider) {
     return {{"drive", spring_text(s.velocity, kMillimetre, "mm/s")},
             {"spring", spring_text(s.stiffness, kNewtonPerMillimetre, "N/mm")},
@@ -169,8 +170,7 @@ Facts condition_facts(const Motion& motion) {
             load};
   }
   if (motion.kind == RecordKind::force_only) return {load};
-  return {
-      {"radius", condition(motion, &Conditions::radius, kMillimetre, "mm")}, {"disc speed", speed_text(motion)}, load};
+  return {{std::string(of_radius.name), condition(motion, of_radius)}, {"disc speed", speed_text(motion)}, load};
 }
 
 void add_health(const Motion& motion, TerminalText& text) {

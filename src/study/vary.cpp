@@ -33,23 +33,79 @@ template <class Known>
 }  // namespace
 
 std::vector<Variable> variables_of(const Machine& machine) {
+  using M = Machine;
   std::vector<Variable> out = {
-      {"stiffness", "N/mm", 1e3, Quantity::stiffness, "k of the spring"},
-      {"mass", "kg", 1, Quantity::mass, "all that moves with the block"},
-      {"damping", "N s/mm", 1e3, Quantity::damping, "c of the block on its spring"},
-      {"damping-ratio", "1", 1, Quantity::dimensionless, "c / (2 sqrt(k m)), varied by the damping"},
-      {"load", "N", 1, Quantity::force, "normal force"},
-      {"radius", "mm", 1e-3, Quantity::length, "friction radius, varied at constant speed of the disc"},
-      {"speed", "rpm", kRpm, Quantity::angular_velocity, "of the disc"},
-      {"velocity", "mm/s", 1e-3, Quantity::velocity, "omega r of the disc under the block, varied by the speed"}};
-  for (const FrictionModel::Slot& slot : machine.model.parameters()) {
+      {.name = "stiffness",
+       .unit = "N/mm",
+       .si = 1e3,
+       .quantity = Quantity::stiffness,
+       .meaning = "k of the spring",
+       .value = [](const M& m) { return m.rig.stiffness; },
+       .set = [](M& m, double k) { m.rig.stiffness = k; }},
+      {.name = "mass",
+       .unit = "kg",
+       .quantity = Quantity::mass,
+       .meaning = "all that moves with the block",
+       .value = [](const M& m) { return m.rig.mass; },
+       .set = [](M& m, double mass) { m.rig.mass = mass; }},
+      {.name = "damping",
+       .unit = "N s/mm",
+       .si = 1e3,
+       .quantity = Quantity::damping,
+       .meaning = "c of the block on its spring",
+       .value = [](const M& m) { return m.rig.damping; },
+       .set = [](M& m, double c) { m.rig.damping = c; }},
+      {.name = "damping-ratio",
+       .meaning = "c / (2 sqrt(k m)), varied by the damping",
+       .value = [](const M& m) { return m.rig.damping_ratio(); },
+       .set = [](M& m, double ratio) { m.rig = rig_with_damping_ratio(m.rig.mass, m.rig.stiffness, ratio); },
+       .set_by = "damping"},
+      {.name = "load",
+       .unit = "N",
+       .quantity = Quantity::force,
+       .meaning = "normal force",
+       .value = [](const M& m) { return m.load; },
+       .set = [](M& m, double load) { m.load = load; }},
+      {.name = "radius",
+       .unit = "mm",
+       .si = kMillimetre,
+       .quantity = Quantity::length,
+       .meaning = "friction radius, varied at constant speed of the disc",
+       .value = [](const M& m) { return m.radius; },
+       .set = [](M& m, double r) { m.radius = r; }},
+      {.name = "speed",
+       .unit = "rpm",
+       .si = kRpm,
+       .quantity = Quantity::angular_velocity,
+       .meaning = "of the disc",
+       .value = [](const M& m) { return m.speed; },
+       .set = [](M& m, double omega) { m.speed = omega; }},
+      {.name = "velocity",
+       .unit = "mm/s",
+       .si = kMillimetre,
+       .quantity = Quantity::velocity,
+       .meaning = "omega r of the disc under the block, varied by the speed",
+       .value = [](const M& m) { return m.disc_velocity(); },
+       .set = [](M& m, double v) { m.speed = v / m.radius; },
+       .set_by = "speed"}};
+  for (std::size_t k = 0; k < machine.model.parameters().size(); ++k) {
+    const FrictionModel::Slot& slot = machine.model.parameters()[k];
     const Parameter& q = slot.parameter;
     const std::optional<Unit> unit = find_unit(q.unit);
-    out.push_back({called(slot), q.unit, q.si, unit ? unit->quantity : Quantity::dimensionless,
-                   slot.effect.empty() ? "of the friction law" : "of the effect " + slot.effect});
+    out.push_back({.name = called(slot),
+                   .unit = q.unit,
+                   .si = q.si,
+                   .quantity = unit ? unit->quantity : Quantity::dimensionless,
+                   .meaning = slot.effect.empty() ? "of the friction law" : "of the effect " + slot.effect,
+                   .value = [k](const M& m) { return m.parameters.at(k); },
+                   .set = [k](M& m, double value) { m.parameters.at(k) = value; }});
   }
   if (describe(machine.model.law()).two_levels) {
-    out.push_back({"ratio", "1", 1, Quantity::dimensionless, "mu_k/mu_s, varied by mu_k"});
+    out.push_back({.name = "ratio",
+                   .meaning = "mu_k/mu_s, varied by mu_k",
+                   .value = [](const M& m) { return m.parameters[1] / m.parameters[0]; },
+                   .set = [](M& m, double ratio) { m.parameters[1] = ratio * m.parameters[0]; },
+                   .set_by = "mu_k"});
   }
   return out;
 }
@@ -62,76 +118,26 @@ Variable variable_named(const Machine& machine, std::string_view name) {
 }
 
 double value_of(const Machine& machine, std::string_view name) {
-  const Rig& rig = machine.rig;
-  if (name == "stiffness") return rig.stiffness;
-  if (name == "mass") return rig.mass;
-  if (name == "damping") return rig.damping;
-  if (name == "damping-ratio") return rig.damping_ratio();
-  if (name == "load") return machine.load;
-  if (name == "radius") return machine.radius;
-  if (name == "speed") return machine.speed;
-  if (name == "velocity") return machine.disc_velocity();
-  const bool two_levels = describe(machine.model.law()).two_levels;
-  if (name == "ratio" && two_levels) return machine.parameters[1] / machine.parameters[0];
-  for (std::size_t k = 0; k < machine.parameters.size(); ++k) {
-    if (called(machine.model.parameters()[k]) == name) return machine.parameters[k];
-  }
-  refuse("parameter", name, variables_of(machine));
+  return variable_named(machine, name).value(machine);
 }
 
 Machine with_value(Machine machine, std::string_view name, double value) {
-  Rig& rig = machine.rig;
-  if (name == "stiffness") {
-    rig.stiffness = value;
-  } else if (name == "mass") {
-    rig.mass = value;
-  } else if (name == "damping") {
-    rig.damping = value;
-  } else if (name == "damping-ratio") {
-    rig = rig_with_damping_ratio(rig.mass, rig.stiffness, value);
-  } else if (name == "load") {
-    machine.load = value;
-  } else if (name == "radius") {
-    machine.radius = value;
-  } else if (name == "speed") {
-    machine.speed = value;
-  } else if (name == "velocity") {
-    machine.speed = value / machine.radius;
-  } else if (name == "ratio" && describe(machine.model.law()).two_levels) {
-    machine.parameters[1] = value * machine.parameters[0];
-  } else {
-    for (std::size_t k = 0; k < machine.parameters.size(); ++k) {
-      if (called(machine.model.parameters()[k]) != name) continue;
-      machine.parameters[k] = value;
-      return machine;
-    }
-    refuse("parameter", name, variables_of(machine));
-  }
+  variable_named(machine, name).set(machine, value);
   return machine;
 }
 
-namespace {
-
-/// The number by which a variable is varied, where that is another one.
-std::string_view set_by(std::string_view name) {
-  if (name == "velocity") return "speed";
-  if (name == "damping-ratio") return "damping";
-  if (name == "ratio") return "mu_k";
-  return name;
-}
-
-}  // namespace
-
 Machine with_values(Machine machine, std::string_view first, double first_value, std::string_view second,
                     double second_value) {
-  if (set_by(first) == set_by(second)) {
-    throw InputError("'" + std::string(first) + "' and '" + std::string(second) + "' set the same number",
-                     "name two different ones");
+  const Variable a = variable_named(machine, first), b = variable_named(machine, second);
+  const auto sets = [](const Variable& v) { return v.set_by.empty() ? v.name : v.set_by; };
+  if (sets(a) == sets(b)) {
+    throw InputError("'" + a.name + "' and '" + b.name + "' set the same number", "name two different ones");
   }
-  if (set_by(first) != first) {
-    return with_value(with_value(std::move(machine), second, second_value), first, first_value);
-  }
-  return with_value(with_value(std::move(machine), first, first_value), second, second_value);
+  const bool second_first = !a.set_by.empty();
+  if (second_first) b.set(machine, second_value);
+  a.set(machine, first_value);
+  if (!second_first) b.set(machine, second_value);
+  return machine;
 }
 
 const std::vector<MeasureInfo>& measures() {

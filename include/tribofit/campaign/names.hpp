@@ -14,6 +14,8 @@ struct StatedFields {
   std::string radius, speed, load, repeat;
   std::vector<OtherCondition> others;
 };
+/// Those of conditions, in the order of condition_infos.
+inline constexpr std::array stated_conditions = {&StatedFields::radius, &StatedFields::speed, &StatedFields::load};
 
 /// How the files of a campaign are named: 'r{radius}mm_{repeat}.csv'.
 ///

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 
@@ -20,6 +24,19 @@ struct Conditions {
   Condition speed;   ///< disc speed [rad/s], positive as the disc's forward direction
   Condition load;    ///< nominal normal force [N], > 0
 };
+
+/// A condition as people read and write it.
+struct ConditionInfo {
+  Condition Conditions::*member;
+  std::string_view name, meaning, unit;
+  double si;  ///< value of one unit
+  Quantity quantity;
+  const char* column;  ///< name with its unit, in CSV and JSON
+};
+inline constexpr std::array<ConditionInfo, 3> condition_infos = {
+    {{&Conditions::radius, "radius", "friction radius", "mm", kMillimetre, Quantity::length, "radius_mm"},
+     {&Conditions::speed, "speed", "speed", "rpm", kRpm, Quantity::angular_velocity, "speed_rpm"},
+     {&Conditions::load, "load", "load", "N", 1, Quantity::force, "load_N"}}};
 
 /// What a mass on a spring rubs on.
 enum class Counterface {

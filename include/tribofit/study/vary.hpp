@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,10 +15,13 @@ namespace tribofit {
 struct Variable {
   std::string name;  ///< stiffness, mass, damping, damping-ratio, load, radius, speed, velocity, mu_s, mu_k, ratio,
                      ///< alpha or beta, and KEY.parameter of each effect
-  std::string unit;  ///< as shown and written
-  double si = 1;     ///< SI value of one unit
+  std::string unit = "1";  ///< as shown and written
+  double si = 1;           ///< SI value of one unit
   Quantity quantity = Quantity::dimensionless;
   std::string meaning;
+  std::function<double(const Machine&)> value;  ///< [SI]
+  std::function<void(Machine&, double)> set;
+  std::string set_by = {};  ///< the variable by which it is varied, where that is another one
 };
 
 /// All variables of a machine. `velocity` is omega r, varied by the speed; `ratio` is mu_k/mu_s, varied by mu_k;
