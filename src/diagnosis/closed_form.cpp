@@ -56,8 +56,8 @@ std::vector<std::string> forms_of(const DiagnosisContext& context, const Trial& 
   // A coefficient is of the order of one, a force of the order of what was recorded; probes may overshoot either.
   double largest = std::max(1.0, context.fine.observations.largest_friction);
   for (const double value : probe.value) largest = std::max(largest, 5 * std::abs(value));
-  if (probe.variable == "velocity" && probe.at.size() > 4) return humps(probe, largest);
-  if (probe.variable == "time" && probe.period > 0 && probe.value.size() == 2) {
+  if (probe.variable == ResidualVariable::velocity && probe.at.size() > 4) return humps(probe, largest);
+  if (probe.variable == ResidualVariable::time && probe.period > 0 && probe.value.size() == 2) {
     const double level = kinetic_friction(top.model.law(), top.p, context.fine.observations.fastest);
     return {swing(probe, std::abs(level), largest)};
   }

@@ -288,7 +288,7 @@ void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& 
   for (const CandidateResult& judged : creeping->judged) {
     if (creeping->added == judged.candidate) p_value = judged.p_value;
   }
-  const Share share = {"stick", std::min(1.0, gain / above), p_value};
+  const Share share = {ResidualVariable::stick, std::min(1.0, gain / above), p_value};
   const auto below = [&](const Share& other) { return other.share < share.share; };
   shares.insert(std::find_if(shares.begin(), shares.end(), below), share);
 }
@@ -296,7 +296,7 @@ void add_share_of_stick(const Ladder& ladder, double above, std::vector<Share>& 
 std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& all,
                             const std::vector<Probe>& structure) {
   std::string text;
-  const auto say = [&](const std::string& sentence) {
+  const auto say = [&](std::string_view sentence) {
     if (!text.empty()) text += ' ';
     text += sentence;
   };
@@ -317,16 +317,7 @@ std::string next_experiment(const Ladder& ladder, const std::vector<Candidate>& 
     }
     for (const auto& [test, others] : tests) say(fmt::format("{} or {}: {}.", leader.key, others, test));
   }
-  if (!structure.empty()) {
-    const std::string& variable = structure.front().variable;
-    say(variable == "velocity" ? "Repeat at another disc speed: what belongs to v_r stays at the same v_r."
-        : variable == "time" ? "Repeat the run: what belongs to the clock or to the surface comes back at another time."
-        : variable == "angle"     ? "Turn the disc by a quarter on its hub: a pattern of the disc turns with it."
-        : variable == "load"      ? "Step the load up and down: what belongs to it comes back at the same load."
-        : variable == "frequency" ? "Record with the disc at rest: a line that stays is picked up by the instruments."
-                                  : "Run at 1, 2, 4 and 8 rpm: a loop that is constant in ms is a lag or a delay, one "
-                                    "constant in um a memory.");
-  }
+  if (!structure.empty()) say(describe(structure.front().variable).experiment);
   if (text.empty() && ladder.steps.size() > 1) {
     say(fmt::format("To confirm: {}.", all[*ladder.steps.back().added].info.experiment));
   }

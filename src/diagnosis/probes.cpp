@@ -133,7 +133,7 @@ Probe over_velocity(const DiagnosisContext& context, const Trial& trial) {
   const Observations& o = context.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 12));
   Probe probe;
-  probe.variable = "velocity";
+  probe.variable = ResidualVariable::velocity;
   const auto row = [&o, &hats](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const bool at_rest = range.begin + i == range.end;
@@ -149,7 +149,7 @@ Probe over_branch(const DiagnosisContext& context, const Trial& trial) {
   const Observations& o = context.coarse.observations;
   const Hats hats(even_knots(0, o.fastest, 6));
   Probe probe;
-  probe.variable = "branch";
+  probe.variable = ResidualVariable::branch;
   std::vector<std::size_t> peak;
   for (const auto& range : o.slips) {
     std::size_t best = range.begin;
@@ -221,7 +221,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
 Probe over_time(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
   const Observations& o = context.coarse.observations;
   Probe probe;
-  probe.variable = "time";
+  probe.variable = ResidualVariable::time;
   const auto [period, places] = strongest_swing(inputs);
   std::vector<double> lasts(context.records.size(), 0.0);
   for (const auto& range : o.slips) lasts[range.record] = std::max(lasts[range.record], o.time[range.end - 1]);
@@ -257,7 +257,7 @@ std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& tr
   const auto records = static_cast<Eigen::Index>(context.records.size());
   const Eigen::Index harmonics = std::max<Eigen::Index>(1, limits::kHarmonicsOfAngle / records);
   Probe probe;
-  probe.variable = "angle";
+  probe.variable = ResidualVariable::angle;
   const auto functions = [&o, records, harmonics](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const double angle = o.angle[std::min(range.begin + i, range.end - 1)];
@@ -280,7 +280,7 @@ std::optional<Probe> over_load(const DiagnosisContext& context, const Trial& tri
   if (*most - *least < limits::kLeastLoadSpread * std::abs(o.mean_load)) return std::nullopt;
   const Hats hats(even_knots(*least, *most, 4));
   Probe probe;
-  probe.variable = "load";
+  probe.variable = ResidualVariable::load;
   const auto functions = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     return hats(o.load[std::min(range.begin + i, range.end - 1)]);
@@ -312,7 +312,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
   if (high - low < std::log(limits::kLeastStickRatio)) return std::nullopt;
   const Hats hats(even_knots(low, high, 4));
   Probe probe;
-  probe.variable = "stick-time";
+  probe.variable = ResidualVariable::stick_time;
   const auto row = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const bool known = std::isfinite(given[k]);
@@ -334,7 +334,7 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
   if (lines.frequencies.empty()) return std::nullopt;
   const double frequency = lines.frequencies.front();
   Probe probe;
-  probe.variable = "frequency";
+  probe.variable = ResidualVariable::frequency;
   probe.period = 1 / frequency;
   const auto columns = [&o, frequency](std::size_t k) {
     const auto& range = o.slips[k];
@@ -379,7 +379,7 @@ std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
     const bool chance = probe.p_value * static_cast<double>(probes.size()) >= limits::kChance;
     // What a break-away level does to its own stick time is taken out to first order only: enough to say where an error
     // sits, not to carry a verdict.
-    if (probe.variable == "stick-time") continue;
+    if (probe.variable == ResidualVariable::stick_time) continue;
     if (!chance && probe.fall > 0 && probe.size > limits::kLeastStructure) out.push_back(probe);
   }
   std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });

@@ -1,16 +1,16 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "trial.hpp"
+#include "tribofit/diagnosis/residual_variable.hpp"
 
 namespace tribofit::diagnosis {
 
 /// A free function of one variable laid on top of a model: what it takes away of the error goes with that variable,
 /// whatever the effect behind it may be.
 struct Probe {
-  std::string variable;
+  ResidualVariable variable = ResidualVariable::velocity;
   double fall = 0;     ///< of the squares on held-out cycles
   double size = 0;     ///< see CandidateResult::size
   double p_value = 1;  ///< not corrected for the number of variables

@@ -147,8 +147,8 @@ void add_shares(const std::string& title, const std::vector<Share>& all, Termina
   text.line(where_sentence(all));
   for (const Share& s : worth_naming(all)) {
     const std::string drawn = bar(s.share, 1, kColumns, text.unicode());
-    text.raw(fmt::format("  {:<10}  {}{:{}}  {:>3.0f} %\n", s.variable, drawn, "", kColumns - displayed(drawn),
-                         100 * std::min(s.share, 1.0)));
+    text.raw(fmt::format("  {:<10}  {}{:{}}  {:>3.0f} %\n", to_string(s.variable), drawn, "",
+                         kColumns - displayed(drawn), 100 * std::min(s.share, 1.0)));
   }
 }
 

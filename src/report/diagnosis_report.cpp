@@ -59,7 +59,7 @@ Chart where_chart(const Diagnosis& d) {
   ChartAxis& names = chart.panels[0].axis;
   ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
   for (auto share = d.where.rbegin(); share != d.where.rend(); ++share) {  // the largest on top
-    names.names.push_back(share->variable);
+    names.names.emplace_back(to_string(share->variable));
     before.values.push_back(100 * share->share);
     const auto left = std::find_if(d.remaining.begin(), d.remaining.end(),
                                    [&](const Share& other) { return other.variable == share->variable; });

@@ -13,20 +13,6 @@
 namespace tribofit {
 namespace {
 
-std::string variable_text(const std::string& variable) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> names = {
-      {{"velocity", "the sliding speed"},
-       {"branch", "the branch, speeding up or slowing down"},
-       {"time", "time"},
-       {"angle", "the disc angle"},
-       {"stick-time", "the stick time before a slip"},
-       {"load", "the normal load"},
-       {"frequency", "a narrow band of frequency"},
-       {"stick", "creep in stick"}}};
-  const auto at = std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == variable; });
-  return at == names.end() ? variable : std::string(at->second);
-}
-
 /// "runout (A = 0.048 +/- 0.001): the disc runs out of true, ..." without an end; the first parameter says how strong
 /// the effect is.
 std::string named_effect(const DiagnosedTraces& result, const Rung& rung) {
@@ -193,7 +179,7 @@ std::string where_sentence(const std::vector<Share>& shares) {
   const Share* top = largest_share(shares);
   if (top == nullptr) return "The error above the noise floor varies with no single variable.";
   return fmt::format("{} of the error above the noise floor varies with {}.",
-                     is_most(*top) ? "Most" : "The largest part", variable_text(top->variable));
+                     is_most(*top) ? "Most" : "The largest part", describe(top->variable).phrase);
 }
 
 std::string diagnosis_verdict(const DiagnosedTraces& result) {

@@ -90,8 +90,9 @@ Json friction_levels_json(const FrictionLevels& levels) {
 }
 
 Json shares_json(const std::vector<Share>& shares) {
-  return list_of(shares,
-                 [](const Share& s) { return object("variable", s.variable, "share", s.share, "p_value", s.p_value); });
+  return list_of(shares, [](const Share& s) {
+    return object("variable", to_string(s.variable), "share", s.share, "p_value", s.p_value);
+  });
 }
 
 Json diagnosis_json(const Diagnosis& d, const Motion& motion) {

@@ -85,7 +85,7 @@ TEST(Together, RunsShareARunoutButNotItsStartingAngle) {
   EXPECT_EQ(found.diagnosis.ladder.back().added, "runout");
   EXPECT_EQ(found.diagnosis.verdict, Verdict::effect_found);
   ASSERT_FALSE(found.diagnosis.where.empty());
-  EXPECT_EQ(found.diagnosis.where[0].variable, "angle");
+  EXPECT_EQ(found.diagnosis.where[0].variable, ResidualVariable::angle);
   const Fit& fit = found.fits.back();
   expect_parameter(fit, "runout.A", 0.05);
   expect_parameter(fit, "runout.phase", 0.4);

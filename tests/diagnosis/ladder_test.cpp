@@ -207,7 +207,7 @@ TEST(Reconsider, ABetterAlternativeTakesThePlaceOfWhatWasChosenTooEarly) {
 
 Probe structure(double fall) {
   Probe probe;
-  probe.variable = "velocity";
+  probe.variable = ResidualVariable::velocity;
   probe.fall = fall;
   probe.size = 1;
   probe.p_value = 1e-9;

@@ -153,7 +153,7 @@ TEST(Probes, AHumpGoesWithTheVelocity) {
   add_in_slip(made, [](double, double v) { return 0.02 * std::exp(-std::pow((v - 0.04) / 0.008, 2)); });
   const std::vector<Probe> probes = probes_of(made);
   const Probe& found = largest(probes);
-  EXPECT_EQ(found.variable, "velocity");
+  EXPECT_EQ(found.variable, ResidualVariable::velocity);
   EXPECT_LT(found.p_value, 1e-3);
 }
 
@@ -163,7 +163,7 @@ TEST(Probes, ASwingGoesWithTimeAndItsPeriodIsFound) {
   add_in_slip(made, [](double t, double) { return 0.015 * std::cos(kTurn * t / kPeriod); });
   const std::vector<Probe> probes = probes_of(made);
   const Probe& found = largest(probes);
-  EXPECT_EQ(found.variable, "time");
+  EXPECT_EQ(found.variable, ResidualVariable::time);
   EXPECT_LT(found.p_value, 1e-3);
   EXPECT_NEAR(found.period, kPeriod, 0.1);
 }
@@ -173,7 +173,7 @@ TEST(Probes, NothingStandsOutWhereNothingIsHidden) {
     const std::vector<Probe> probes = probes_of(plain(seed));
     for (const Probe& probe : probes) {
       const bool stands_out = probe.p_value * static_cast<double>(probes.size()) < 0.01 && probe.size > 0.05;
-      EXPECT_FALSE(stands_out) << probe.variable << ' ' << seed;
+      EXPECT_FALSE(stands_out) << to_string(probe.variable) << ' ' << seed;
     }
   }
 }

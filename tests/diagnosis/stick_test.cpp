@@ -140,7 +140,8 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
     EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::not_supported);
     EXPECT_EQ(finding_of(result, "bristle").status == EffectStatus::found, false);
     const auto& where = result.diagnosis.where;
-    EXPECT_TRUE(std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == "stick"; }));
+    EXPECT_TRUE(
+        std::any_of(where.begin(), where.end(), [](const Share& s) { return s.variable == ResidualVariable::stick; }));
   }
 }
 

@@ -123,7 +123,7 @@ void explain(const Case& c) {
   }
   for (const auto& rung : diagnosed.ladder) fmt::print("rung {:<20} {:.5f}\n", rung.added, rung.held_out_rmse);
   for (const auto& share : diagnosed.remaining) {
-    fmt::print("remaining {:<12} {:.3f}, p {:.2g}\n", share.variable, share.share, share.p_value);
+    fmt::print("remaining {:<12} {:.3f}, p {:.2g}\n", tribofit::to_string(share.variable), share.share, share.p_value);
   }
   for (const std::string& message : diagnosed.messages) fmt::print("{}\n", message);
   fmt::print("next: {}\n", diagnosed.next_experiment);

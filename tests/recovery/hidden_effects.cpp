@@ -241,7 +241,7 @@ Outcome run_case(const Case& c, const RunOptions& options) {
     out.verdict = diagnosis.verdict;
     out.law = diagnosis.law;
     if (!diagnosis.remaining.empty() && diagnosis.remaining.front().share > 0) {
-      out.remaining = diagnosis.remaining.front().variable;
+      out.remaining = to_string(diagnosis.remaining.front().variable);
       out.remaining_share = diagnosis.remaining.front().share;
     }
     if (!c.hidden.empty()) {

@@ -70,7 +70,7 @@ DiagnosedTraces unexplained() {
   DiagnosedTraces result = made_up_diagnosis();
   result.diagnosis.verdict = Verdict::unexplained;
   result.diagnosis.ladder[1].held_out_rmse = 0.0062;
-  result.diagnosis.remaining = {{"velocity", 0.6, 1e-5}};
+  result.diagnosis.remaining = {{ResidualVariable::velocity, 0.6, 1e-5}};
   result.diagnosis.formula = "rest = a*exp(-v/w); a=0.02, w=6mm/s";
   return result;
 }

@@ -127,8 +127,10 @@ inline DiagnosedTraces made_up_diagnosis() {
   out.best = 1;
   Diagnosis& d = out.diagnosis;
   d.verdict = Verdict::effect_found;
-  d.where = {{"angle", 0.82, 1e-6}, {"time", 0.07, 0.01}, {"velocity", 0.02, 0.4}};
-  d.remaining = {{"velocity", 0.03, 0.5}};
+  d.where = {{ResidualVariable::angle, 0.82, 1e-6},
+             {ResidualVariable::time, 0.07, 0.01},
+             {ResidualVariable::velocity, 0.02, 0.4}};
+  d.remaining = {{ResidualVariable::velocity, 0.03, 0.5}};
   d.ladder = {{"", 0.0088, 0.0002, 0.0086, {}}, {"runout", 0.0032, 0.0001, 0.0031, {}}};
   d.floor_rmse = 0.0031;
   d.effects = {

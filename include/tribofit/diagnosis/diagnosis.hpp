@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/diagnosis/residual_variable.hpp"
 #include "tribofit/fit/identification.hpp"
 
 namespace tribofit {
@@ -54,7 +55,7 @@ std::string_view status_text(EffectStatus status);
 
 /// A share of the error above the noise floor that goes with one variable.
 struct Share {
-  std::string variable;  ///< velocity, branch, time, angle, stick-time, load, frequency, stick
+  ResidualVariable variable = ResidualVariable::velocity;
   double share = 0;  ///< of the held-out squares above the noise floor that a free function of the variable takes away
   double p_value = 1;  ///< of that fall, over held-out blocks of cycles, corrected for the number of variables
 };
