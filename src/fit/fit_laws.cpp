@@ -25,7 +25,8 @@ std::vector<std::pair<FrictionModel, FitOptions>> planned_fits(const IdentifyOpt
   for (const Law& law : options.laws) fits.emplace_back(FrictionModel(law, effects), inner);
   // A table mostly reaches over the whole Stribeck curve, where friction rises again with speed.
   for (const Law& law : options.laws) {
-    if (!has_cycles && effects.empty()) fits.emplace_back(FrictionModel(law, {Viscous{}}), inner);
+    const Effect& rise = effect_with(&EffectInfo::proportional_to_speed);
+    if (!has_cycles && effects.empty()) fits.emplace_back(FrictionModel(law, {rise}), inner);
   }
   inner.protocol = Protocol::published;
   for (const Law& law : options.laws) {

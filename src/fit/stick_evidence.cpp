@@ -126,11 +126,12 @@ bool spins_rather_than_sags(const Motion& motion, const Segmentation& segmentati
   const double sag = left_beside(observations, weights, [](const StickCreep& stick, const StickPart& part) {
     return part.disc_velocity * (part.time - stick.parts[0].time);
   });
-  // Creep of constant friction is in proportion to the radius of the contact: any radius gives the pattern.
-  const FrictionModel spin(CoulombLaw{}, {ContactSpin{}});
+  // Creep of constant friction is in proportion to the parameter: any value gives the pattern.
+  const FrictionModel spin(CoulombLaw{}, {effect_with(&EffectInfo::creeps_like_sag)});
+  const double any = spin.parameters().back().parameter.si;
   double best = sag;
   for (const double above : {0.99, 1.0, 1.01, 1.02, 1.03, 1.05}) {  // mu_s of a contact that creeps is not read exactly
-    const std::vector<double> p = {above * level, above * level, 1e-3};
+    const std::vector<double> p = {above * level, above * level, any};
     best = std::min(best, left_beside(observations, weights, [&](const StickCreep&, const StickPart& part) {
                       return creep_in_stick(spin, p.data(), Slip(), StickMoment{part.friction, part.friction_rate, 1});
                     }));

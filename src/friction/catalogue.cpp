@@ -78,6 +78,24 @@ EffectInfo describe(const Effect& effect) {
   return info;
 }
 
+namespace {
+
+template <class Has>
+const Effect& effect_that(Has has) {
+  const std::vector<EffectInfo>& infos = described_catalogue();
+  return effect_catalogue()[static_cast<std::size_t>(std::find_if(infos.begin(), infos.end(), has) - infos.begin())];
+}
+
+}  // namespace
+
+const Effect& effect_with(bool EffectInfo::*property) {
+  return effect_that([&](const EffectInfo& info) { return info.*property; });
+}
+
+const Effect& effect_declared_by(InstrumentValue value) {
+  return effect_that([&](const EffectInfo& info) { return info.declared_by == value; });
+}
+
 std::vector<LookAlike> look_alikes(std::string_view key) {
   for (const EffectInfo& info : described_catalogue()) {
     if (info.key == key) return info.pairs;

@@ -158,13 +158,16 @@ std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::ve
   whole.load = load;
   for_each_effect(model, p.data(),
                   [&]<class E>(const E& effect, const double* q) { sense_record(effect, q, motion, whole, mu); });
-  if (sensors.mass_below > 0) sense_record(SensorInertia{}, &sensors.mass_below, motion, whole, mu);
+  const auto sense = [&](InstrumentValue value, const double* q) {
+    std::visit([&](const auto& effect) { sense_record(effect, q, motion, whole, mu); }, effect_declared_by(value));
+  };
+  if (sensors.mass_below > 0) sense(InstrumentValue::force_mass_below, &sensors.mass_below);
   if (sensors.force_bandwidth > 0) {
     const double filter[] = {sensors.force_bandwidth, sensors.force_damping};
-    sense_record(ForceBandwidth{}, filter, motion, whole, mu);
+    sense(InstrumentValue::force_bandwidth, filter);
   }
   if (sensors.friction_low_pass > 0) low_pass(mu, 2 * std::numbers::pi * sensors.friction_low_pass / motion.rate);
-  if (sensors.friction_delay != 0) sense_record(ChannelDelay{}, &sensors.friction_delay, motion, whole, mu);
+  if (sensors.friction_delay != 0) sense(InstrumentValue::vibrometer_delay, &sensors.friction_delay);
   return mu;
 }
 

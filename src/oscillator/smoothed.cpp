@@ -288,11 +288,13 @@ double SmoothedLaw::crest() const {
 }
 
 SmoothedLaw smoothed_law(const FrictionModel& model, std::span<const double> p, double sharpness) {
-  const std::size_t viscous = model.offset_of(Viscous::key);
+  const std::string term = describe(effect_with(&EffectInfo::proportional_to_speed)).key;
+  const std::size_t viscous = model.offset_of(term);
   const bool is_viscous = viscous < model.parameters().size();
   if (model.law() != Law(ExponentialLaw{}) || model.effects().size() != (is_viscous ? 1U : 0U)) {
-    throw InputError("the smoothed law is that of the exponential law, alone or with 'viscous', not of " + model.name(),
-                     "take the exponential law, or leave the effects out");
+    throw InputError(
+        "the smoothed law is that of the exponential law, alone or with '" + term + "', not of " + model.name(),
+        "take the exponential law, or leave the effects out");
   }
   SmoothedLaw made{.mu_brk = p[0], .mu_c = p[1], .decay = p[2], .sharpness = sharpness};
   if (is_viscous) made.viscous = p[viscous];

@@ -195,6 +195,8 @@ struct EffectInfo {
   InstrumentValue declared_by = InstrumentValue::none;
   /// The correction of the plateau that this effect stands for; PlateauCorrection::none for most.
   PlateauCorrection plateau_correction = {};
+  bool proportional_to_speed = false;  ///< adds sigma v to a law, as friction rises at the end of a Stribeck curve
+  bool creeps_like_sag = false;  ///< its creep in stick, in proportion to its parameter, is like a plateau that sags
   bool needs_full_resolution = false;  ///< a spectral line, which means of a few samples do not show
   Sketch sketch = {};
   HiddenCases hidden = {};

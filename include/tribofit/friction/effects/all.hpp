@@ -63,6 +63,10 @@ std::span<const Effect> effect_catalogue();
 /// What `effect` says about itself.
 EffectInfo describe(const Effect& effect);
 
+/// The effect of the catalogue that has a property, or that a value of the instruments declares.
+const Effect& effect_with(bool EffectInfo::*property);
+const Effect& effect_declared_by(InstrumentValue value);
+
 /// It changes v_r and not mu: found and undone by kinematics/, without a term in a friction model.
 bool is_kinematic(const Effect& effect);
 

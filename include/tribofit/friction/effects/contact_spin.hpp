@@ -41,6 +41,7 @@ struct ContactSpin {
                             .start_grid_points = 5}},
             .needs = {.plateau = true},
             .excitation = {.break_away = "before which the block could creep"},
+            .creeps_like_sag = true,
             .sketch = {.view = SketchView::creep, .values = {4}},
             .hidden = {.sizes = {0.5, 1, 2}}};
   }

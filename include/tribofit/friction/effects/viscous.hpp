@@ -25,6 +25,7 @@ struct Viscous {
                             .neutral = 0,
                             .scales_with_friction = true,
                             .bound_scaling = BoundScaling::against_top_speed}},
+            .proportional_to_speed = true,
             .sketch = {.view = SketchView::curve, .values = {0.001}},
             .hidden = {.sizes = {0.0008, 0.0011, 0.0015}},
             .pairs = {looks_like<StribeckExponent>("run at four times the disc speed, or reach slips faster than "
