@@ -6,15 +6,8 @@
 namespace tribofit {
 
 ResultMeasure mean_over_runs(std::span<const double> values) {
-  ResultMeasure out;
-  if (values.empty()) return out;
-  const double n = static_cast<double>(values.size());
-  double sum = 0, squares = 0;
-  for (const double value : values) sum += value;
-  out.value = sum / n;
-  for (const double value : values) squares += (value - out.value) * (value - out.value);
-  if (values.size() > 1) out.std_error = std::sqrt(squares / (n - 1) / n);
-  return out;
+  const Estimate mean = mean_of_independent(values);
+  return {mean.value, mean.std_error};
 }
 
 const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {

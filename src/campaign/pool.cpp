@@ -125,9 +125,9 @@ PooledValue pool(std::string name, std::string unit, std::span<const double> val
   const double half = (n > 1 ? t_quantile_95(mean.degrees_of_freedom) : kNormalQuantile95) * out.std_error;
   out.lower95 = out.value - half;
   out.upper95 = out.value + half;
-  out.mean = y.mean();
-  const double squares = (y.array() - out.mean).square().sum();
-  out.standard_error_of_mean = n > 1 ? std::sqrt(squares / static_cast<double>(n * (n - 1))) : kNaN;
+  const Estimate plain = mean_of_independent({y.data(), known.size()});
+  out.mean = plain.value;
+  out.standard_error_of_mean = plain.std_error;
   return out;
 }
 

@@ -308,7 +308,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
   }
   if (sticks.size() < limits::kFewestCycles) return std::nullopt;
   std::sort(sticks.begin(), sticks.end());
-  const double low = sticks[sticks.size() / 20], high = sticks[sticks.size() - 1 - sticks.size() / 20];
+  const double low = quantile_of_sorted(sticks, 0.05), high = quantile_of_sorted(sticks, 0.95);
   if (high - low < std::log(limits::kLeastStickRatio)) return std::nullopt;
   const Hats hats(even_knots(low, high, 4));
   Probe probe;

@@ -176,6 +176,14 @@ MeanError standard_error_of_mean(std::span<const double> series) {
   return {std::sqrt(long_run_variance / count + of_lines), static_cast<double>(freedom)};
 }
 
+Estimate mean_of_independent(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  for (const double value : values) squares += (value - sum / n) * (value - sum / n);
+  return {sum / n, std::sqrt(squares / (n * (n - 1))), n - 1};  // 0/0 where there are too few
+}
+
 Estimate mean_with_error(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -35,6 +35,9 @@ struct Estimate {
   double degrees_of_freedom = 1;    ///< of the t distribution of its error
 };
 
+/// Mean of independent values with its plain standard error, from their scatter: NaN for fewer than two.
+Estimate mean_of_independent(std::span<const double> values);
+
 /// Mean of the values that are not NaN, and its standard_error_of_mean(). The value is NaN where there are none, its
 /// error where there are fewer than three.
 Estimate mean_with_error(std::vector<double> values);
