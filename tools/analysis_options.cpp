@@ -243,7 +243,7 @@ IdentifyOptions options_from(const Settings& s) {
   options.selection = selection_from(s);
 
   options.published_protocol = s.protocol == "both";
-  options.fit.protocol = s.protocol == "published" ? Protocol::published : Protocol::joint;
+  options.fit.protocol = s.protocol == to_string(Protocol::published) ? Protocol::published : Protocol::joint;
   refuse_extremes(options);
   options.fit.loss = loss_from(s.loss);
   options.fit.starts = s.starts;

@@ -74,7 +74,7 @@ Settings settings_of_trace(Settings settings, const MachineRequest& typed) {
   settings.effects = typed.effects;
   settings.formulas = typed.formulas;
   if (!typed.law.empty()) settings.laws = {typed.law};
-  settings.protocol = "joint";
+  settings.protocol = to_string(Protocol::joint);
   return settings;
 }
 

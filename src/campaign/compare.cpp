@@ -123,7 +123,7 @@ EarlierComparison compare_with(const EarlierTable& table, std::span<const Pooled
 EarlierComparison::Agreement EarlierComparison::agreement() const {
   Agreement out;
   for (const ComparedValue& v : values) {
-    if (v.protocol == "published") continue;
+    if (v.protocol == to_string(Protocol::published)) continue;
     ++out.values;
     out.inside += v.inside95 ? 1 : 0;
   }

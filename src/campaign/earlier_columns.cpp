@@ -103,8 +103,8 @@ std::optional<EarlierColumn> EarlierColumns::value_column(const std::string& tit
   for (const std::string& law : law_keys()) {
     if (take_prefix(rest, law)) column.law = law;
   }
-  for (const std::string_view protocol : {"joint", "published"}) {
-    if (take_prefix(rest, protocol)) column.protocol = protocol;
+  for (const Protocol protocol : {Protocol::joint, Protocol::published}) {
+    if (take_prefix(rest, to_string(protocol))) column.protocol = to_string(protocol);
   }
   std::vector<std::string> names;
   for (const KnownQuantity& known : known_) names.push_back(known.name);

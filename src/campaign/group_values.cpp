@@ -68,7 +68,7 @@ std::vector<std::string> joint_laws(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
-      if (fit.protocol == "joint" && !known) laws.push_back(fit.law);
+      if (fit.protocol == to_string(Protocol::joint) && !known) laws.push_back(fit.law);
     }
   }
   return laws;
@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const
   std::vector<std::pair<std::string, std::string>> kinds;
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
-      const bool published = fit.protocol == "published";
+      const bool published = fit.protocol == to_string(Protocol::published);
       const auto same = [&](const auto& k) { return k.second == fit.protocol && (published || k.first == fit.law); };
       if (std::none_of(kinds.begin(), kinds.end(), same)) kinds.emplace_back(fit.law, fit.protocol);
     }

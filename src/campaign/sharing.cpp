@@ -209,7 +209,9 @@ std::vector<const ResultFit*> fitted_laws(std::span<const RunResult> runs) {
   for (const RunResult& run : runs) {
     for (const ResultFit& fit : run.fits) {
       const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
-      if (fit.protocol != "joint" || fit.covariance.empty() || std::any_of(laws.begin(), laws.end(), same)) continue;
+      if (fit.protocol != to_string(Protocol::joint) || fit.covariance.empty() ||
+          std::any_of(laws.begin(), laws.end(), same))
+        continue;
       laws.push_back(&fit);
     }
   }
@@ -265,7 +267,7 @@ SharedFit fit_law(const ResultFit& like, std::span<const RunResult> runs, const 
   }
   std::vector<Member> members;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const ResultFit* own = runs[r].fit(like.law, "joint");
+    const ResultFit* own = runs[r].fit(like.law, to_string(Protocol::joint));
     if (own != nullptr && own->covariance.size() == fit.names.size() * fit.names.size()) {
       members.push_back(member_of(r, *own));
     } else if (runs[r].run.status == RunStatus::ok) {

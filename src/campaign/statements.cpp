@@ -16,7 +16,7 @@ namespace {
 
 /// ln(held-out error of `second` over that of `first`), joint protocol; nothing where either is not known.
 std::optional<double> advantage(const RunResult& run, const std::string& first, const std::string& second) {
-  const ResultFit *a = run.fit(first, "joint"), *b = run.fit(second, "joint");
+  const ResultFit *a = run.fit(first, to_string(Protocol::joint)), *b = run.fit(second, to_string(Protocol::joint));
   if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;
   return std::log(b->held_out_rmse / a->held_out_rmse);
 }
@@ -87,7 +87,7 @@ std::vector<std::string> two_laws(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const auto& fit : group.fits) {
       const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
-      if (fit.protocol == "joint" && !is_constant(fit.law) && !known) laws.push_back(fit.law);
+      if (fit.protocol == to_string(Protocol::joint) && !is_constant(fit.law) && !known) laws.push_back(fit.law);
     }
   }
   return laws;

@@ -159,7 +159,8 @@ Trends find_trends(std::span<const RunResult> runs) {
   for (const RunResult& run : runs) {
     for (const ResultFit& fit : run.fits) {
       const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
-      if (fit.protocol == "joint" && !fit.parameters.empty() && std::none_of(laws.begin(), laws.end(), same)) {
+      if (fit.protocol == to_string(Protocol::joint) && !fit.parameters.empty() &&
+          std::none_of(laws.begin(), laws.end(), same)) {
         laws.push_back(&fit);
       }
     }

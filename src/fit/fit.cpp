@@ -182,6 +182,10 @@ std::string_view to_string(Protocol protocol) {
   return protocol == Protocol::published ? "published" : "joint";
 }
 
+std::string protocol_text(Protocol protocol) {
+  return protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
+}
+
 std::vector<double> Fit::values() const {
   std::vector<double> p;
   for (const FitParameter& parameter : parameters) p.push_back(parameter.value);

@@ -13,8 +13,8 @@ namespace tribofit {
 namespace {
 
 /// The protocol as people call it; JSON and CSV have its own name.
-std::string protocol_text(const std::string& protocol) {
-  return protocol == "published" ? "extremes" : protocol;
+std::string protocol_cell(const std::string& protocol) {
+  return protocol == to_string(Protocol::published) ? "extremes" : protocol;
 }
 
 std::string preference_text(const LawPreference& p) {
@@ -78,8 +78,9 @@ ReportTable comparison_table(const EarlierComparison& comparison, std::span<cons
   table.numbers({"extremes", "difference"});
   const ComparedValue* before = nullptr;
   for (const ComparedValue& v : comparison.values) {
-    const bool extremes = v.protocol == "published";
-    if (!extremes || before == nullptr || before->protocol == "published" || !v.is_beside_same(*before)) {
+    const bool extremes = v.protocol == to_string(Protocol::published);
+    if (!extremes || before == nullptr || before->protocol == to_string(Protocol::published) ||
+        !v.is_beside_same(*before)) {
       const std::string conditions = conditions_text(groups[v.group]);
       table.rows.push_back({before != nullptr && conditions_text(groups[before->group]) == conditions ? "" : conditions,
                             with_unit(v.earlier.name, v.ours.unit), v.law,
@@ -107,7 +108,7 @@ ReportTable error_table(const Statements& statements, std::span<const PooledGrou
   std::string before;
   for (const ErrorStatement& e : statements.errors) {
     const std::string conditions = conditions_text(groups[e.group]);
-    table.rows.push_back({conditions == before ? "" : conditions, e.law, protocol_text(e.protocol),
+    table.rows.push_back({conditions == before ? "" : conditions, e.law, protocol_cell(e.protocol),
                           share_text(e.below_limit), significant(e.mean_relative, 2), significant(e.max_relative, 2),
                           share_text(e.bins_below_limit), significant(e.largest_of_bins, 2)});
     before = conditions;
@@ -136,7 +137,7 @@ ReportTable shared_table(const SharedFit& fit) {
   ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law", "shared.csv");
   for (const SharedFit::Parameter& common : fit.common) {
     for (std::size_t l = 0; l < common.values.size(); ++l) {
-      table.rows.push_back(value_row(common.values[l], common.name, fit.law, "joint",
+      table.rows.push_back(value_row(common.values[l], common.name, fit.law, std::string(to_string(Protocol::joint)),
                                      common.condition.empty() ? "all runs" : common.levels[l]));
     }
   }
@@ -171,7 +172,7 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
   table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
-      if (fit.protocol != "joint") continue;
+      if (fit.protocol != to_string(Protocol::joint)) continue;
       std::vector<std::string> row = {conditions_text(group), std::to_string(group.runs.size()), fit.law};
       add_law_cells(fit.parameters, row);
       row.push_back(std::to_string(fit.best_in));

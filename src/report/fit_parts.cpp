@@ -95,7 +95,7 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
 }
 
 void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
-  const char* protocol = fit.protocol == Protocol::published ? "per-cycle extremes" : "joint fit";
+  const std::string protocol = protocol_text(fit.protocol);
   section.heading(fmt::format("{}, {}{}", fit.model.name(), protocol, best ? " (best)" : ""));
   section.soft(describe(fit.model.law()).equation);
   for (const Effect& effect : fit.model.effects()) {

@@ -102,7 +102,7 @@ std::string full_name(const FitParameter& p) {
 }
 
 std::string curve_name(const Fit& fit) {
-  return fit.model.name() + (fit.protocol == Protocol::published ? ", per-cycle extremes" : "");
+  return fit.model.name() + (fit.protocol == Protocol::published ? ", " + protocol_text(fit.protocol) : "");
 }
 
 std::string limits_text(const FitParameter& p) {

@@ -21,6 +21,8 @@ enum class Protocol {
 };
 /// "published", "joint": as --protocol and JSON have them.
 std::string_view to_string(Protocol protocol);
+/// "per-cycle extremes", "joint fit": as people read them.
+std::string protocol_text(Protocol protocol);
 
 /// What a residual adds to the sum that is minimised, by its size u in units of the width (FitOptions::loss_scale).
 enum class Loss {

@@ -94,10 +94,11 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   const auto add_kinds = [&](auto value) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const std::string &law = kinds[k].first, &protocol = kinds[k].second;
-      chart.add(protocol == "published" ? "per-cycle extremes" : law + " law", k, [&](std::size_t g) {
-        const PooledGroup::OfFit* fit = fit_of(campaign.groups[g], law, protocol);
-        return fit == nullptr ? Maybe{} : value(campaign.groups[g], *fit);
-      });
+      chart.add(protocol == to_string(Protocol::published) ? protocol_text(Protocol::published) : law + " law", k,
+                [&](std::size_t g) {
+                  const PooledGroup::OfFit* fit = fit_of(campaign.groups[g], law, protocol);
+                  return fit == nullptr ? Maybe{} : value(campaign.groups[g], *fit);
+                });
     }
   };
   const auto add_level = [&](const char* name) {
@@ -119,14 +120,15 @@ Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions
   MeansChart chart(campaign, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::string> names;
   for (const OtherParameter& other : other_parameters(campaign.groups)) {
-    const auto value_by = [&](const char* protocol) {
+    const auto value_by = [&](Protocol protocol) {
       return [&, protocol](std::size_t g) {
-        const PooledGroup::OfFit* own = fit_of(campaign.groups[g], other.law, protocol);
+        const PooledGroup::OfFit* own = fit_of(campaign.groups[g], other.law, to_string(protocol));
         return own == nullptr ? Maybe{} : pooled_mean(own->parameters, other.name);
       };
     };
-    chart.panel(with_subscript(other.name), other.unit).add("joint fit", 0, value_by("joint"));
-    chart.add("per-cycle extremes", 1, value_by("published")).earlier(other.name);
+    chart.panel(with_subscript(other.name), other.unit)
+        .add(protocol_text(Protocol::joint), 0, value_by(Protocol::joint));
+    chart.add(protocol_text(Protocol::published), 1, value_by(Protocol::published)).earlier(other.name);
     names.push_back(fmt::format("{} of the {} law", other.name, other.law));
   }
   return chart.chart(110 + 180 * std::max(1, static_cast<int>(names.size())),
@@ -188,10 +190,10 @@ void add_over_bins(const RunFigures& f, bool with_symbols, Values values, Chart&
   for (ChartLine& line : chart.lines) line.x = middles;
   for (std::size_t k = 0; k < f.errors.size(); ++k) {
     const ErrorCurve& curve = f.errors[k];
-    const bool published = curve.protocol == "published";
+    const bool published = curve.protocol == to_string(Protocol::published);
     Stroke stroke = with_symbols ? marked(k + 1) : stroke_of(k + 1);
     stroke.size = 4;
-    chart.lines.push_back({.name = curve.law + (published ? ", per-cycle extremes" : ""),
+    chart.lines.push_back({.name = curve.law + (published ? ", " + protocol_text(Protocol::published) : ""),
                            .x = middles,
                            .y = values(curve),
                            .stroke = stroke,
@@ -305,7 +307,7 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
       const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
         const RunResult& run = campaign.runs[runs[i]];
-        const ResultFit* fit = run.fit(law, "joint");
+        const ResultFit* fit = run.fit(law, to_string(Protocol::joint));
         if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;
         const ResultParameter& value = fit->parameters[p];
         name = value.name, unit = value.unit;
