@@ -225,12 +225,13 @@ Json parameters_json(const Plan& plan) {
 Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
   Json list = Json::array();
   for (const SimulatedSlip& slip : motion.slips) {
-    list.push_back({{"break_away_s", slip.break_away_time},
-                    {"restick_s", std::isnan(slip.restick_time) ? Json() : Json(slip.restick_time)},
-                    {"stick_s", slip.stick_time},
-                    {"direction", slip.direction},
-                    {"mu_s", friction_at_rest(plan.machine.model.law(), plan.machine.parameters) + slip.mu_s_offset},
-                    {"break_away_friction", slip.break_away_friction}});
+    list.push_back(
+        {{"break_away_s", slip.break_away_time},
+         {"restick_s", std::isnan(slip.restick_time) ? Json() : Json(slip.restick_time)},
+         {"stick_s", slip.stick_time},
+         {"direction", slip.direction},
+         {static_level_name, friction_at_rest(plan.machine.model.law(), plan.machine.parameters) + slip.mu_s_offset},
+         {"break_away_friction", slip.break_away_friction}});
   }
   return list;
 }

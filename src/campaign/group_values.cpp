@@ -38,7 +38,7 @@ ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group,
   for (const std::size_t k : group.runs) {
     const ResultFit* fit = runs[k].fit(pooled.law, pooled.protocol);
     if (fit == nullptr) continue;
-    const ResultParameter *mu_s = level(*fit, "mu_s"), *mu_k = level(*fit, "mu_k");
+    const ResultParameter *mu_s = level(*fit, static_level_name), *mu_k = level(*fit, kinetic_level_name);
     if (mu_s != nullptr && mu_k != nullptr) drops.push_back(mu_s->value - mu_k->value);
   }
   return mean_over_runs(drops);
@@ -94,7 +94,7 @@ std::vector<OtherParameter> other_parameters(std::span<const PooledGroup> groups
         const bool known = std::any_of(out.begin(), out.end(), [&](const OtherParameter& other) {
           return other.law == fit.law && other.name == v.name;
         });
-        const bool is_level = v.name == "mu_s" || v.name == "mu_k";
+        const bool is_level = v.name == static_level_name || v.name == kinetic_level_name;
         if (!known && !is_level && v.effect.empty()) out.push_back({fit.law, v.name, v.unit});
       }
     }

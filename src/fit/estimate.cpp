@@ -154,7 +154,7 @@ Solution estimate_by_extremes(FitContext& context, Fit& fit) {
     out.start[k] = context.bounds.lower[k] = context.bounds.upper[k] = levels[k];
   }
   for (const GivenParameter& given : context.options.given) {
-    if (given.name != "mu_s" && given.name != "mu_k") continue;
+    if (given.name != static_level_name && given.name != kinetic_level_name) continue;
     fit.messages.push_back(given.name + " is set by the per-cycle extremes; the value given for it is not used");
   }
   out.result = context.solve(all_slips(context.observations), out.start, SolverOptions());

@@ -38,8 +38,10 @@ FrictionCurve curve_of(const Row& row) {
 }
 
 std::vector<double> friction_of(const Row& row, const Law& law) {
-  const std::map<std::string, double> table = {
-      {"mu_s", row.mu_s}, {"mu_k", row.mu_k}, {"alpha", 1e3 * row.alpha_s_per_mm}, {"beta", 1e3 * row.beta_s_per_mm}};
+  const std::map<std::string, double> table = {{static_level_name, row.mu_s},
+                                               {kinetic_level_name, row.mu_k},
+                                               {"alpha", 1e3 * row.alpha_s_per_mm},
+                                               {"beta", 1e3 * row.beta_s_per_mm}};
   std::vector<double> q = std::visit([&](const auto& l) { return l.start(curve_of(row)); }, law);
   const std::vector<Parameter> parameters = describe(law).parameters;
   for (std::size_t k = 0; k < q.size(); ++k) {

@@ -60,9 +60,9 @@ void add_law_cells(const std::vector<Value>& parameters, std::vector<std::string
   std::vector<std::string> others;
   for (const Value& p : parameters) {
     if (!p.effect.empty()) continue;
-    if (p.name == "mu_s") {
+    if (p.name == static_level_name) {
       mu_s = cell_of(p);
-    } else if (p.name == "mu_k") {
+    } else if (p.name == kinetic_level_name) {
       mu_k = cell_of(p);
     } else {
       others.push_back(p.name + " " + cell_of(p) + unit_behind(p.unit));
@@ -103,8 +103,9 @@ ReportTable comparison_table(const EarlierComparison& comparison, std::span<cons
 /// Relative errors (Eq 5) by conditions, law and protocol.
 ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
   ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r", "summary.json");
-  table.text({"conditions", "law", "protocol"}).numbers({"samples below 0.08", "mean", "largest"});
-  table.numbers({"bins below 0.08", "largest of bins"});
+  const std::string limit = published_error_limit_text;
+  table.text({"conditions", "law", "protocol"}).numbers({"samples below " + limit, "mean", "largest"});
+  table.numbers({"bins below " + limit, "largest of bins"});
   std::string before;
   for (const ErrorStatement& e : statements.errors) {
     const std::string conditions = conditions_text(groups[e.group]);
@@ -168,7 +169,11 @@ void add_shared(const Pooled& pooled, ReportSection& section) {
 
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
   ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)", "pooled.csv");
-  table.text({"conditions"}).numbers({"runs"}).text({"law"}).numbers({"mu_s", "mu_k"}).text({kOtherParameters});
+  table.text({"conditions"})
+      .numbers({"runs"})
+      .text({"law"})
+      .numbers({static_level_name, kinetic_level_name})
+      .text({kOtherParameters});
   table.numbers({"best in"});
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
@@ -185,7 +190,8 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
 ReportTable runs_table(const std::string& friction_unit) {
   ReportTable table("", "summary.csv");
   table.text({"run", "conditions"}).numbers({"cycles", "frequency [Hz]"}, 3).text({"best law"});
-  table.numbers({with_unit("mu_s", friction_unit), with_unit("mu_k", friction_unit)}).text({kOtherParameters});
+  table.numbers({with_unit(static_level_name, friction_unit), with_unit(kinetic_level_name, friction_unit)})
+      .text({kOtherParameters});
   table.numbers({with_unit("held-out error", friction_unit)});
   table.numbers({with_unit("noise floor", friction_unit)}).text({"warnings"}, 4);
   return table;

@@ -1,7 +1,5 @@
 #include "tribofit/report/figures.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <string>
 
@@ -45,7 +43,8 @@ void write_groups(WholeFolder& files, const ConditionCells& conditions, std::spa
   for (const PooledGroup& group : groups) {
     if (const PooledValue* v = pooled_value(group.measures, "rms_velocity")) rms.row({group, nullptr, v, nullptr, {}});
     for (const PooledGroup::OfFit& fit : group.fits) {
-      const PooledValue *mu_s = pooled_value(fit.parameters, "mu_s"), *mu_k = pooled_value(fit.parameters, "mu_k");
+      const PooledValue *mu_s = pooled_value(fit.parameters, static_level_name),
+                        *mu_k = pooled_value(fit.parameters, kinetic_level_name);
       if (mu_s != nullptr && mu_k != nullptr) levels.row({group, &fit, mu_s, mu_k, drop_of(runs, group, fit)});
     }
   }
@@ -98,7 +97,7 @@ void write_runs(WholeFolder& files, const ConditionCells& conditions, const Resu
              {"relative_error_of_mean", [](const Row& r) { return r.figures.error_of_mean(*r.curve, r.k); }},
              {"mean_relative_error", [](const Row& r) { return r.curve->bin_mean_relative[r.k]; }},
              {"largest_relative_error", [](const Row& r) { return r.curve->bin_max_relative[r.k]; }}});
-  const std::string share = "share_", limit = fmt::format("_{}", published_error_limit);
+  const std::string share = "share_", limit = std::string("_") + published_error_limit_text;
   CsvTable errors = table("12-relative-error.csv",
                           {{"law", [](const Row& r) { return r.curve->law; }},
                            {"protocol", [](const Row& r) { return r.curve->protocol; }},

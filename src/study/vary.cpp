@@ -105,7 +105,7 @@ std::vector<Variable> variables_of(const Machine& machine) {
                    .meaning = "mu_k/mu_s, varied by mu_k",
                    .value = [](const M& m) { return m.parameters[1] / m.parameters[0]; },
                    .set = [](M& m, double ratio) { m.parameters[1] = ratio * m.parameters[0]; },
-                   .set_by = "mu_k"});
+                   .set_by = kinetic_level_name});
   }
   return out;
 }

@@ -12,6 +12,7 @@ namespace tribofit {
 
 /// Relative error that [D] states for all its fits ("each less than 0.08").
 inline constexpr double published_error_limit = 0.08;
+inline constexpr const char* published_error_limit_text = "0.08";
 
 /// The relative error of a fit over speed, as in [D] Fig 12: e = |(mu - model)/mu| (Eq 5) of the slip samples.
 struct ErrorCurve {

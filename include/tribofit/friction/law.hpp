@@ -86,15 +86,16 @@ struct LawValues {
 };
 
 /// Static friction and kinetic friction, the levels of a law that falls from one to the other.
+inline constexpr const char *static_level_name = "mu_s", *kinetic_level_name = "mu_k";
 inline Parameter static_level() {
-  return {.name = "mu_s",
+  return {.name = static_level_name,
           .description = "static friction, the level at break-away",
           .upper = 5,
           .start = 0.5,
           .scales_with_friction = true};
 }
 inline Parameter kinetic_level() {
-  return {.name = "mu_k",
+  return {.name = kinetic_level_name,
           .description = "kinetic friction, the level at high speed",
           .upper = 5,
           .start = 0.3,

@@ -106,10 +106,10 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
     chart.earlier(name);
   };
   const std::string unit = campaign.friction_unit();
-  chart.panel("mu_{s}", unit);
-  add_level("mu_s");
-  chart.panel("mu_{k}", unit);
-  add_level("mu_k");
+  for (const char* level : {static_level_name, kinetic_level_name}) {
+    chart.panel(with_subscript(level), unit);
+    add_level(level);
+  }
   chart.panel("mu_{s} - mu_{k}", unit);
   add_kinds([&](const PooledGroup& group, const auto& fit) { return Maybe{drop_of(campaign.runs, group, fit)}; });
   return chart.chart(560);
@@ -212,9 +212,10 @@ Chart friction_chart(const RunFigures& f, const std::string& unit) {
 
 /// Relative error of the mean friction of a bin (Fig 12 of [D]).
 Chart error_chart(const RunFigures& f) {
-  Chart chart{.note = "Of the mean friction of each bin.",
-              .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
-              .marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]", 0}}};
+  Chart chart{
+      .note = "Of the mean friction of each bin.",
+      .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
+      .marks = {{published_error_limit, false, Dash::dashed, std::string(published_error_limit_text) + " of [D]", 0}}};
   const auto error = [&](const ErrorCurve& curve) {
     std::vector<double> errors;
     for (std::size_t b = 0; b < f.bin_friction.size(); ++b) {

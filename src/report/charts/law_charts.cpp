@@ -149,7 +149,7 @@ Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
   Chart chart =
       half_chart(d.id + "-" + id, title, std::move(x), {.quantity = "relative error", .unit = "1", .from_zero = true});
   chart.note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.";
-  chart.marks = {{published_error_limit, false, Dash::dashed, "0.08 of [D]"}};
+  chart.marks = {{published_error_limit, false, Dash::dashed, std::string(published_error_limit_text) + " of [D]"}};
   return chart;
 }
 
