@@ -53,6 +53,7 @@ function showRungs(rungs) {
   const best = Math.min(...rungs.map((rung) => (rung.held_out_rmse > 0 ? rung.held_out_rmse : Infinity)));
   const rows = rungs.map((rung) => {
     const bar = make("span", { className: "bar", "aria-hidden": "true" });
+    bar.style.background = styles.colours.blue;
     bar.style.width = `${(100 * rung.held_out_rmse) / worst}%`;
     const current = workbench.rung && rung.number === workbench.rung.number;
     const back = make("button", { type: "button", "aria-current": current ? "true" : null, "data-rung": rung.number,
@@ -95,10 +96,10 @@ async function show(full = false, passing = false) {
     workbench.rung = answer.rung;
     showTrouble(null);
     showStatus(answer.rung);
-    showRungs(answer.rungs);
     if (!full || !sameNames(answer.rung)) showParameters(answer.rung);
     else updateParameters(answer.rung);
     showReport(document.getElementById("workbench-picture"), answer.report);
+    showRungs(answer.rungs); // in the colours of the report
     if (!full) document.documentElement.dataset.answerMs = (performance.now() - workbench.changedAt).toFixed(0);
     document.documentElement.dataset.workbench = answer.rung.full ? "settled" : "shown";
     if (!answer.rung.full) workbench.settling = setTimeout(() => show(true), 600);
