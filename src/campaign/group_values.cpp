@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tribofit/statistics/standard_error_of_mean.hpp"
+
 namespace tribofit {
 
 ResultMeasure mean_over_runs(std::span<const double> values) {

@@ -11,6 +11,7 @@
 #include "fit/spectral_lines.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -36,7 +36,7 @@ std::vector<std::string> value_row(const PooledValue& v, const std::string& name
   const auto part = [&](double value) { return std::isfinite(value) && value != 0 ? significant(value, 2) : "-"; };
   const bool known = std::isfinite(v.std_error) && v.std_error > 0;
   const std::string interval = known ? interval_text(v.lower95, v.upper95, places_for(v.std_error)) : "-";
-  std::vector<std::string> row = {conditions, name, law, protocol_text(protocol), with_error(v.value, v.std_error)};
+  std::vector<std::string> row = {conditions, name, law, protocol_cell(protocol), with_error(v.value, v.std_error)};
   row.insert(row.end(), {interval, part(v.statistical), part(v.between), part(v.systematic), std::to_string(v.runs),
                          v.unit == "1" ? "" : v.unit});
   return row;

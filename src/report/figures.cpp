@@ -60,6 +60,34 @@ struct RunRow {
   double from() const { return static_cast<double>(k) * figures.bin_width; }
 };
 
+std::vector<CsvColumn<RunRow>> columns_of_bins() {
+  using Row = RunRow;
+  return {{"law", [](const Row& r) { return r.curve->law; }},
+          {"protocol", [](const Row& r) { return r.curve->protocol; }},
+          {"unit", [](const Row& r) { return r.run.friction_unit; }},
+          {"v_r_from_mm_s", [](const Row& r) { return r.from(); }},
+          {"v_r_to_mm_s", [](const Row& r) { return r.from() + r.figures.bin_width; }},
+          {"samples", [](const Row& r) { return r.figures.bin_samples[r.k]; }},
+          {"friction", [](const Row& r) { return r.figures.bin_friction[r.k]; }},
+          {"fitted", [](const Row& r) { return r.curve->fitted[r.k]; }},
+          {"relative_error_of_mean", [](const Row& r) { return r.figures.error_of_mean(*r.curve, r.k); }},
+          {"mean_relative_error", [](const Row& r) { return r.curve->bin_mean_relative[r.k]; }},
+          {"largest_relative_error", [](const Row& r) { return r.curve->bin_max_relative[r.k]; }}};
+}
+
+std::vector<CsvColumn<RunRow>> columns_of_errors() {
+  using Row = RunRow;
+  const std::string share = "share_", limit = std::string("_") + published_error_limit_text;
+  return {{"law", [](const Row& r) { return r.curve->law; }},
+          {"protocol", [](const Row& r) { return r.curve->protocol; }},
+          {"samples", [](const Row& r) { return r.figures.slip_samples(); }},
+          {share + "below" + limit, [](const Row& r) { return r.curve->below_limit; }},
+          {share + "of_bins_below" + limit, [](const Row& r) { return r.curve->bins_below_limit; }},
+          {"largest_of_bins", [](const Row& r) { return r.curve->largest_of_bins; }},
+          {"mean_relative_error", [](const Row& r) { return r.curve->mean_relative; }},
+          {"largest_relative_error", [](const Row& r) { return r.curve->max_relative; }}};
+}
+
 void write_runs(WholeFolder& files, const ConditionCells& conditions, const ResultReader& results,
                 std::span<const RunResult> runs) {
   using Row = RunRow;
@@ -84,34 +112,13 @@ void write_runs(WholeFolder& files, const ConditionCells& conditions, const Resu
       table("07-harmonics.csv", {{"harmonic", [](const Row& r) { return r.k + 1; }},
                                  {"frequency_hz", [](const Row& r) { return r.figures.harmonics[r.k].frequency; }},
                                  {"amplitude_mm_s", [](const Row& r) { return r.figures.harmonics[r.k].amplitude; }}});
-  CsvTable bins =
-      table("10-12-over-velocity.csv",
-            {{"law", [](const Row& r) { return r.curve->law; }},
-             {"protocol", [](const Row& r) { return r.curve->protocol; }},
-             {"unit", [](const Row& r) { return r.run.friction_unit; }},
-             {"v_r_from_mm_s", [](const Row& r) { return r.from(); }},
-             {"v_r_to_mm_s", [](const Row& r) { return r.from() + r.figures.bin_width; }},
-             {"samples", [](const Row& r) { return r.figures.bin_samples[r.k]; }},
-             {"friction", [](const Row& r) { return r.figures.bin_friction[r.k]; }},
-             {"fitted", [](const Row& r) { return r.curve->fitted[r.k]; }},
-             {"relative_error_of_mean", [](const Row& r) { return r.figures.error_of_mean(*r.curve, r.k); }},
-             {"mean_relative_error", [](const Row& r) { return r.curve->bin_mean_relative[r.k]; }},
-             {"largest_relative_error", [](const Row& r) { return r.curve->bin_max_relative[r.k]; }}});
-  const std::string share = "share_", limit = std::string("_") + published_error_limit_text;
-  CsvTable errors = table("12-relative-error.csv",
-                          {{"law", [](const Row& r) { return r.curve->law; }},
-                           {"protocol", [](const Row& r) { return r.curve->protocol; }},
-                           {"samples", [](const Row& r) { return r.figures.slip_samples(); }},
-                           {share + "below" + limit, [](const Row& r) { return r.curve->below_limit; }},
-                           {share + "of_bins_below" + limit, [](const Row& r) { return r.curve->bins_below_limit; }},
-                           {"largest_of_bins", [](const Row& r) { return r.curve->largest_of_bins; }},
-                           {"mean_relative_error", [](const Row& r) { return r.curve->mean_relative; }},
-                           {"largest_relative_error", [](const Row& r) { return r.curve->max_relative; }}});
+  CsvTable bins = table("10-12-over-velocity.csv", columns_of_bins());
+  CsvTable errors = table("12-relative-error.csv", columns_of_errors());
   for (const RunResult& run : runs) {
     const auto f = results.figures(run.position);
     if (!f) continue;
-    const auto rows = [&](CsvTable<Row>& of, std::size_t count, const ErrorCurve* curve = nullptr) {
-      for (std::size_t k = 0; k < count; ++k) of.row({run, *f, k, curve});
+    const auto rows = [&](CsvTable<Row>& file, std::size_t count, const ErrorCurve* curve = nullptr) {
+      for (std::size_t k = 0; k < count; ++k) file.row({run, *f, k, curve});
     };
     rows(cycles, f->time.size());
     rows(spectrum, f->spectrum.size());

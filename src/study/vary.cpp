@@ -30,64 +30,33 @@ template <class Known>
                    (near.empty() ? "" : "did you mean '" + near + "'? ") + ("there are: " + list));
 }
 
+std::vector<Variable> variables_of_rig_and_drive() {
+  using M = Machine;
+  using Q = Quantity;
+  return {{"stiffness", "N/mm", 1e3, Q::stiffness, "k of the spring", [](const M& m) { return m.rig.stiffness; },
+           [](M& m, double k) { m.rig.stiffness = k; }},
+          {"mass", "kg", 1, Q::mass, "all that moves with the block", [](const M& m) { return m.rig.mass; },
+           [](M& m, double mass) { m.rig.mass = mass; }},
+          {"damping", "N s/mm", 1e3, Q::damping, "c of the block on its spring",
+           [](const M& m) { return m.rig.damping; }, [](M& m, double c) { m.rig.damping = c; }},
+          {"damping-ratio", "1", 1, Q::dimensionless, "c / (2 sqrt(k m)), varied by the damping",
+           [](const M& m) { return m.rig.damping_ratio(); },
+           [](M& m, double ratio) { m.rig = rig_with_damping_ratio(m.rig.mass, m.rig.stiffness, ratio); }, "damping"},
+          {"load", "N", 1, Q::force, "normal force", [](const M& m) { return m.load; },
+           [](M& m, double load) { m.load = load; }},
+          {"radius", "mm", kMillimetre, Q::length, "friction radius, varied at constant speed of the disc",
+           [](const M& m) { return m.radius; }, [](M& m, double r) { m.radius = r; }},
+          {"speed", "rpm", kRpm, Q::angular_velocity, "of the disc", [](const M& m) { return m.speed; },
+           [](M& m, double omega) { m.speed = omega; }},
+          {"velocity", "mm/s", kMillimetre, Q::velocity, "omega r of the disc under the block, varied by the speed",
+           [](const M& m) { return m.disc_velocity(); }, [](M& m, double v) { m.speed = v / m.radius; }, "speed"}};
+}
+
 }  // namespace
 
 std::vector<Variable> variables_of(const Machine& machine) {
   using M = Machine;
-  std::vector<Variable> out = {
-      {.name = "stiffness",
-       .unit = "N/mm",
-       .si = 1e3,
-       .quantity = Quantity::stiffness,
-       .meaning = "k of the spring",
-       .value = [](const M& m) { return m.rig.stiffness; },
-       .set = [](M& m, double k) { m.rig.stiffness = k; }},
-      {.name = "mass",
-       .unit = "kg",
-       .quantity = Quantity::mass,
-       .meaning = "all that moves with the block",
-       .value = [](const M& m) { return m.rig.mass; },
-       .set = [](M& m, double mass) { m.rig.mass = mass; }},
-      {.name = "damping",
-       .unit = "N s/mm",
-       .si = 1e3,
-       .quantity = Quantity::damping,
-       .meaning = "c of the block on its spring",
-       .value = [](const M& m) { return m.rig.damping; },
-       .set = [](M& m, double c) { m.rig.damping = c; }},
-      {.name = "damping-ratio",
-       .meaning = "c / (2 sqrt(k m)), varied by the damping",
-       .value = [](const M& m) { return m.rig.damping_ratio(); },
-       .set = [](M& m, double ratio) { m.rig = rig_with_damping_ratio(m.rig.mass, m.rig.stiffness, ratio); },
-       .set_by = "damping"},
-      {.name = "load",
-       .unit = "N",
-       .quantity = Quantity::force,
-       .meaning = "normal force",
-       .value = [](const M& m) { return m.load; },
-       .set = [](M& m, double load) { m.load = load; }},
-      {.name = "radius",
-       .unit = "mm",
-       .si = kMillimetre,
-       .quantity = Quantity::length,
-       .meaning = "friction radius, varied at constant speed of the disc",
-       .value = [](const M& m) { return m.radius; },
-       .set = [](M& m, double r) { m.radius = r; }},
-      {.name = "speed",
-       .unit = "rpm",
-       .si = kRpm,
-       .quantity = Quantity::angular_velocity,
-       .meaning = "of the disc",
-       .value = [](const M& m) { return m.speed; },
-       .set = [](M& m, double omega) { m.speed = omega; }},
-      {.name = "velocity",
-       .unit = "mm/s",
-       .si = kMillimetre,
-       .quantity = Quantity::velocity,
-       .meaning = "omega r of the disc under the block, varied by the speed",
-       .value = [](const M& m) { return m.disc_velocity(); },
-       .set = [](M& m, double v) { m.speed = v / m.radius; },
-       .set_by = "speed"}};
+  std::vector<Variable> out = variables_of_rig_and_drive();
   for (std::size_t k = 0; k < machine.model.parameters().size(); ++k) {
     const FrictionModel::Slot& slot = machine.model.parameters()[k];
     const Parameter& q = slot.parameter;

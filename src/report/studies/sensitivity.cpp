@@ -110,22 +110,22 @@ std::string study_json(const StudiedMachine& studied, const std::vector<Sensitiv
 void write_study(const std::string& folder, const std::vector<Sensitivity>& study) {
   WholeFolder files(folder);
   struct Row {
-    const Sensitivity& of;
+    const Sensitivity& sweep;
     std::size_t i;
   };
-  const CsvColumn<Row> name = {"variable", [](const Row&r) { return r.of.variable.name; }},
-                       unit = {"unit", [](const Row&r) { return r.of.variable.unit; }};
+  const CsvColumn<Row> name = {"variable", [](const Row&r) { return r.sweep.variable.name; }},
+                       unit = {"unit", [](const Row&r) { return r.sweep.variable.unit; }};
   std::vector<CsvColumn<Row>> swept_columns = {
       name,
       unit,
-      {"value", [](const Row& r) { return r.of.values[r.i] / r.of.variable.si; }},
-      {"relative_value", [](const Row& r) { return r.of.values[r.i] / r.of.base; }},
-      {"regime" + measure_columns(), [](const Row& r) { return settled_json(r.of.settled[r.i]); }},
+      {"value", [](const Row& r) { return r.sweep.values[r.i] / r.sweep.variable.si; }},
+      {"relative_value", [](const Row& r) { return r.sweep.values[r.i] / r.sweep.base; }},
+      {"regime" + measure_columns(), [](const Row& r) { return settled_json(r.sweep.settled[r.i]); }},
   };
   std::vector<CsvColumn<Row>> ranked_columns = {
-      name, unit, {"value", [](const Row& r) { return r.of.base / r.of.variable.si; }}};
+      name, unit, {"value", [](const Row& r) { return r.sweep.base / r.sweep.variable.si; }}};
   for (std::size_t k = 0; k < measures().size(); ++k) {
-    ranked_columns.emplace_back(measures()[k].name, [k](const Row& r) { return r.of.elasticities[k]; });
+    ranked_columns.emplace_back(measures()[k].name, [k](const Row& r) { return r.sweep.elasticities[k]; });
   }
   CsvTable sweeps(files, "sensitivity.csv", std::move(swept_columns)),
       table(files, "elasticities.csv", std::move(ranked_columns));
