@@ -263,6 +263,19 @@ TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
   EXPECT_GE(slips, 3);
 }
 
+TEST(Catalogue, HasOneEffectForWhatOthersAskFor) {
+  for (bool EffectInfo::*property : {&EffectInfo::proportional_to_speed, &EffectInfo::creeps_like_sag}) {
+    const auto catalogue = effect_catalogue();
+    EXPECT_EQ(std::count_if(catalogue.begin(), catalogue.end(), [&](const Effect& e) { return describe(e).*property; }),
+              1);
+    EXPECT_TRUE(describe(effect_with(property)).*property);
+  }
+  for (const InstrumentValue value :
+       {InstrumentValue::force_mass_below, InstrumentValue::force_bandwidth, InstrumentValue::vibrometer_delay}) {
+    EXPECT_EQ(describe(effect_declared_by(value)).declared_by, value);
+  }
+}
+
 TEST(Pairs, AreOfTheCatalogueAndMutual) {
   for (const std::string& key : catalogue_keys()) {
     for (const LookAlike& pair : describe(make_effect(key)).pairs) {

@@ -124,5 +124,16 @@ TEST(MetaRegression, NoMoreRunsThanColumns) {
   EXPECT_EQ(out.degrees_of_freedom, 0);
 }
 
+// 2, 4, 9: mean 5, sum of squares 9 + 1 + 16 = 26, error sqrt(26/(3 2)).
+TEST(MeanOfIndependent, HasItsErrorFromTheScatter) {
+  const std::vector<double> values = {2, 4, 9};
+  const Estimate mean = mean_of_independent(values);
+  EXPECT_DOUBLE_EQ(mean.value, 5);
+  EXPECT_DOUBLE_EQ(mean.std_error, std::sqrt(26.0 / 6));
+  EXPECT_EQ(mean.degrees_of_freedom, 2);
+  EXPECT_TRUE(std::isnan(mean_of_independent(std::span(values).first(1)).std_error));
+  EXPECT_TRUE(std::isnan(mean_of_independent({}).value));
+}
+
 }  // namespace
 }  // namespace tribofit
