@@ -1,5 +1,4 @@
 #include "tribofit/campaign/compare.hpp"
-#include "tribofit/ingest/units.hpp"
 
 #include <fmt/format.h>
 

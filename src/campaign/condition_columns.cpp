@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "order.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {

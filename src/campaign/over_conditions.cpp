@@ -6,7 +6,6 @@
 
 #include "statistics/thinning.hpp"
 #include "tribofit/campaign/compare.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {

@@ -16,7 +16,6 @@
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
