@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "limits.hpp"
 #include "points.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -109,7 +110,7 @@ class Assembler {
   }
 
   void refuse_radius(double radius) const {
-    if (radius > 1e-9 && std::isfinite(radius)) return;
+    if (radius > kSmallestRadius && std::isfinite(radius)) return;
     throw InputError(fmt::format("a friction radius of {:g} mm is not possible", 1e3 * radius),
                      "give a radius above zero", file());
   }
@@ -171,7 +172,7 @@ class Assembler {
       for (Step& step : trace_.steps) {
         if (!step.conditions.load.known()) step.conditions.load = mean_load(load, step);
       }
-    } else if (std::abs(mean / trace_.conditions.load.value - 1) > 0.1) {
+    } else if (std::abs(mean / trace_.conditions.load.value - 1) > kLoadKnownTo) {
       trace_.warnings.push_back(
           fmt::format("the stated load of {:g} N contradicts the mean of the load channel, {:.4g} N",
                       trace_.conditions.load.value, mean));
@@ -253,9 +254,8 @@ class Assembler {
 
   void divide_by_measured_load(const std::string& force) {
     const auto& load = run_[Channel::load];
-    constexpr double least = 1e-12;  // [N]
     for (std::size_t i = 0; i < load.size(); ++i) {
-      if (!(load[i] > least)) {
+      if (!(load[i] > kSmallestLoad)) {
         throw InputError(
             fmt::format("the load is {:g} N, and friction is {} over load", load[i], force),
             "remove the rows without load, or leave the channel out with --columns load=none and state --load",
@@ -267,11 +267,10 @@ class Assembler {
   }
 
   void warn_of_large_coefficient() {
-    constexpr double most = 5;  // beyond any dry contact
     if (trace_.friction_kind != FrictionKind::coefficient) return;
     double largest = 0;
     for (const double mu : trace_.friction) largest = std::max(largest, std::abs(mu));
-    if (largest <= most) return;
+    if (largest <= kLargestCoefficient) return;
     trace_.warnings.push_back(fmt::format("friction reaches {:.4g}: is the column really a coefficient?", largest));
   }
 
@@ -281,8 +280,7 @@ class Assembler {
     const Condition& stated = options_.conditions.speed;
     if (column.empty() || !stated.known()) return;
     const double usual = median(column);
-    constexpr double agreement = 0.02;
-    if (std::abs(usual - stated.value) <= agreement * std::abs(stated.value)) return;
+    if (std::abs(usual - stated.value) <= kSpeedKnownTo * std::abs(stated.value)) return;
     trace_.warnings.push_back(
         fmt::format("the stated speed of {:.4g} rpm ({}) contradicts the median of the speed column, {:.4g} rpm; the "
                     "stated speed is used and the column is not",
@@ -359,7 +357,7 @@ class Assembler {
     if (angle.size() < 2) return;
     const auto [low, high] = std::minmax_element(angle.begin(), angle.end());
     constexpr double turn = 2 * std::numbers::pi;
-    if (*high - *low > 1.001 * turn) return;
+    if (*high - *low > kOneTurn * turn) return;
     double turns = 0, last = angle.front();
     for (double& value : angle) {
       if (value - last > turn / 2) turns -= turn;

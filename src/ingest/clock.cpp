@@ -6,16 +6,13 @@
 #include <cmath>
 
 #include "column_names.hpp"
+#include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 namespace {
-
-constexpr double gap_limit = 1.5;          // times the median interval
-constexpr std::size_t shortest_step = 10;  // rows before a clock may restart without a step column saying so
-constexpr std::size_t least_after = 5;     // rows for which a restarted clock must go on
 
 class Clock {
  public:
@@ -37,7 +34,7 @@ class Clock {
     for (std::size_t i = 1; i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
       const bool step_changes = begins_step(i);
-      if (interval > 0 && interval <= gap_limit * interval_ && !step_changes) [[likely]] {
+      if (interval > 0 && interval <= kGapInterval * interval_ && !step_changes) [[likely]] {
         time_[i] = now + shift;
       } else {
         if (!(interval > 0)) {
@@ -72,14 +69,14 @@ class Clock {
   }
 
   bool restarts_at(std::size_t row, double step_start, double last) const {
-    const bool back_to_start = time_[row] <= step_start + gap_limit * interval_;
-    return back_to_start && row - recording_.steps.back().begin >= shortest_step && goes_on_from(row, last);
+    const bool back_to_start = time_[row] <= step_start + kGapInterval * interval_;
+    return back_to_start && row - recording_.steps.back().begin >= kShortestStep && goes_on_from(row, last);
   }
 
   /// A lone time stamp that is wrong is followed by the old clock; a restarted clock counts on from its start.
   bool goes_on_from(std::size_t row, double old_clock) const {
-    if (row + least_after > time_.size()) return false;
-    for (std::size_t i = row + 1; i < row + least_after; ++i) {
+    if (row + kGoesOnFor > time_.size()) return false;
+    for (std::size_t i = row + 1; i < row + kGoesOnFor; ++i) {
       if (!(time_[i] > time_[i - 1]) || time_[i] >= old_clock) return false;
     }
     return true;
@@ -89,7 +86,7 @@ class Clock {
   void ignore_counter() {
     std::size_t changes = 0;
     for (std::size_t i = 1; i < step_.size(); ++i) changes += step_[i] != step_[i - 1] ? 1U : 0U;
-    if (changes <= 10 || changes * 10 <= step_.size()) return;
+    if (changes <= kMostStepChanges || changes * kRowsPerStepChange <= step_.size()) return;
     recording_.warnings.push_back(fmt::format("column {} changes {} times and was not taken for steps of a recipe",
                                               recording_.location(0, Channel::step).column, changes));
     step_.clear();
@@ -133,10 +130,10 @@ class Clock {
   }
 
   void refuse_irregular() const {
-    if (gaps_.size() <= 20 || gaps_.size() * 1000 <= time_.size()) return;
+    if (gaps_.size() <= kMostGaps || gaps_.size() * kRowsPerGap <= time_.size()) return;
     throw InputError(
-        fmt::format("the clock is irregular: {} intervals are longer than 1.5 times the median of {:.6g} s",
-                    gaps_.size(), interval_),
+        fmt::format("the clock is irregular: {} intervals are longer than {:g} times the median of {:.6g} s",
+                    gaps_.size(), kGapInterval, interval_),
         "resample the trace; where the clock is written too coarsely, give the sampling rate with --rate",
         recording_.location(gaps_.front(), Channel::time));
   }
@@ -187,8 +184,8 @@ std::optional<Sampling> sampling_from(const RawFact& fact) {
                        "abtastfrequenz", "\u91c7\u6837\u9891\u7387", "\u91c7\u6837\u7387"})) {
     sampling.rate = value_of(fact, Quantity::frequency, "Hz").value_or(0);
   } else if (is_one_of(base, {"dt", "interval", "sampleinterval", "samplinginterval", "samplingtimeinterval",
-                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "deltax", "abtastintervall",
-                              "\u91c7\u6837\u95f4\u9694"})) {
+                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "deltax",
+                              "abtastintervall", "\u91c7\u6837\u95f4\u9694"})) {
     sampling.interval = value_of(fact, Quantity::time, "s").value_or(0);
   }
   const double size = sampling.rate + sampling.interval;
@@ -230,7 +227,7 @@ void set_time(FileRecord& recording, const Sampling& sampling) {
 void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
   if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
-    if (std::abs(found / sampling->rate - 1) > 0.01) {
+    if (std::abs(found / sampling->rate - 1) > kSameRate) {
       recording.warnings.push_back(
           fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", sampling->rate, found));
     }
@@ -243,7 +240,7 @@ void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
 
 double typical_interval(const std::vector<double>& time) {
   if (time.size() < 2) return 0;
-  const std::size_t intervals = time.size() - 1, stride = std::max<std::size_t>(1, intervals / 4096);
+  const std::size_t intervals = time.size() - 1, stride = std::max<std::size_t>(1, intervals / kIntervalsForMedian);
   std::vector<double> sample;
   for (std::size_t i = 0; i < intervals; i += stride) {
     if (time[i + 1] > time[i]) sample.push_back(time[i + 1] - time[i]);
@@ -253,7 +250,7 @@ double typical_interval(const std::vector<double>& time) {
 
 double Trace::interval() const {
   if (time.size() < 2) return 0;
-  const double longest = gap_limit * typical_interval(time);
+  const double longest = kGapInterval * typical_interval(time);
   double gaps = 0;
   std::size_t count = 0;
   for (std::size_t i = 1; i < time.size(); ++i) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "limits.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -29,7 +31,8 @@ std::vector<std::string> warnings_beside_declared(const Conditions& used, const 
   std::vector<std::string> warnings;
   const auto compare = [&](const Condition& condition, const std::optional<Declared>& declared, const char* name) {
     if (!declared || !condition.known() || condition.source == kSource) return;
-    const double allowed = std::max(1e-6 * std::abs(declared->value), 2 * declared->uncertainty);
+    const double allowed =
+        std::max(kDeclaredRounding * std::abs(declared->value), kDeclaredWithin * declared->uncertainty);
     if (std::abs(condition.value - declared->value) <= allowed) return;
     warnings.push_back(
         fmt::format("the {} from the {} ({:.4g} in SI units) is used, not that of the instruments file ({:.4g})", name,

@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-// A logger drops a value now and then: one row in a thousand is no loss to a record. Four rows in a row are more than a
-// hiccup, and a phase of the motion may have begun in them.
-constexpr std::size_t rows_per_gap = 1000;
-constexpr std::size_t most_in_a_row = 3;
-
 bool is_usable(double value) {
-  return std::abs(value) < largest_value;
+  return std::abs(value) < kLargestValue;
 }
 
 [[noreturn]] void refuse(const RawTable& table, const std::vector<Column>& used, std::size_t row,
@@ -47,9 +43,9 @@ std::vector<std::size_t> find_gappy_rows(const RawTable& table, const std::vecto
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   if (rows.empty()) return rows;
   const std::size_t all = table.columns[used.front().index].numbers.size();
-  bool isolated = rows.size() * rows_per_gap <= all;
-  for (std::size_t k = most_in_a_row; k < rows.size() && isolated; ++k) {
-    isolated = rows[k] - rows[k - most_in_a_row] > most_in_a_row;
+  bool isolated = rows.size() * kRowsPerLostRow <= all;
+  for (std::size_t k = kMostLostInARow; k < rows.size() && isolated; ++k) {
+    isolated = rows[k] - rows[k - kMostLostInARow] > kMostLostInARow;
   }
   if (!isolated) refuse(table, used, rows.front(), recording);
   return rows;

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 
@@ -97,7 +98,7 @@ std::uint64_t InputFile::line_start(std::uint64_t offset, std::uint64_t end) con
     if (const void* found = std::memchr(buffer.data(), '\n', count)) {
       return at + static_cast<std::uint64_t>(static_cast<const char*>(found) - buffer.data()) + 1;
     }
-    if (at + count > offset + longest_line) refuse_long_line(0);
+    if (at + count > offset + kLongestLine) refuse_long_line(0);
   }
   return end;
 }

@@ -25,12 +25,8 @@ class InputFile {
   std::size_t read(std::uint64_t offset, std::span<char> buffer) const;
 
   /// The first line start at or after `offset` (an offset is a line start when the byte before it ends a line), or
-  /// `end` when there is none before it. Lines longer than `longest_line` are refused with an InputError.
+  /// `end` when there is none before it. Lines longer than kLongestLine are refused with an InputError.
   std::uint64_t line_start(std::uint64_t offset, std::uint64_t end) const;
-
-  /// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is
-  /// found out without holding it.
-  static constexpr std::size_t longest_line = std::size_t{1} << 20;
 
   [[noreturn]] void refuse_long_line(std::size_t line) const;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "input_file.hpp"
+#include "limits.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -40,7 +41,7 @@ class InstrumentsReader {
 
   Json parse() {
     const InputFile file(path_);
-    if (file.size() > InputFile::longest_line)
+    if (file.size() > kLongestLine)
       fail("", "is larger than 1 MB", "name the JSON file that describes the instruments");
     std::string text(static_cast<std::size_t>(file.size()), '\0');
     text.resize(file.read(0, text));

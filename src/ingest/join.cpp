@@ -9,6 +9,7 @@
 
 #include "clock.hpp"
 #include "content_hash.hpp"
+#include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -78,7 +79,7 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
                                 : "the two files were taken to start together");
     return overlap ? as_written : 0;
   }
-  if (found.events < 3) {
+  if (found.events < kFewestBreakAways) {
     run.warnings.push_back(std::string(find ? "the two files show too few break-aways to compare their clocks; "
                                             : "the clocks of the two files were not compared; ") +
                            (overlap ? "the times were taken as written" : "both were taken to start together"));
@@ -90,7 +91,7 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
                   "lag of friction behind velocity too",
                   found.events, found.offset - as_written, found.uncertainty, other.path));
   run.clock_offset_std_error = found.uncertainty;
-  if (found.ambiguity > 0.95) {
+  if (found.ambiguity > kOffsetsAlike) {
     run.warnings.push_back("the stick-slip is so regular that the clock offset may be wrong by whole periods");
   }
   return found.offset;

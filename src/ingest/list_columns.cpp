@@ -8,6 +8,7 @@
 
 #include "column_names.hpp"
 #include "columns.hpp"
+#include "limits.hpp"
 #include "points.hpp"
 #include "reader.hpp"
 #include "tribofit/ingest/file_names.hpp"
@@ -125,7 +126,7 @@ void load_what_can_be(RawTable& table, ColumnListing& listing, int threads) {
 void take_numbers(const RawColumn& column, ListedColumn& listed) {
   listed.count = column.is_text ? column.texts.size() : 0;
   for (const double value : column.numbers) {
-    if (!(std::abs(value) < largest_value)) continue;
+    if (!(std::abs(value) < kLargestValue)) continue;
     listed.lowest = listed.count == 0 ? value : std::min(listed.lowest, value);
     listed.highest = listed.count == 0 ? value : std::max(listed.highest, value);
     ++listed.count;

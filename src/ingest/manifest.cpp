@@ -14,6 +14,7 @@
 
 #include "column_names.hpp"
 #include "csv/text_table.hpp"
+#include "limits.hpp"
 #include "manifest_roles.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -70,7 +71,8 @@ class ManifestReader {
 
   Manifest read() {
     const std::string advice = fmt::format("begin it with file,radius,speed,load; {}", kColumns);
-    text_ = read_text_table(manifest_.path, {1 << 24, "is too large for a manifest", "one row a run is meant", advice});
+    text_ = read_text_table(manifest_.path,
+                            {kLargestManifest, "is too large for a manifest", "one row a run is meant", advice});
     read_header();
     for (std::size_t row = 0; row < text_.rows(); ++row) take_row(row);
     if (manifest_.rows.empty() && manifest_.problems.empty())
@@ -292,8 +294,7 @@ class ManifestReader {
 
 bool same(const Condition& a, const Condition& b) {
   if (!a.known() || !b.known()) return a.known() == b.known();
-  constexpr double kRounding = 1e-9;  // 4 rpm and 0.419 rad/s written out
-  return std::abs(a.value - b.value) <= kRounding * std::abs(a.value);
+  return std::abs(a.value - b.value) <= kConditionRounding * std::abs(a.value);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "column_names.hpp"
+#include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -28,7 +29,6 @@ bool is_bare_number(const std::string& text) {
 }
 
 double condition_in_cell(const std::string& text, Role role, const std::string& column, const std::string& unit) {
-  constexpr double largest_radius = 10;  // m; more is a forgotten unit
   const Quantity quantity = quantity_of(role);
   if (is_bare_number(text) && unit.empty() && role != Role::load) {
     throw InputError(fmt::format("'{}' has no unit", text),
@@ -41,8 +41,10 @@ double condition_in_cell(const std::string& text, Role role, const std::string& 
   } catch (const InputError& error) {
     throw InputError(error.problem().substr(column.size() + 2), error.advice());  // without the name before it
   }
-  if (!(value > 0) || (role == Role::radius && value > largest_radius)) {
-    throw InputError(fmt::format("'{}' {}", text, value > 0 ? "would be more than 10 m" : "is not greater than zero"),
+  if (!(value > 0) || (role == Role::radius && value > kLargestRadius)) {
+    throw InputError(fmt::format("'{}' {}", text,
+                                 value > 0 ? fmt::format("would be more than {:g} m", kLargestRadius)
+                                           : std::string("is not greater than zero")),
                      fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));
   }
   return value;

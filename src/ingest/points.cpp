@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "content_hash.hpp"
+#include "limits.hpp"
 
 namespace tribofit {
 
@@ -32,7 +33,7 @@ bool are_columns_of_points(const Columns& columns) {
 bool is_no_clock(const std::vector<double>& time) {
   std::size_t back = 0;
   for (std::size_t i = 1; i < time.size(); ++i) back += time[i] < time[i - 1] ? 1U : 0U;
-  return 10 * back > time.size();
+  return kIntervalsPerReturn * back > time.size();
 }
 
 void set_points(FileRecord& recording) {

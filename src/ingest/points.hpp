@@ -10,15 +10,11 @@ namespace tribofit {
 
 /// Tables of steady points: rows of friction and sliding velocity that no clock orders.
 
-/// Rows up to which a table without a time is taken for points: people tabulate some ten to a few thousand; more are
-/// samples of a record whose rate must be stated.
-inline constexpr std::size_t kMostTabulated = 5000;
-
 /// Whether these columns are those of points: a friction and a sliding velocity. The velocity of a block (v_b) is one
 /// only where its column is not called after the block.
 bool are_columns_of_points(const Columns& columns);
 
-/// Whether these times go back so often that no clock made them: in more than one interval in ten.
+/// Whether these times go back so often that no clock made them.
 bool is_no_clock(const std::vector<double>& time);
 
 /// Numbers the rows in place of a time, as one step.

@@ -89,7 +89,7 @@ struct RawTable {
   std::vector<RawColumn> columns;  ///< in the order of the file
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;
-  bool is_finite = false;  ///< the reader knows that there is no other than finite numbers below largest_value
+  bool is_finite = false;  ///< the reader knows that there is no other than finite numbers below kLargestValue
   std::optional<RawDefect> first_gap;  ///< the first cell without a number, where the reader can say what it holds
   std::vector<std::string> notes, warnings;
 
@@ -103,11 +103,5 @@ struct RawTable {
   /// Where a column is named, for messages.
   InputLocation heading(std::size_t column) const;
 };
-
-/// Columns of a file; more are no channels of a trace.
-inline constexpr std::size_t most_columns = 4096;
-
-/// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
-inline constexpr double largest_value = 1e100;
 
 }  // namespace tribofit

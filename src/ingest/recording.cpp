@@ -12,6 +12,7 @@
 #include "content_hash.hpp"
 #include "gaps.hpp"
 #include "join.hpp"
+#include "limits.hpp"
 #include "points.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"

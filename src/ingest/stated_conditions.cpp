@@ -7,6 +7,7 @@
 #include <set>
 
 #include "column_names.hpp"
+#include "limits.hpp"
 #include "manifest_roles.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -58,17 +59,17 @@ class Taker {
       note_without_unit(fact, role);
       return;
     }
-    if (role == Role::radius) set(result_.conditions.radius, value_of(fact, Quantity::length, unit), 10);
-    if (role == Role::load) set(result_.conditions.load, force_of(fact, unit), 1e12);
+    if (role == Role::radius) set(result_.conditions.radius, value_of(fact, Quantity::length, unit), kLargestRadius);
+    if (role == Role::load) set(result_.conditions.load, force_of(fact, unit), kLargestLoad);
     if (role != Role::speed) return;
     const auto angular = value_of(fact, Quantity::angular_velocity, unit);
-    set(result_.conditions.speed, angular, 1e6);
+    set(result_.conditions.speed, angular, kLargestSpeed);
     if (!angular && !linear_) linear_ = value_of(fact, Quantity::velocity, unit);
   }
 
   StatedConditions result() {
     const Condition& radius = result_.conditions.radius;
-    if (linear_ && radius.known()) set(result_.conditions.speed, *linear_ / radius.value, 1e6);
+    if (linear_ && radius.known()) set(result_.conditions.speed, *linear_ / radius.value, kLargestSpeed);
     return std::move(result_);
   }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ingest/clock.hpp"
+#include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/linear_algebra.hpp"
@@ -228,7 +229,7 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
       0.35 * plateau.reach);
   if (falls.size() > 1000) falls.resize(1000);
   if (jumps.size() > 1000) jumps.resize(1000);
-  if (falls.size() < 3 || jumps.size() < 3) return {};
+  if (std::min(falls.size(), jumps.size()) < kFewestBreakAways) return {};
 
   const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
   // Friction falls twice a cycle, at break-away and again at re-stick.

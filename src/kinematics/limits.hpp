@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "ingest/limits.hpp"
+
 // The thresholds by which the motion decides, with their reasons and what moves when they change.
 
 namespace tribofit::kinematics {
@@ -22,9 +24,8 @@ inline constexpr double kClearlyFlat = 0.05, kNarrower = 0.25, kNarrowestBand = 
 inline constexpr double kKeepsLength = 0.75, kLongSticks = 1.0 / 3;
 /// Blocks of a plateau: a middle and its two shoulders need as many.
 inline constexpr std::size_t kFewestBlocks = 4;
-/// A plateau has settled, and agrees with what is stated, within this part of its level: what radius and speed are
-/// known to.
-inline constexpr double kSettled = 0.02;
+/// A plateau has settled, and agrees with what is stated, within this part of its level.
+inline constexpr double kSettled = kSpeedKnownTo;
 
 /// Standard deviations of v_r within which its plateau is at zero, and the least where there is no noise, over the
 /// largest excursion: what creep before break-away makes of a rest. Wider: the lowest speed of a programme is a stick.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "health_checks.hpp"
+#include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -80,16 +81,17 @@ struct Gaps {
   double longest = 0;  // [s]
 };
 
-// Intervals longer than 1.6 of the usual one; stretches whose duration is as it should be are not looked into.
+// Stretches whose duration is as it should be are not looked into.
 Gaps gaps_of(std::span<const double> time, double step) {
   constexpr std::size_t length = 64;
+  const double longest = kGapInterval * step, excess = longest - step;
   Gaps gaps;
   for (std::size_t begin = 0; begin + 1 < time.size(); begin += length) {
     const std::size_t end = std::min(time.size() - 1, begin + length);
-    if (time[end] - time[begin] < (static_cast<double>(end - begin) + 0.5) * step) continue;
+    if (time[end] - time[begin] < static_cast<double>(end - begin) * step + excess) continue;
     for (std::size_t i = begin; i < end; ++i) {
       const double d = time[i + 1] - time[i];
-      if (d > 1.6 * step) ++gaps.count;
+      if (d > longest) ++gaps.count;
       gaps.longest = std::max(gaps.longest, d);
     }
   }

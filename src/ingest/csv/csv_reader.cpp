@@ -8,6 +8,7 @@
 #include "dialect.hpp"
 #include "encoding.hpp"
 #include "ingest/column_names.hpp"
+#include "ingest/limits.hpp"
 #include "rows.hpp"
 #include "steps.hpp"
 
@@ -39,7 +40,7 @@ void say_text_rows(const Rows& rows, RawTable& table) {
   if (stray == 0) return;
   std::string note = fmt::format("{} line{} of text or comment dropped, the first is line {}", stray,
                                  stray == 1 ? "" : "s", rows.text.front().line);
-  (stray * 100 > rows.size() ? table.warnings : table.notes).push_back(std::move(note));
+  (stray * kRowsPerStrayLine > rows.size() ? table.warnings : table.notes).push_back(std::move(note));
 }
 
 /// Blocks that have clocks of their own have rows of their own, which may end before the others.
@@ -81,7 +82,7 @@ void load_columns(const InputFile& file, const Dialect& dialect, RawTable& table
 
 /// The file, or itself with CR for the ends of lines where they have nothing else.
 std::shared_ptr<const InputFile> with_lines(std::shared_ptr<const InputFile> file) {
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), 1 << 16)), '\0');
+  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHeadBytes)), '\0');
   head.resize(file->read(0, head));
   const bool lone_cr = head.find('\n') == std::string::npos && head.find('\r') + 1 < head.size();
   return lone_cr ? std::make_shared<const InputFile>(file->path(), '\r') : file;

@@ -10,6 +10,7 @@
 
 #include "encoding.hpp"
 #include "heading.hpp"
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -146,7 +147,7 @@ Layout find_layout(const std::vector<HeadLine>& lines) {
 /// may be a number cut in two, and one sample is a small price for not reading 0.4 where 0.4123 was meant.
 void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dialect) {
   const std::uint64_t size = file.size();
-  const std::size_t length = static_cast<std::size_t>(std::min<std::uint64_t>(size, 1 << 16));
+  const std::size_t length = static_cast<std::size_t>(std::min<std::uint64_t>(size, kTailBytes));
   std::string tail(length, '\0');
   tail.resize(file.read(size - length, tail));
   if (tail.empty() || tail.back() == '\n' || tail.back() == '\r') return;
@@ -175,15 +176,14 @@ void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dial
 /// The cells of rows from the beginning, and of the last one.
 std::vector<std::vector<std::string>> some_rows(const InputFile& file, const std::vector<HeadLine>& lines,
                                                 std::size_t first, const Dialect& dialect) {
-  constexpr std::size_t most = 50;
   std::vector<std::vector<std::string>> rows;
   const auto take = [&](std::string_view line) {
     if (!take_census(line, dialect.separator, dialect.decimal).mostly_numbers()) return false;
     rows.push_back(split_cells(line, dialect.separator));
     return true;
   };
-  for (std::size_t i = first; i < lines.size() && rows.size() < most; ++i) take(lines[i].text);
-  const std::uint64_t length = std::min<std::uint64_t>(file.size(), 1 << 14);
+  for (std::size_t i = first; i < lines.size() && rows.size() < kRowsForBlocks; ++i) take(lines[i].text);
+  const std::uint64_t length = std::min<std::uint64_t>(file.size(), kLastRowBytes);
   std::string tail(static_cast<std::size_t>(length), '\0');
   tail.resize(file.read(dialect.data_end - std::min(dialect.data_end, length), tail));
   const auto last = split_lines(tail, tail.size());
@@ -233,16 +233,16 @@ bool is_number(std::string_view cell, char decimal) {
 
 Dialect find_dialect(const InputFile& file) {
   if (file.size() == 0) throw InputError("is empty", "export the trace again", {file.path(), 0, ""});
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), InputFile::longest_line + 1)), '\0');
+  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kLongestLine + 1)), '\0');
   head.resize(file.read(0, head));
-  if (head.size() > InputFile::longest_line && head.find('\n') == std::string::npos) file.refuse_long_line(1);
+  if (head.size() > kLongestLine && head.find('\n') == std::string::npos) file.refuse_long_line(1);
 
   std::string_view text(head);
   const std::size_t mark = byte_order_mark(text);
   text.remove_prefix(mark);
   if (file.size() > head.size()) text = text.substr(0, text.rfind('\n') + 1);  // whole lines only
-  const auto lines = split_lines(text, 500);
-  const Encoding encoding = guess_encoding(text.substr(0, 1 << 16));
+  const auto lines = split_lines(text, kHeadLines);
+  const Encoding encoding = guess_encoding(text.substr(0, kHeadBytes));
   const Layout layout = find_layout(lines);
 
   Dialect dialect;

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -114,14 +115,14 @@ std::optional<Foreign> find_foreign(std::string_view head) {
   const auto zeros = std::count(start.begin(), start.end(), '\0');
   const bool utf16_mark = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
   if (utf16_mark || (start.size() >= 4 && (start[0] == '\0') != (start[1] == '\0') &&
-                     zeros > static_cast<std::ptrdiff_t>(start.size()) * 2 / 5)) {
+                     static_cast<double>(zeros) > kZerosOfUtf16 * static_cast<double>(start.size()))) {
     return Foreign{"is UTF-16 text (\"Unicode\" in Windows programs)",
                    "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8"};
   }
   const auto control = std::count_if(start.begin(), start.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\x1A';
   });
-  if (zeros > 0 || control * 20 > static_cast<std::ptrdiff_t>(start.size())) {
+  if (zeros > 0 || static_cast<double>(control) > kControlsOfText * static_cast<double>(start.size())) {
     return Foreign{"is a binary file, not a CSV file", "export the channels as text with one row per sample"};
   }
   return std::nullopt;

@@ -14,14 +14,10 @@
 
 #include "decimal.hpp"
 #include "dialect.hpp"
+#include "ingest/limits.hpp"
 #include "ingest/raw_table.hpp"
 
 namespace tribofit {
-namespace {
-
-constexpr std::size_t longest_text = 400;  // bytes of a line of text that are kept
-
-}  // namespace
 
 RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal,
                      bool may_be_short)
@@ -97,7 +93,7 @@ RowParser::Outcome RowParser::parse_carefully(char* line, double* out) {
   const char* first = line;
   while (*first == ' ' || *first == '\t') ++first;
   if (*first == '\0' || *first == '\x1A') return Outcome::blank;
-  text_.assign(first, std::min<std::size_t>(std::strlen(first), longest_text));
+  text_.assign(first, std::min<std::size_t>(std::strlen(first), kLongestText));
   if (*first == '#' || *first == '%' || (first[0] == '/' && first[1] == '/')) return Outcome::text;
   split_.clear();
   try {
@@ -174,7 +170,7 @@ RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out
 
 void RowParser::take(char* cell, const std::string& column, double& out) {
   const bool is_number = *cell != '\0' && to_number(cell, out);
-  if (is_number && std::abs(out) < largest_value) return;
+  if (is_number && std::abs(out) < kLargestValue) return;
   const std::string shown = fmt::format("'{}'", std::string_view(cell).substr(0, 40));
   out = std::numeric_limits<double>::quiet_NaN();
   if (gappy_) return;

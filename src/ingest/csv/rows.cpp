@@ -15,6 +15,7 @@
 #include "fccp.hpp"
 
 #include "ingest/huge_pages.hpp"
+#include "ingest/limits.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/helper_threads.hpp"
@@ -25,7 +26,6 @@ namespace {
 // A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
 // Chunks end where lines do and depend on the file only, not on the number of threads.
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
-constexpr std::size_t most_text = 4096;  // lines of text that are kept; a file of steps has a few for each
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
@@ -182,7 +182,7 @@ class RowReader {
         return;
       }
       ++chunk.text_rows;
-      if (chunk.text.size() < most_text)
+      if (chunk.text.size() < kMostTextLines)
         chunk.text.push_back({chunk.values.front().size(), chunk.lines, parser.text()});
     }
   }
@@ -207,7 +207,7 @@ class RowReader {
       rows_.first_gap->row += before;
     }
     for (const TextLine& text : chunk.text) {
-      if (rows_.text.size() >= most_text) break;
+      if (rows_.text.size() >= kMostTextLines) break;
       rows_.text.push_back({before + text.row, next_line_ + text.line - 1, text.text});
     }
     for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);

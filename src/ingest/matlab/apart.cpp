@@ -21,12 +21,11 @@
 
 #include "ingest/byte_cursor.hpp"
 #include "ingest/byte_writer.hpp"
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 namespace {
-
-constexpr rlim_t longest = 120;  // [s] of processor time
 
 enum class Answer : std::uint8_t { bytes, refused, no_memory };
 
@@ -59,7 +58,7 @@ bool send(int pipe, std::string_view bytes) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
-  const rlimit no_core = {0, 0}, time = {longest, longest + 1};
+  const rlimit no_core = {0, 0}, time = {kLongestMatRead, kLongestMatRead + 1};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_CPU, &time);
   int status = EXIT_FAILURE;

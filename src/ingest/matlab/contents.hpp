@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ingest/input_file.hpp"
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -56,14 +57,9 @@ inline constexpr std::size_t mat_header_bytes = 128;
 unsigned mat_version(std::string_view header);
 bool is_mat_big_endian(std::string_view header);
 
-inline constexpr std::size_t longest_mat_text = 1000;  ///< characters that are kept as a fact
-inline constexpr int deepest_mat_structure = 16;       ///< structures in one another
-inline constexpr std::size_t most_mat_arrays = 65536;  ///< of a file, with the fields of structures
-
-/// Bytes that the values of a file of `size` bytes may take, inflated and as doubles: 128 MB, or 128 times its size. A
-/// recorded signal deflates to a tenth, a constant one to a thousandth of its size; more is made to exhaust memory.
+/// Bytes that the values of a file of `size` bytes may take, inflated and as doubles: 128 MB, or 128 times its size.
 constexpr std::uint64_t most_mat_bytes(std::uint64_t size) {
-  return (size + (std::uint64_t{1} << 20)) * 128;
+  return (size + kMatSizeBeside) * kMostInflated;
 }
 
 }  // namespace tribofit

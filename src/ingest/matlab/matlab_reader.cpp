@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contents.hpp"
+#include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -75,7 +76,7 @@ class Listing {
     const bool by_row = columns > rows;
     const std::uint64_t length = array.elements() == 0 ? 0 : std::max(rows, columns);
     const std::uint64_t sides = length == 0 ? 1 : std::min(rows, columns);
-    if (sources_.size() + sides > most_columns) {
+    if (sources_.size() + sides > kMostColumns) {
       skipped_.push_back(array.name + " (more columns than can be channels)");
       return;
     }

@@ -12,6 +12,7 @@
 #include "byte_stream.hpp"
 #include "contents.hpp"
 #include "ingest/huge_pages.hpp"
+#include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/helper_threads.hpp"
@@ -88,7 +89,7 @@ class Walk {
     const Tag tag = next_tag();
     if (tag.type != element::matrix || tag.is_small)
       stream_.refuse(fmt::format("an element of type {} where an array begins", tag.type));
-    if (arrays_-- == 0) stream_.refuse(fmt::format("more than {} arrays", most_mat_arrays));
+    if (arrays_-- == 0) stream_.refuse(fmt::format("more than {} arrays", kMostMatArrays));
     stream_.expect(tag.size, "an array");
     const std::uint64_t end = stream_.position() + tag.size;
     if (tag.size > 0) {
@@ -129,7 +130,6 @@ class Walk {
   }
 
   void inside(const std::string& field, int depth) {
-    constexpr std::uint64_t longest_name = 4096, most_dimensions = 64;
     const std::string flags = bytes_of_element(next_tag(), 16);
     if (flags.size() < 8) stream_.refuse("an array without flags");
     const auto word = number_at<std::uint32_t>(flags, 0, big_endian_);
@@ -142,16 +142,16 @@ class Walk {
       if (!field.empty()) see_(std::move(array));
       return;
     }
-    const std::string sizes = bytes_of_element(next_tag(), 4 * most_dimensions);
+    const std::string sizes = bytes_of_element(next_tag(), 4 * kMostMatDimensions);
     for (std::size_t at = 0; at + 4 <= sizes.size(); at += 4) {
       const auto size = number_at<std::int32_t>(sizes, at, big_endian_);
       if (size < 0) stream_.refuse(fmt::format("an array of {} rows or columns", size));
       array.sizes.push_back(static_cast<std::uint64_t>(size));
     }
-    const std::string name = bytes_of_element(next_tag(), longest_name);
+    const std::string name = bytes_of_element(next_tag(), kLongestMatName);
     array.name = field.empty() ? name.substr(0, name.find('\0')) : field;
     if (array.name.empty()) return;  // what belongs to objects
-    if (type == array_class::structure && array.elements() == 1 && depth < deepest_mat_structure)
+    if (type == array_class::structure && array.elements() == 1 && depth < kDeepestMatStructure)
       return fields(array.name, depth);
     const bool is_number = type >= array_class::first_number && !is_complex;
     if (is_number || type == array_class::character) return values(std::move(array), type == array_class::character);
@@ -164,11 +164,11 @@ class Walk {
   }
 
   void fields(const std::string& name, int depth) {
-    constexpr std::uint64_t most_bytes = 1 << 20;
     const std::string length = bytes_of_element(next_tag(), 8);
     const auto size = length.size() >= 4 ? number_at<std::int32_t>(length, 0, big_endian_) : 0;
-    if (size <= 0 || size > 4096) stream_.refuse(fmt::format("names of fields of {} bytes", size));
-    const std::string names = bytes_of_element(next_tag(), most_bytes);
+    if (size <= 0 || static_cast<std::uint64_t>(size) > kLongestMatName)
+      stream_.refuse(fmt::format("names of fields of {} bytes", size));
+    const std::string names = bytes_of_element(next_tag(), kMostMatNameBytes);
     for (std::size_t at = 0; at < names.size(); at += static_cast<std::size_t>(size)) {
       const std::string field = names.substr(at, static_cast<std::size_t>(size));
       matrix(name + "." + field.substr(0, field.find('\0')), depth + 1);
@@ -183,7 +183,7 @@ class Walk {
     const std::size_t size = bytes_of(tag.type);
     if (!tag.is_small) stream_.expect(tag.size, "values of " + array.name);
     if (is_text) {
-      if (tag.size <= longest_mat_text) array.text = text_of(bytes_of_element(tag, longest_mat_text), size);
+      if (tag.size <= kLongestMatText) array.text = text_of(bytes_of_element(tag, kLongestMatText), size);
       return see_(std::move(array));
     }
     if (size == 0 || tag.type == element::utf8 || tag.type == element::utf16 || tag.size / size != count ||
@@ -246,7 +246,7 @@ class Version5 : public MatContents {
   }
 
   void describe(const std::function<void(MatArray&&)>& see) override {
-    std::size_t arrays = most_mat_arrays;
+    std::size_t arrays = kMostMatArrays;
     std::uint64_t values = 0, inflated = 0;  // bytes of all variables
     const std::uint64_t most = most_mat_bytes(file_->size());
     for (std::size_t k = 0; k < variables_.size(); ++k) {
@@ -305,7 +305,7 @@ class Version5 : public MatContents {
             std::vector<MatValues>& values) const {
     const Variable& place = variables_[variable];
     ByteStream stream(*file_, place.begin, place.end, place.compressed, most_mat_bytes(file_->size()));
-    std::size_t arrays = most_mat_arrays;
+    std::size_t arrays = kMostMatArrays;
     const auto wants = [&](const MatArray& array) -> std::vector<double>* {
       for (const std::size_t i : which) {
         if (names[i] == array.name && values[i].numbers.empty()) return &values[i].numbers;
@@ -330,7 +330,7 @@ class Version5 : public MatContents {
         place.refuse(fmt::format("an element of type {} where a variable begins", type));
       const std::uint64_t left = file_->size() - at - tag.size();
       if (size > left) place.refuse(fmt::format("a variable of {} bytes, of which {} are there", size, left));
-      if (variables_.size() == most_mat_arrays) place.refuse(fmt::format("more than {} variables", most_mat_arrays));
+      if (variables_.size() == kMostMatArrays) place.refuse(fmt::format("more than {} variables", kMostMatArrays));
       const std::uint64_t end = at + tag.size() + size;
       variables_.push_back({compressed ? at + tag.size() : at, end, compressed});
       at = end;

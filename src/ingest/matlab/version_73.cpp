@@ -10,6 +10,7 @@
 #include "contents.hpp"
 #include "ingest/byte_cursor.hpp"
 #include "ingest/byte_writer.hpp"
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -174,12 +175,12 @@ class Version73 : public MatContents {
   void describe_here(const std::function<void(MatArray&&)>& see) {
     const Opened mat(*file_);
     bytes_ = 0;
-    for (std::size_t count = 0; count < most_mat_arrays; ++count) {
+    for (std::size_t count = 0; count < kMostMatArrays; ++count) {
       const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
       if (!variable) return;
       if (variable->name != nullptr) describe(mat, *variable, variable->name, 0, see);
     }
-    throw InputError(fmt::format("holds more than {} variables", most_mat_arrays), "save those that are needed",
+    throw InputError(fmt::format("holds more than {} variables", kMostMatArrays), "save those that are needed",
                      {file_->path(), 0, ""});
   }
 
@@ -230,7 +231,7 @@ class Version73 : public MatContents {
     MatArray array;
     array.name = name;
     for (int k = 0; k < v.rank; ++k) array.sizes.push_back(v.dims[k]);
-    if (v.class_type == MAT_C_STRUCT && array.elements() == 1 && depth < deepest_mat_structure) {
+    if (v.class_type == MAT_C_STRUCT && array.elements() == 1 && depth < kDeepestMatStructure) {
       const unsigned count = Mat_VarGetNumberOfFields(&v);
       char* const* names = Mat_VarGetStructFieldnames(&v);
       for (unsigned k = 0; k < count; ++k) {
@@ -247,7 +248,7 @@ class Version73 : public MatContents {
     } else if (!array.is_text) {
       array.kind = kind_of(v);
     }
-    const bool is_short = array.elements() > 0 && array.elements() <= (array.is_text ? longest_mat_text : 1);
+    const bool is_short = array.elements() > 0 && array.elements() <= (array.is_text ? kLongestMatText : 1);
     if (array.kind.empty() && is_short) take_fact(mat, v, array);
     see(std::move(array));
   }

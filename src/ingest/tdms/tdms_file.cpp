@@ -12,6 +12,7 @@
 
 #include "active_objects.hpp"
 #include "ingest/byte_cursor.hpp"
+#include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -84,9 +85,6 @@ namespace contents {  // of a segment: bits of its mask
 constexpr std::uint32_t metadata = 2, new_list = 4, raw_data = 8, interleaved = 32, big_endian = 64, daqmx = 128;
 }
 constexpr std::size_t lead_bytes = 28;
-constexpr std::size_t most_properties = 4096;  // of an object
-constexpr std::size_t most_objects = 65536;    // of the file: groups and channels
-constexpr std::size_t most_pieces = 4 << 20;   // of all channels, which then take 200 MB
 constexpr std::uint32_t no_values = 0xFFFFFFFF, as_before = 0;
 constexpr std::array<std::uint32_t, 2> daqmx_index = {0x1269, 0x126A};
 
@@ -159,8 +157,8 @@ class Parser {
     const auto [known, is_new] = object_of_.emplace(path, objects_.size());
     const std::size_t k = known->second;
     if (is_new) {
-      if (objects_.size() == most_objects)
-        refuse(at(), fmt::format("more than {} groups and channels", most_objects), "export fewer channels");
+      if (objects_.size() == kMostObjects)
+        refuse(at(), fmt::format("more than {} groups and channels", kMostObjects), "export fewer channels");
       objects_.push_back({path, names_of(path), 0, 0, {}, {}});
       indices_.emplace_back();
     }
@@ -230,8 +228,8 @@ class Parser {
       object.properties[known->second] = std::move(property);
       return;
     }
-    if (object.properties.size() >= most_properties) {
-      refuse(type_at, fmt::format("more than {} properties of {}", most_properties, object.path));
+    if (object.properties.size() >= kMostProperties) {
+      refuse(type_at, fmt::format("more than {} properties of {}", kMostProperties, object.path));
     }
     object.properties.push_back(std::move(property));
   }
@@ -295,8 +293,8 @@ class Parser {
       piece.chunks = 1;
     }
     if (!object.pieces.empty() && goes_on(object.pieces.back(), piece)) return;
-    if (++pieces_ > most_pieces) {
-      refuse(piece.begin, fmt::format("the values are in more than {} pieces", most_pieces),
+    if (++pieces_ > kMostPieces) {
+      refuse(piece.begin, fmt::format("the values are in more than {} pieces", kMostPieces),
              "defragment the file in LabVIEW, or export it as CSV");
     }
     object.pieces.push_back(piece);

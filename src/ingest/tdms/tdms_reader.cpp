@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "ingest/limits.hpp"
 #include "tdms_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -121,7 +122,7 @@ RawTable read_tdms(std::shared_ptr<const InputFile> file) {
   for (TdmsObject& object : read_tdms_objects(*file, table.notes)) {
     if (object.names.size() < 2) add_facts(object, table);
     if (object.names.size() < 2 || object.type == 0) continue;
-    if (channels->size() == most_columns) {
+    if (channels->size() == kMostColumns) {
       ++more;
       continue;
     }
@@ -137,7 +138,7 @@ RawTable read_tdms(std::shared_ptr<const InputFile> file) {
     table.columns.push_back(column_of(object, at->second));
     channels->push_back(std::move(object));
   }
-  if (more > 0) table.notes.push_back(fmt::format("not read: {} channels beyond the first {}", more, most_columns));
+  if (more > 0) table.notes.push_back(fmt::format("not read: {} channels beyond the first {}", more, kMostColumns));
   if (channels->empty()) {
     throw InputError("holds no channel with values", "check that the export was complete", {table.path, 0, ""});
   }

@@ -12,6 +12,7 @@
 
 #include "ingest/column_names.hpp"
 #include "ingest/content_hash.hpp"
+#include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -197,7 +198,7 @@ class File {
     const std::string why = f.is_complex()              ? "complex"
                             : depends_on == "frequency" ? "a spectrum"
                             : !depends_on.empty()       ? "a function of " + depends_on + ", not of time"
-                            : columns_ == most_columns  ? "more columns than can be channels"
+                            : columns_ == kMostColumns  ? "more columns than can be channels"
                                                         : "";
     if (!why.empty()) {
       skipped_.push_back(fmt::format("'{}' ({})", f.title, why));

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// The thresholds by which files are read, with their reasons and what moves when they change.
+
+namespace tribofit {
+
+// ---- clocks
+
+/// Interval over the usual one, from which a row is missing: halfway between none and one. Larger: lone rows that are
+/// lost shift all later times of a record without a clock; smaller: the jitter of a clock cuts a record into steps.
+inline constexpr double kGapInterval = 1.5;
+/// Intervals whose median is the usual one: more cost time and do not move it.
+inline constexpr std::size_t kIntervalsForMedian = 4096;
+/// Gaps in all, and one in so many rows, from which the clock is irregular: a recording that pauses has a few. Fewer
+/// allowed: such a recording is refused; more: a clock written too coarsely becomes hundreds of steps.
+inline constexpr std::size_t kMostGaps = 20, kRowsPerGap = 1000;
+/// Rows before a clock may restart without a step column that says so, and rows for which it must go on from there: a
+/// lone wrong time stamp is followed by the old clock. Fewer: wrong time stamps pass for steps.
+inline constexpr std::size_t kShortestStep = 10, kGoesOnFor = 5;
+/// Changes of a column called "step", and of so many rows one, from which it counts samples and not steps of a recipe.
+inline constexpr std::size_t kMostStepChanges = 10, kRowsPerStepChange = 10;
+/// Stated sampling rate over that of the time column: a nominal rate is rounded by less.
+inline constexpr double kSameRate = 0.01;
+/// Break-aways that two clocks are compared by: two coincide at some offset whatever they are.
+inline constexpr std::size_t kFewestBreakAways = 3;
+/// What the best offset leaves of friction over what the next best one leaves, from which nothing distinguishes them:
+/// records of perfectly regular stick-slip have a ratio of one.
+inline constexpr double kOffsetsAlike = 0.95;
+
+// ---- rows that are left out
+
+/// A logger drops a value now and then: one row in so many is no loss to a record. More in a row are more than a
+/// hiccup, and a phase of the motion may have begun in them.
+inline constexpr std::size_t kRowsPerLostRow = 1000, kMostLostInARow = 3;
+/// Lines of text between rows, one in so many rows, from which dropping them is worth a warning.
+inline constexpr std::size_t kRowsPerStrayLine = 100;
+
+// ---- tables of points
+
+/// Rows up to which a table without a time is taken for points: people tabulate some ten to a few thousand; more are
+/// samples of a record whose rate must be stated.
+inline constexpr std::size_t kMostTabulated = 5000;
+/// Of so many intervals one that goes back shows that no clock made the times: a clock restarts once a step.
+inline constexpr std::size_t kIntervalsPerReturn = 10;
+
+// ---- conditions
+
+/// What radius and speed of a machine are known to: a speed stated and one recorded differ by as much where both are
+/// right. Smaller: a rounded nominal speed contradicts its column.
+inline constexpr double kSpeedKnownTo = 0.02;
+/// The same of a load: dead weights and springs are known less well, and a load channel has a zero of its own.
+inline constexpr double kLoadKnownTo = 0.1;
+/// Rounding of a value that is declared in one place and stated in another, and standard uncertainties of the declared
+/// one within which both are the same.
+inline constexpr double kDeclaredRounding = 1e-6, kDeclaredWithin = 2;
+/// Rounding of one condition in two units (4 rpm, 0.419 rad/s written out).
+inline constexpr double kConditionRounding = 1e-9;
+/// Radius of a contact [m]: smaller than an atom, or a forgotten unit.
+inline constexpr double kSmallestRadius = 1e-9, kLargestRadius = 10;
+/// Speed [rad/s] and load [N] beyond which the header of a file states something else.
+inline constexpr double kLargestSpeed = 1e6, kLargestLoad = 1e12;
+/// Load [N] that friction can be divided by.
+inline constexpr double kSmallestLoad = 1e-12;
+/// Coefficient of friction beyond any dry contact: the column is a force.
+inline constexpr double kLargestCoefficient = 5;
+/// Range of an angle over one turn, up to which it wraps: rounding, no more.
+inline constexpr double kOneTurn = 1.001;
+
+// ---- text files
+
+/// Lines at the head of a file among which its form is looked for, and rows by which blocks of columns are found: a
+/// preamble is some ten to a few hundred lines.
+inline constexpr std::size_t kHeadLines = 500, kRowsForBlocks = 50;
+/// Bytes of the head that show its encoding and how its lines end, and bytes of the tail that hold its last lines.
+inline constexpr std::size_t kHeadBytes = std::size_t{1} << 16, kTailBytes = std::size_t{1} << 16,
+                             kLastRowBytes = std::size_t{1} << 14;
+/// Part of zero bytes beyond which text is UTF-16 (half of it is zeros where the letters are Latin), and of control
+/// characters beyond which it is no text.
+inline constexpr double kZerosOfUtf16 = 0.4, kControlsOfText = 0.05;
+/// Bytes of a line of text that are kept, and lines of it: a file of steps has a few for each.
+inline constexpr std::size_t kLongestText = 400, kMostTextLines = 4096;
+
+// ---- what is refused before it takes all memory; a larger limit reads more of what is damaged or made to do harm
+
+/// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
+inline constexpr double kLargestValue = 1e100;
+/// Columns of a file; more are no channels of a trace.
+inline constexpr std::size_t kMostColumns = 4096;
+/// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is found
+/// out without holding it. The same of a JSON file that people write, and 16 times as much of a manifest.
+inline constexpr std::size_t kLongestLine = std::size_t{1} << 20, kLargestManifest = 16 * kLongestLine;
+/// TDMS: properties of an object, objects (groups and channels) of a file, and pieces of all channels, which then take
+/// 200 MB.
+inline constexpr std::size_t kMostProperties = 4096, kMostObjects = 65536, kMostPieces = std::size_t{4} << 20;
+/// MATLAB: characters that are kept as a fact, structures in one another, and arrays of a file with the fields of
+/// structures; bytes of a name and of all names of a structure, and dimensions of an array.
+inline constexpr std::size_t kLongestMatText = 1000, kMostMatArrays = 65536;
+inline constexpr int kDeepestMatStructure = 16;
+inline constexpr std::uint64_t kLongestMatName = 4096, kMostMatNameBytes = std::uint64_t{1} << 20,
+                               kMostMatDimensions = 64;
+/// Bytes that the values of a MATLAB file may take, inflated and as doubles, over its size, which counts as a megabyte
+/// more. A recorded signal deflates to a tenth, a constant one to a thousandth of its size.
+inline constexpr std::uint64_t kMostInflated = 128, kMatSizeBeside = std::uint64_t{1} << 20;
+/// [s] of processor time that the library of version 7.3 may take for a file: a damaged one can keep it busy for ever.
+inline constexpr unsigned kLongestMatRead = 120;
+
+}  // namespace tribofit
