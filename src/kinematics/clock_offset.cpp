@@ -19,12 +19,8 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
-namespace tribofit {
+namespace tribofit::kinematics {
 namespace {
-
-constexpr std::size_t kEnough = 20000;  ///< samples for a quantile
-constexpr double kScanStep = 1;         ///< of the width of the minimum: it is not stepped over
-constexpr std::size_t kScanned = 8000;  ///< samples of a scan: some dozens in every slip
 
 /// The velocity most samples have, and how far slip takes it away from that.
 struct Plateau {
@@ -32,8 +28,9 @@ struct Plateau {
 };
 
 Plateau find_plateau(const std::vector<double>& velocity) {
-  const double low = quantile(thinned(velocity, kEnough), 0.002), high = quantile(thinned(velocity, kEnough), 0.998);
-  std::array<std::size_t, 100> bins{};
+  const double low = quantile(thinned(velocity, kEnough), kSpikesOfVelocity),
+               high = quantile(thinned(velocity, kEnough), 1 - kSpikesOfVelocity);
+  std::array<std::size_t, kVelocityBins> bins{};
   const double width = (high - low) / static_cast<double>(bins.size());
   if (!(width > 0)) return {low, 0};
   for (const double v : velocity) {
@@ -88,7 +85,10 @@ std::vector<Candidate> coincidences(const std::vector<double>& a, const std::vec
   std::stable_sort(windows.begin(), windows.end(), [](const auto& x, const auto& y) { return x.support > y.support; });
   std::vector<Candidate> best;
   for (const Candidate& window : windows) {
-    if (best.size() == 8 || (!best.empty() && 10 * window.support < 6 * best.front().support)) break;
+    if (best.size() == kMostOffsets) break;
+    if (!best.empty() &&
+        static_cast<double>(window.support) < kFewestOfBest * static_cast<double>(best.front().support))
+      break;
     const bool is_new = std::all_of(best.begin(), best.end(),
                                     [&](const Candidate& c) { return std::abs(c.offset - window.offset) > apart; });
     if (is_new) best.push_back(window);
@@ -109,8 +109,8 @@ class ForceBalance {
     for (const double v : velocity) mean += v / static_cast<double>(n);
     motion_.resize(n);
     double x = 0;
-    // The acceleration over a millisecond on either side: noise averages out, the jump at re-stick stays sharp enough.
-    const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(1e-3 / typical_interval(velocity_time)));
+    const auto half =
+        std::max<std::size_t>(1, static_cast<std::size_t>(kAccelerationOver / typical_interval(velocity_time)));
     width_ = static_cast<double>(half) * typical_interval(velocity_time);
     for (std::size_t i = 0; i < n; ++i) {
       if (i > 0) x += ((velocity[i] + velocity[i - 1]) / 2 - mean) * (velocity_time[i] - velocity_time[i - 1]);
@@ -149,7 +149,7 @@ class ForceBalance {
       samples += 1;
     }
     const double variance = squares - sum * sum / samples;
-    if (samples < 20 || !(variance > 0)) return 1;
+    if (samples < static_cast<double>(kFewestBalanced) || !(variance > 0)) return 1;
     const Eigen::Matrix<double, count, 1> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
     const Eigen::Matrix<double, count, count> scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     const Eigen::VectorXd scaled_right = scale.asDiagonal() * right;
@@ -166,7 +166,7 @@ class ForceBalance {
     const auto cost = [&](double offset) { return (*this)(offset, begin, end, stride); };
     double best = start, least = std::numeric_limits<double>::infinity();
     // The minimum is as narrow as the jump of friction at re-stick, over which the acceleration is smeared.
-    const int steps = std::max(40, static_cast<int>(std::ceil(2 * reach / (kScanStep * width_))));
+    const int steps = static_cast<int>(std::max(kFewestScanSteps, std::ceil(2 * reach / (kScanStep * width_))));
     for (int i = 0; i <= steps; ++i) {
       const double offset = start + reach * (2.0 * i / steps - 1);
       if (const double c = cost(offset); c < least) {
@@ -202,10 +202,8 @@ void refuse_strangers(const std::vector<double>& falls, const std::vector<double
     ++shared;
     matched += within(falls, at - width, at + width) > 0 ? 1U : 0U;
   }
-  const bool belong =
-      static_cast<double>(matched) >= kinematics::kFewestMatched * static_cast<double>(shared) && shared > 1;
-  const bool balances = unbalanced < kinematics::kMostUnbalanced &&
-                        (unbalanced < kinematics::kBalanced || ambiguity < kinematics::kAmbiguous);
+  const bool belong = static_cast<double>(matched) >= kFewestMatched * static_cast<double>(shared) && shared > 1;
+  const bool balances = unbalanced < kMostUnbalanced && (unbalanced < kBalanced || ambiguity < kAmbiguous);
   if (belong && balances) return;
   throw InputError(
       fmt::format("the two records are not of one run: {} of {} break-aways coincide, and the motion leaves "
@@ -215,36 +213,42 @@ void refuse_strangers(const std::vector<double>& falls, const std::vector<double
 }
 
 }  // namespace
+}  // namespace tribofit::kinematics
+
+namespace tribofit {
 
 ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, const std::vector<double>& friction,
                                   const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
-  const double low = quantile(thinned(friction, kEnough), 0.05), high = quantile(thinned(friction, kEnough), 0.95);
+  using namespace kinematics;
+  const double low = quantile(thinned(friction, kEnough), kEndsOfFriction),
+               high = quantile(thinned(friction, kEnough), 1 - kEndsOfFriction);
   const Plateau plateau = find_plateau(velocity);
   if (!(high > low) || !(plateau.reach > 0)) return {};
   auto falls = upward_crossings(
-      friction_time, [&](std::size_t i) { return -friction[i]; }, -(low + 0.7 * (high - low)),
-      -(low + 0.45 * (high - low)));
+      friction_time, [&](std::size_t i) { return -friction[i]; }, -(low + kFallFrom * (high - low)),
+      -(low + kFallTo * (high - low)));
   auto jumps = upward_crossings(
-      velocity_time, [&](std::size_t i) { return std::abs(velocity[i] - plateau.velocity); }, 0.1 * plateau.reach,
-      0.35 * plateau.reach);
-  if (falls.size() > 1000) falls.resize(1000);
-  if (jumps.size() > 1000) jumps.resize(1000);
+      velocity_time, [&](std::size_t i) { return std::abs(velocity[i] - plateau.velocity); }, kRiseFrom * plateau.reach,
+      kRiseTo * plateau.reach);
+  if (falls.size() > kMostBreakAways) falls.resize(kMostBreakAways);
+  if (jumps.size() > kMostBreakAways) jumps.resize(kMostBreakAways);
   if (std::min(falls.size(), jumps.size()) < kFewestBreakAways) return {};
 
   const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
   // Friction falls twice a cycle, at break-away and again at re-stick.
   const double period = median_interval(jumps);
-  auto candidates = coincidences(falls, jumps, std::max(3 * interval, 0.05 * period), 0.3 * period);
+  const double width = std::max(kCoincideSamples * interval, kCoincidePart * period);
+  auto candidates = coincidences(falls, jumps, width, kOffsetsApart * period);
   const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
   // Instruments started by one trigger share their clock.
   if (!candidates.empty()) candidates.push_back({0, candidates.front().support});
   const std::size_t n = friction.size(), coarse = std::max<std::size_t>(1, n / kScanned);
   // Either of these may have been matched, and both lag behind the jump.
-  const double reach = std::max(4 * interval, 0.25 * period);
+  const double reach = std::max(kReachSamples * interval, kReachPart * period);
   double best = 0, matched = 0, least = std::numeric_limits<double>::infinity(), second = least;
   std::size_t support = 0;
   for (const Candidate& candidate : candidates) {
-    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, interval / 4);
+    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, kFoundInScan * interval);
     const double cost = unbalanced(offset, 0, n, coarse) / static_cast<double>(candidate.support);
     second = std::min(second, std::max(least, cost));
     if (cost < least) {
@@ -254,19 +258,18 @@ ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, cons
       support = candidate.support;
     }
   }
-  refuse_strangers(falls, jumps, matched, std::max(3 * interval, 0.05 * period), unbalanced(best, 0, n, coarse),
-                   least / second);
+  refuse_strangers(falls, jumps, matched, width, unbalanced(best, 0, n, coarse), least / second);
   ClockOffset result;
   result.events = support;
   result.ambiguity = candidates.size() > 1 ? least / second : 0;
-  const std::size_t fine = std::max<std::size_t>(1, n / 400000);
-  result.offset = unbalanced.minimise(best, 4 * interval, 0, n, fine, interval / 50);
+  const std::size_t fine = std::max<std::size_t>(1, n / kSearched);
+  result.offset = unbalanced.minimise(best, kSearchReach * interval, 0, n, fine, kFound * interval);
   // The same from contiguous parts: their spread is what wanders from cycle to cycle.
-  constexpr std::size_t parts = 6;
+  constexpr std::size_t parts = kPartsOfRecord;
   double squares = 0;
   for (std::size_t i = 0; i < parts; ++i) {
-    const double part =
-        unbalanced.minimise(result.offset, 8 * interval, i * n / parts, (i + 1) * n / parts, fine, interval / 20);
+    const double part = unbalanced.minimise(result.offset, kSearchReachOfPart * interval, i * n / parts,
+                                            (i + 1) * n / parts, fine, kFoundInPart * interval);
     squares += (part - result.offset) * (part - result.offset);
   }
   result.uncertainty = std::sqrt(squares / (parts * (parts - 1.0)));

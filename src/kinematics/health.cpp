@@ -46,7 +46,7 @@ struct Band {
 // Stick-slip falls with the first power of frequency in friction (it jumps) and the second in velocity (it has kinks),
 // a sensor of second order adds two. What falls faster over an octave, while still above its floor, was low-passed.
 void find_corner(const Spectrum& spectrum, double floor, Band& band) {
-  constexpr double third_of_octave = 1.259921, steep = 4.5;
+  constexpr double third_of_octave = 1.259921;
   std::vector<double> frequency, amplitude;
   for (double k = 4; k * third_of_octave < static_cast<double>(spectrum.amplitude.size()); k *= third_of_octave) {
     const auto begin = static_cast<std::size_t>(k), end = static_cast<std::size_t>(k * third_of_octave) + 1;
@@ -56,20 +56,20 @@ void find_corner(const Spectrum& spectrum, double floor, Band& band) {
   }
   double before = 0;
   for (std::size_t i = 0; i + 3 < amplitude.size(); ++i) {
-    if (amplitude[i + 3] < 3 * floor) break;
+    if (amplitude[i + 3] < kSlopeOverNoise * floor) break;
     const double order = std::log2(amplitude[i] / amplitude[i + 3]);
-    if (std::min(order, before) > steep && band.corner == 0) band.corner = frequency[i];
+    if (std::min(order, before) > kSteepFall && band.corner == 0) band.corner = frequency[i];
     if (band.corner > 0) band.order = std::max(band.order, order);
     before = order;
   }
 }
 
-// Content reaches up to where the smoothed spectrum comes within a factor of two of the noise floor (upper quarter).
+// Content reaches up to where the smoothed spectrum comes near the noise floor, that of the upper quarter.
 Band band_of(std::span<const double> signal, double step) {
   const Spectrum spectrum = averaged_spectrum(signal, step);
   Band band;
   const std::size_t n = spectrum.amplitude.size();
-  if (n < 64) return band;
+  if (n < kFewestBins) return band;
   const auto power_between = [&](std::size_t from, std::size_t to) {
     std::vector<double> part(spectrum.amplitude.begin() + static_cast<std::ptrdiff_t>(from),
                              spectrum.amplitude.begin() + static_cast<std::ptrdiff_t>(to));
@@ -77,15 +77,15 @@ Band band_of(std::span<const double> signal, double step) {
   };
   const double floor = power_between(3 * n / 4, n - 1);
   const double last = power_between(15 * n / 16, n - 1), third = power_between(n / 2, n / 2 + n / 16);
-  band.filtered = last < 0.1 * third;
+  band.filtered = last < kFilteredEnd * third;
   band.floor = floor / *std::max_element(spectrum.amplitude.begin() + 1, spectrum.amplitude.end());
   std::size_t upper = 1;
   for (std::size_t k = 2; k + 2 < n; ++k) {
     const double smooth = (spectrum.amplitude[k - 2] + spectrum.amplitude[k - 1] + spectrum.amplitude[k] +
                            spectrum.amplitude[k + 1] + spectrum.amplitude[k + 2]) /
                           5;
-    if (smooth > 2 * floor) upper = k;
-    if (k > 4 * upper + 16) break;  // a lone line far above is not content
+    if (smooth > kContentOverNoise * floor) upper = k;
+    if (k > kLoneLineAbove * upper + kLoneLineBins) break;
   }
   band.upper = static_cast<double>(upper) * spectrum.bin_width;
   find_corner(spectrum, floor, band);
@@ -115,9 +115,10 @@ std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double st
     sticks.push_back(static_cast<double>(plateaus.runs[k].size()));
     if (k > 0) slips.push_back(static_cast<double>(plateaus.runs[k].begin - plateaus.runs[k - 1].end));
   }
-  if (slips.empty()) return 4;
+  if (slips.empty()) return static_cast<std::size_t>(kShortestDelay);
   const double shorter = std::min(median(std::move(sticks)), median(std::move(slips))) * static_cast<double>(factor);
-  return static_cast<std::size_t>(std::clamp(std::min(kDelayReach * shorter, kLongestWindow / step), 4.0, 2000.0));
+  return static_cast<std::size_t>(
+      std::clamp(std::min(kDelayReach * shorter, kLongestWindow / step), kShortestDelay, kLongestDelay));
 }
 
 /// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
@@ -166,7 +167,7 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
         "the plateau falls faster towards break-away (as a high-pass: {:.3f} Hz in its first half, "
         "{:.3f} Hz in its second): creep of the contact, no high-pass",
         estimate.first_half, estimate.second_half);
-  } else if (estimate.plateaus >= 3) {
+  } else if (estimate.plateaus >= kFewestForMedian) {
     item.message =
         fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +/- {:.4f} Hz ({} plateaus)",
                     estimate.corner, estimate.std_error, estimate.plateaus);
@@ -226,7 +227,7 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (low == 0 && other == 0) return item;
   item.status = Status::warning;
   item.message += ": what is faster than the filter is not in the data";
-  const bool differ = low == 0 || other == 0 || std::max(low, other) > 1.5 * std::min(low, other);
+  const bool differ = low == 0 || other == 0 || std::max(low, other) > kFiltersDiffer * std::min(low, other);
   if (!velocity.empty() && differ) {
     item.message += "; the channels have different filters; the lag between them looks like memory";
   }
@@ -237,16 +238,17 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   HealthItem item{health_check::kChannelDelay, Status::ok, "no re-stick to compare the channels at"};
   const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
   const std::size_t n = v.size();
-  const double edge = 0.05 * plateaus.depth;
+  const double edge = kEdgeOfRest * plateaus.depth;
   const std::size_t half = delay_window(plateaus, factor, motion.step);
-  const double furthest = 0.25 * std::clamp(kLongestWindow / motion.step, 4.0, 2000.0);  // that rest is from the edge
+  const double furthest = kDelayReach * std::clamp(kLongestWindow / motion.step, kShortestDelay,
+                                                   kLongestDelay);  // that rest is from the edge
   std::vector<double> jump(2 * half, 0.0), single(2 * half);
   std::vector<double> times, delays;  // of single slips
   std::size_t used = 0;
   for (const StickPlateau& run : plateaus.runs) {
     std::size_t i = std::min(run.inner_begin() * factor, n - 1);
     while (i > 0 && std::abs(v[i] - motion.plateau_velocity) < edge) --i;
-    if (i < half + 1 || i + half + 1 >= n || used >= 400) continue;
+    if (i < half + 1 || i + half + 1 >= n || used >= kMostDelays) continue;
     const double sign = v[i] > motion.plateau_velocity ? 1 : -1;
     // The velocity still needs edge/|dv/dt| to reach zero.
     const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
@@ -260,7 +262,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
                      static_cast<double>(std::min_element(single.begin(), single.end()) - single.begin()));
     ++used;
   }
-  if (used < 3) return item;
+  if (used < kFewestForMedian) return item;
   const ClockDrift drift = clock_drift(times, delays);
   if (std::abs(drift.gained) > std::max(kDriftSamples * motion.step, kSignificance * drift.std_error)) {
     item.status = Status::problem;
@@ -276,7 +278,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   for (double j : jump) squares += j * j;
   squares -= *sharpest * *sharpest;
   const double spread = std::sqrt(squares / static_cast<double>(jump.size() - 1));
-  if (-*sharpest < 8 * spread) {
+  if (-*sharpest < kClearJump * spread) {
     item.message = fmt::format(
         "friction does not jump at re-stick ({} slips): no statement on a delay between the channels", used);
     return item;
@@ -284,7 +286,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   const double delay = motion.step * (static_cast<double>(sharpest - jump.begin()) - static_cast<double>(half) + 0.5);
   item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)",
                              1e3 * std::abs(delay), delay >= 0 ? "after" : "before", used);
-  if (std::abs(delay) > std::max(3e-4, 2.5 * motion.step)) item.status = Status::warning;
+  if (std::abs(delay) > std::max(kDelayWarned, kDelayWarnedSamples * motion.step)) item.status = Status::warning;
   return item;
 }
 
@@ -306,7 +308,7 @@ HealthItem check_revolutions(const Motion& motion) {
   }
   const double revolutions = std::abs(angle) / (2 * std::numbers::pi);
   item.message = fmt::format("{:.2f} revolutions recorded", revolutions);
-  if (revolutions < 2) {
+  if (revolutions < kRevolutionsOfAngle) {
     item.status = Status::warning;
     item.message += ": effects of the disc angle need two";
   }
@@ -351,7 +353,7 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
     item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
     const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;
     if (disc != 0) item.message += fmt::format(": {:+.1f} %", 100 * error);
-    if (std::abs(error) > kSettled) item.status = std::abs(error) > 0.2 ? Status::problem : Status::warning;
+    if (std::abs(error) > kSettled) item.status = std::abs(error) > kFarFromDisc ? Status::problem : Status::warning;
   };
   if (recorded) {
     compare(recorded->block, recorded->disc, "the recorded speed times the radius");

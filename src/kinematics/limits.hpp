@@ -8,6 +8,12 @@
 
 namespace tribofit::kinematics {
 
+/// Samples without which there is nothing to look at, and cycles, slips or plateaus whose median leaves one out that
+/// is wrong.
+inline constexpr std::size_t kFewestSamples = 16, kFewestForMedian = 3;
+/// Revolutions that an effect of the disc angle needs: what it does in one, a drift does too.
+inline constexpr double kRevolutionsOfAngle = 2;
+
 // ---- plateaus of stick
 
 /// How far a stretch may be from the level, over the largest excursion. Wider: slow slips count as stick; narrower:
@@ -32,8 +38,49 @@ inline constexpr double kSettled = kSpeedKnownTo;
 inline constexpr double kRestNoise = 3, kRestDepth = 1e-3;
 /// A plateau off zero is rest with a wrong zero, or with creep, where a spring loads it: plateaus that must show it,
 /// and the rise of friction over them, over its range. In slow sliding friction stays or wanders.
-inline constexpr std::size_t kFewestLoadings = 3;
+inline constexpr std::size_t kFewestLoadings = kFewestForMedian;
 inline constexpr double kLeastLoading = 0.3;
+
+/// Windows in which noise is looked for before it is known where the record rests, and their samples, a quarter of the
+/// record at most: a parabola follows any motion over so few.
+inline constexpr std::size_t kNoiseWindows = 64, kShortestWindow = 16, kLongestWindowOfNoise = 64;
+/// Part of the windows that are quiet where sticks last a dozen samples, and their noise over the median below which
+/// they are sticks and not chance.
+inline constexpr double kQuietWindows = 0.1, kQuietNoise = 0.1;
+/// Of the disc's speed, from which what moves with it is at rest on it, however wrong its gain; standard deviations of
+/// the noise by which a block at one speed is not at zero, and so carried.
+inline constexpr double kMovesWithDisc = 0.5, kCarried = 5;
+/// Of the speed of the disc, up to which a plateau off it is creep; beyond, radius or speed are wrong. Part of a record
+/// that plateaus without regard to the disc must fill.
+inline constexpr double kFarFromDisc = 0.2, kPlateausOfBlock = 0.1;
+
+// ---- run-up
+
+/// Pieces of the first plateau, which may be the run-up itself, and of any other; and of its length, what is left out
+/// at its end, where it may break away already.
+inline constexpr std::size_t kPiecesOfFirst = 64, kPiecesOfPlateau = 16, kEndOfFirst = 32;
+/// Standard deviations of the noise within which a piece is at the final level. Time before the first plateau over that
+/// between two, and velocity there over the final one, which show a disc that starts from rest.
+inline constexpr double kPieceNoise = 4, kLongHead = 3, kSlowHead = 0.5;
+/// Of the final level, below which the first piece is of a run-up; part of the pieces after it that stay at the level:
+/// a disc that ripples does not settle; of a usual plateau, below which it is ringing after a re-stick.
+inline constexpr double kBelowFinal = 0.9, kStaysSettled = 0.9, kShortestRunUp = 0.25;
+
+// ---- bandwidth
+
+/// Bins without which a spectrum has no end to take noise from.
+inline constexpr std::size_t kFewestBins = 64;
+/// Content over the noise floor: of a bin, and of a third of an octave whose slope is looked at.
+inline constexpr double kContentOverNoise = 2, kSlopeOverNoise = 3;
+/// Power of frequency with which content falls behind a filter: stick-slip has up to two in velocity, a sensor of
+/// second order two more. Smaller: a sensor's resonance counts as a filter.
+inline constexpr double kSteepFall = 4.5;
+/// End of the noise floor over its beginning, below which a filter is in it.
+inline constexpr double kFilteredEnd = 0.1;
+/// Times the frequency, and bins, beyond which a line above the noise is a lone one and no content.
+inline constexpr std::size_t kLoneLineAbove = 4, kLoneLineBins = 16;
+/// Corner of one channel over that of the other, from which their filters differ.
+inline constexpr double kFiltersDiffer = 1.5;
 
 // ---- high-pass of the vibrometer
 
@@ -48,6 +95,17 @@ inline constexpr double kSignificance = 6;
 // ---- ripple of the disc
 
 inline constexpr int kHighestOrder = 6;
+/// Of the usual plateau, below which one is too short to show a level.
+inline constexpr double kShortestPlateau = 0.25;
+/// Fall of the plateaus over their level, and over its standard error, from which the contact creeps.
+inline constexpr double kLeastCreep = 5e-4, kCreepErrors = 4;
+/// Reciprocal condition of the fit to the levels, below which rounding decides.
+inline constexpr double kFittable = 1e-8;
+/// Standard deviations from which a level is left out of the next fit, and part of them that must remain.
+inline constexpr double kFarLevel = 5, kLevelsKept = 0.7;
+/// Rounding of a level; correlation from plateau to plateau that some dozens can show; and of its size, by which a
+/// ripple may differ between the halves of the record: creep and wear change it by less.
+inline constexpr double kRoundingOfLevel = 1e-12, kMostCorrelation = 0.95, kHalvesOfRipple = 0.35;
 /// Revolutions between the middles of the first and the last plateau, of two recorded ones: with fewer a drift looks
 /// like a ripple.
 inline constexpr double kFewestRevolutions = 1.95;
@@ -73,6 +131,15 @@ inline constexpr double kDelayReach = 0.25;
 /// [s]; in a longer window a slow rig whose jumps are not sharp (a drill string) shows a drift of the clocks that is
 /// none. The one time here that does not go with the record.
 inline constexpr double kLongestWindow = 0.01;
+/// The same in samples (fewer show no jump, more cost time for nothing), and slips that are looked at.
+inline constexpr double kShortestDelay = 4, kLongestDelay = 2000;
+inline constexpr std::size_t kMostDelays = 400;
+/// Of the fastest, where the velocity is at the edge of rest: above its noise, and near enough for a straight line.
+/// Change of friction from sample to sample at the jump over the others: less is a slope.
+inline constexpr double kEdgeOfRest = 0.05, kClearJump = 8;
+/// [s] and samples, from which a delay is worth a warning: a force sensor with a bandwidth of 500 Hz is late by the
+/// first (1/(2 pi f)), and the place of a jump is known to the second.
+inline constexpr double kDelayWarned = 3e-4, kDelayWarnedSamples = 2.5;
 
 /// Samples by which one may fall behind the other over a record: re-stick is not seen more closely in a slip.
 inline constexpr double kDriftSamples = 3;
@@ -82,6 +149,36 @@ inline constexpr double kDriftReach = 0.1, kDriftScatter = 3;
 inline constexpr double kSharpJump = 0.8;
 
 // ---- two files of one run
+
+/// Samples for a quantile, parts of velocity and of friction left out at either end of their ranges, and bins in which
+/// the usual velocity is looked for.
+inline constexpr std::size_t kEnough = 20000, kVelocityBins = 100;
+inline constexpr double kSpikesOfVelocity = 0.002, kEndsOfFriction = 0.05;
+/// Parts of the range of friction that it falls from and to, and of the largest excursion of the velocity that it rises
+/// from and to, at a break-away: noise goes through one of them, not through both.
+inline constexpr double kFallFrom = 0.7, kFallTo = 0.45, kRiseFrom = 0.1, kRiseTo = 0.35;
+/// Samples, and part of the period, within which two events coincide; part of the period by which two offsets are not
+/// the same one.
+inline constexpr double kCoincideSamples = 3, kCoincidePart = 0.05, kOffsetsApart = 0.3;
+/// Break-aways that are compared (differences grow with the square), offsets that are tried, and events that one must
+/// match over those the best does.
+inline constexpr std::size_t kMostBreakAways = 1000, kMostOffsets = 8;
+inline constexpr double kFewestOfBest = 0.6;
+/// Samples, and part of the period, beside an offset within which the clocks may agree: break-away and re-stick may
+/// have been matched.
+inline constexpr double kReachSamples = 4, kReachPart = 0.25;
+/// [s] to either side over which the acceleration is taken: noise averages out, the jump at re-stick stays sharp
+/// enough.
+inline constexpr double kAccelerationOver = 1e-3;
+/// Samples without which nothing is balanced, of a scan (some dozens in every slip) and of the final search.
+inline constexpr std::size_t kFewestBalanced = 20, kScanned = 8000, kSearched = 400000;
+/// Step of a scan over the width of the minimum, which is not stepped over, and fewest steps.
+inline constexpr double kScanStep = 1, kFewestScanSteps = 40;
+/// Samples beside the offset that are searched, in the whole record and in its parts, whose spread is the uncertainty;
+/// and how nearly the minimum is found in the scan, in the whole and in a part [samples].
+inline constexpr std::size_t kPartsOfRecord = 6;
+inline constexpr double kSearchReach = 4, kSearchReachOfPart = 8;
+inline constexpr double kFoundInScan = 1.0 / 4, kFound = 1.0 / 50, kFoundInPart = 1.0 / 20;
 
 /// Of the break-aways in the time that both share, those that must coincide where both files are of one run, and what
 /// the motion may leave of the variance of friction. Of two runs one in five coincides by chance.
@@ -244,6 +341,17 @@ inline constexpr double kAlikePowers = 0.5;
 
 /// Samples of which a distribution can be seen.
 inline constexpr std::size_t kFewestDistributed = 64;
+/// Values that are looked at for a distribution, and for how often a channel repeats one: more do not move it.
+inline constexpr std::size_t kThinned = 16384, kValuesForRepeats = 20000;
+/// Part of the values that repeat the one before, from which a channel is quantised and repeats its extremes too.
+inline constexpr double kRepeatsOfSteps = 0.2;
+/// Samples in a row at an extreme that are no chance, and all of them at a limit of the range: two such rows.
+inline constexpr std::size_t kShortestAtEnd = 3, kFewestAtEnd = 6;
+/// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error.
+inline constexpr double kMuchClipped = 1e-3;
+/// Rounding over the range of a channel, and part of the declared range from which a channel is at its end. Part of a
+/// record that stands still or is frozen, and that is lost or spiked: the rest does not make up for more.
+inline constexpr double kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05, kMuchFaulty = 1e-3;
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
 /// machine leaves its range so far within a sample. The samples beside it lie within the second.
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;

@@ -15,7 +15,7 @@ namespace {
 
 Plateaus evenly_spaced_windows(std::size_t samples) {
   Plateaus windows;
-  const std::size_t count = 64, length = std::clamp<std::size_t>(samples / 4, 16, 64);
+  const std::size_t count = kNoiseWindows, length = std::clamp(samples / 4, kShortestWindow, kLongestWindowOfNoise);
   if (samples < length) return windows;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t begin = k * (samples - length) / count;
@@ -27,11 +27,10 @@ Plateaus evenly_spaced_windows(std::size_t samples) {
 // Noise of a record before it is known where it rests. Where sticks last a dozen samples most windows hold some of a
 // slip; the quiet ones are then far below the median, which no noise does, and they count.
 double roughness_of(std::span<const double> velocity) {
-  constexpr double quiet = 0.1;
   std::vector<double> spreads = spreads_about_parabolas(velocity, evenly_spaced_windows(velocity.size()).runs, 1);
   if (spreads.empty()) return 0;
-  const double middle = median(spreads), tenth = quantile(std::move(spreads), 0.1);
-  return tenth < quiet * middle ? tenth : middle;
+  const double middle = median(spreads), quiet = quantile(std::move(spreads), kQuietWindows);
+  return quiet < kQuietNoise * middle ? quiet : middle;
 }
 
 /// Friction from the beginning of a plateau to its end, in the direction of v_r there or of friction itself [1 or N].
@@ -51,12 +50,12 @@ bool rests(const Trace& trace, const PlateauSearch& s) {
   if (s.disc.mean.empty()) {
     if (std::abs(s.plateaus.level) <= noise) return true;
   } else {
-    // The disc turns at a speed of its own: what moves with it moves at half of it at least, however wrong its gain.
+    // The disc turns at a speed of its own.
     std::size_t moving = 0, all = 0;
     for (const StickPlateau& run : s.plateaus.runs) {
       for (std::size_t b = run.begin; b < run.end; ++b, ++all) {
         const double disc = s.disc.mean[b], block = s.blocks.mean[b];
-        moving += std::abs(disc - block) <= std::max(noise, 0.5 * std::abs(disc)) ? 1u : 0u;
+        moving += std::abs(disc - block) <= std::max(noise, kMovesWithDisc * std::abs(disc)) ? 1u : 0u;
       }
     }
     if (2 * moving > all) return true;
@@ -137,32 +136,34 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step,
   const double centre = relative.empty() ? 0 : relative[relative.size() / 2];
   double spread = 0;
   for (double v : relative) spread = std::max(spread, std::abs(v - centre));
-  if (spread <= 8 * roughness) {  // nothing moves: one plateau, or steady sliding
+  if (spread <= kSlipsOverError * roughness) {  // nothing moves: one plateau, or steady sliding
     const double level = fit_line(relative).value;
-    const bool rests_on_disc = !block || !disc.varying.empty() ? std::abs(level) <= 3 * roughness
-                               : disc.known ? std::abs(std::abs(level) - std::abs(stated)) < 0.5 * std::abs(stated)
-                                            : std::abs(level) > 5 * roughness;
+    const bool rests_on_disc = !block || !disc.varying.empty() ? std::abs(level) <= kRestNoise * roughness
+                               : disc.known
+                                   ? std::abs(std::abs(level) - std::abs(stated)) < kMovesWithDisc * std::abs(stated)
+                                   : std::abs(level) > kCarried * roughness;
     s.noise = roughness;
     s.sticks = rests_on_disc;
     if (rests_on_disc) s.plateaus = {{{0, relative.size(), level}}, level, spread};
     return s;
   }
   if (!block) {
-    const double limit = 0.06 * largest_of(relative);  // a plateau of v_r is at zero
+    const double limit = kSlipsOverFastest * largest_of(relative);  // a plateau of v_r is at zero
     s.plateaus = find_plateaus(relative, LevelRange{-limit, limit});
   } else if (!disc.varying.empty()) {
-    s.plateaus = find_plateaus(relative, LevelRange{-0.5 * disc.largest, 0.5 * disc.largest});
+    s.plateaus = find_plateaus(relative, LevelRange{-kMovesWithDisc * disc.largest, kMovesWithDisc * disc.largest});
   } else if (disc.known) {
     // First where it ought to be, then pointing the other way, then anywhere but at rest.
-    const double near = 0.5 * std::abs(stated), far = 1.5 * std::abs(stated);
+    const double near = (1 - kMovesWithDisc) * std::abs(stated), far = (1 + kMovesWithDisc) * std::abs(stated);
     const LevelRange right = stated > 0 ? LevelRange{near, far} : LevelRange{-far, -near};
     s.plateaus = find_plateaus(relative, right);
     if (s.plateaus.empty()) s.plateaus = find_plateaus(relative, LevelRange{-right.high, -right.low});
   }
   if (block && s.plateaus.empty() && disc.varying.empty()) s.plateaus = find_plateaus(relative);
   s.noise = s.plateaus.empty() ? roughness : spread_about_parabolas(velocity, s.plateaus.runs, s.blocks.length);
-  if (s.noise == 0) s.noise = s.plateaus.empty() ? 0 : std::min(roughness, 1e-3 * s.plateaus.depth);
-  s.sticks = !s.plateaus.empty() && (!block || !disc.varying.empty() || std::abs(s.plateaus.level) > 3 * s.noise);
+  if (s.noise == 0) s.noise = s.plateaus.empty() ? 0 : std::min(roughness, kRestDepth * s.plateaus.depth);
+  s.sticks =
+      !s.plateaus.empty() && (!block || !disc.varying.empty() || std::abs(s.plateaus.level) > kRestNoise * s.noise);
   if (s.sticks && (!block || !disc.varying.empty())) s.sticks = rests(trace, s);
   if (!s.sticks) {
     s.plateaus.runs.clear();
@@ -196,16 +197,18 @@ std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, con
   if (search.sticks) {
     const double recorded = recorded_in(search.plateaus);
     following = {recorded + search.plateaus.level, recorded};
-    if (std::abs(search.plateaus.level) <= 0.2 * std::abs(recorded)) return following;
+    if (std::abs(search.plateaus.level) <= kFarFromDisc * std::abs(recorded)) return following;
   }
   const std::span<const double> v(search.blocks.mean);
   const Extremes range = extremes(v);
-  Plateaus alone = range.high - range.low <= 8 * search.noise ? Plateaus{{{0, v.size(), fit_line(v).value}}, 0, 0}
-                                                              : find_plateaus(v);
+  Plateaus alone = range.high - range.low <= kSlipsOverError * search.noise
+                       ? Plateaus{{{0, v.size(), fit_line(v).value}}, 0, 0}
+                       : find_plateaus(v);
   if (alone.level == 0 && !alone.empty()) alone.level = alone.runs.front().level;
   std::size_t resting = 0;
   for (const StickPlateau& run : alone.runs) resting += run.size();
-  const bool has_plateau = 10 * resting > v.size() && std::abs(alone.level) > 3 * search.noise;
+  const bool has_plateau = static_cast<double>(resting) > kPlateausOfBlock * static_cast<double>(v.size()) &&
+                           std::abs(alone.level) > kRestNoise * search.noise;
   return has_plateau ? RecordedPlateau{alone.level, recorded_in(alone)} : following;
 }
 
@@ -237,7 +240,7 @@ Plateaus plateaus_within(const PlateauSearch& search, std::size_t trimmed, std::
 }
 
 std::size_t run_up_blocks(const PlateauSearch& s) {
-  if (s.plateaus.runs.size() < 3) return 0;
+  if (s.plateaus.runs.size() < kFewestForMedian) return 0;
   const double level = final_level(s.plateaus);
   const std::span<const double> v(s.blocks.mean);
   struct Piece {
@@ -248,13 +251,14 @@ std::size_t run_up_blocks(const PlateauSearch& s) {
   for (const StickPlateau& run : s.plateaus.runs) {
     // The first plateau may be the run-up itself: it is looked at from end to end, and more finely.
     const bool first = run.begin == 0;
-    const std::size_t begin = first ? 0 : run.inner_begin(), end = first ? run.end - run.size() / 32 : run.inner_end();
-    const std::size_t length = std::max<std::size_t>(1, (end - begin) / (first ? 64 : 16));
+    const std::size_t begin = first ? 0 : run.inner_begin(),
+                      end = first ? run.end - run.size() / kEndOfFirst : run.inner_end();
+    const std::size_t length = std::max<std::size_t>(1, (end - begin) / (first ? kPiecesOfFirst : kPiecesOfPlateau));
     for (std::size_t b = begin; b + length <= end; b += length) {
       pieces.push_back({b, fit_line(v.subspan(b, length)).value});
     }
   }
-  const double tolerance = std::max(kSettled * std::abs(level), 4 * s.noise);
+  const double tolerance = std::max(kSettled * std::abs(level), kPieceNoise * s.noise);
   const auto settled = [&](const Piece& p) { return std::abs(p.level - level) <= tolerance; };
   // A disc that starts from rest begins well below its final speed; a disc that ripples does not settle.
   const std::size_t head = s.plateaus.runs.front().begin;
@@ -263,17 +267,17 @@ std::size_t run_up_blocks(const PlateauSearch& s) {
     gaps.push_back(static_cast<double>(s.plateaus.runs[r].begin - s.plateaus.runs[r - 1].end));
   }
   const bool slow_head =
-      static_cast<double>(head) > 3 * median(std::move(gaps)) && std::abs(v[0]) < 0.5 * std::abs(level);
+      static_cast<double>(head) > kLongHead * median(std::move(gaps)) && std::abs(v[0]) < kSlowHead * std::abs(level);
   std::size_t k = 0;
-  if (std::abs(pieces.front().level) < 0.9 * std::abs(level)) {
+  if (std::abs(pieces.front().level) < kBelowFinal * std::abs(level)) {
     while (k < pieces.size() && !settled(pieces[k])) ++k;
     const auto later =
         static_cast<double>(std::count_if(pieces.begin() + static_cast<std::ptrdiff_t>(k), pieces.end(), settled));
-    if (later < 0.9 * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
+    if (later < kStaysSettled * static_cast<double>(pieces.size() - k)) return slow_head ? head : 0;
     // Ringing after a re-stick at the very beginning is no run-up either.
     std::vector<double> durations;
     for (const StickPlateau& run : s.plateaus.runs) durations.push_back(static_cast<double>(run.size()));
-    const double least = 0.25 * median(std::move(durations));
+    const double least = kShortestRunUp * median(std::move(durations));
     return k < pieces.size() && static_cast<double>(pieces[k].begin) > least ? pieces[k].begin : 0;
   }
   return slow_head ? head : 0;

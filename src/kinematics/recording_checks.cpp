@@ -19,18 +19,17 @@ using Status = HealthItem::Status;
 // A quantised channel repeats its extremes by chance, as it repeats every other value.
 bool repeats_elsewhere(std::span<const double> x, const Extremes& range) {
   std::size_t equal = 0, looked_at = 0;
-  const std::size_t stride = std::max<std::size_t>(1, x.size() / 20000);
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / kValuesForRepeats);
   for (std::size_t i = 1; i < x.size(); i += stride) {
     if (x[i] == range.low || x[i] == range.high) continue;
     ++looked_at;
     equal += x[i] == x[i - 1] ? 1u : 0u;
   }
-  return 5 * equal > looked_at;
+  return static_cast<double>(equal) > kRepeatsOfSteps * static_cast<double>(looked_at);
 }
 
-/// Runs of at least three.
 std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks, double limit) {
-  constexpr std::size_t least = 3;
+  constexpr std::size_t least = kShortestAtEnd;
   std::vector<SampleSpan> runs;
   std::size_t run = 0;
   for (std::size_t c = 0; c < chunks.part.size(); ++c) {
@@ -53,7 +52,7 @@ std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks, 
   const Extremes range = chunks.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
-  if (x.size() < 16 || range.low == range.high || repeats_elsewhere(x, range)) return ends;
+  if (x.size() < kFewestSamples || range.low == range.high || repeats_elsewhere(x, range)) return ends;
   std::array<PileUp, 2> piles = find_pile_ups(x);
   const std::array<PileUp, 2> smoothed = smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
   for (std::size_t k = 0; k < 2; ++k) {
@@ -118,14 +117,14 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
     // Where nothing sticks a channel may rest at an end of its range, but not far from zero and quiet.
     const bool holds = resting.sticks ? pile.is_quiet || pile.density >= kCrowdedAlone : pile.is_quiet && end.is_far;
     const bool is_clipped = pile.count > 0 && holds;
-    if (end.count < 6 && !is_clipped) return;
+    if (end.count < kFewestAtEnd && !is_clipped) return;
     const std::size_t count = std::max(end.count, is_clipped ? pile.count : 0);
     const double share = static_cast<double>(count) / static_cast<double>(trace.size());
-    item.status = share > 0.001 ? Status::problem : Status::warning;
+    item.status = share > kMuchClipped ? Status::problem : Status::warning;
     item.message = fmt::format(
         "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they are not used, {} unreliable",
-        channel.name, channel.factor * (end.count < 6 ? pile.level : end.at), channel.unit, count, 100 * share,
-        unreliable);
+        channel.name, channel.factor * (end.count < kFewestAtEnd ? pile.level : end.at), channel.unit, count,
+        100 * share, unreliable);
     spoilt.add_clipped(is_clipped ? pile.spans : end.spans, channel.kind);
   };
   const auto& [low, high] = ends.friction;
@@ -140,7 +139,7 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
       return level >= rest.low - off && level <= rest.high + off;
     };
     EndRuns seen = end;
-    if (rests_at(end.at, 1e-6 * range)) seen.count = 0;
+    if (rests_at(end.at, kRoundingOfRange * range)) seen.count = 0;
     if (rests_at(end.at, range / static_cast<double>(kNarrowestRange)) || !resting.plateau) seen.pile.count = 0;
     add_warning(velocity, seen, "mu_k and alpha are");
   }
@@ -158,7 +157,7 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   add_slew(velocity, ends.velocity_slew);
   if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
     const double declared = instruments.vibrometer.range->value;
-    if (ends.largest_velocity >= 0.995 * declared) {
+    if (ends.largest_velocity >= kAtDeclaredRange * declared) {
       item.status = Status::warning;
       item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s",
                                  1e3 * ends.largest_velocity, 1e3 * declared);
@@ -170,14 +169,15 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
 HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, const LostSamples& lost,
                            std::size_t plateaus) {
   const std::size_t n = trace.size();
-  if (n < 16) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
+  if (n < kFewestSamples) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
   const double step = trace.interval();
   const Gaps gaps = gaps_of(trace.time, step);
   const std::vector<std::string>& spoilt_by = spoilt.sentences();
   const SampleSpan& still = spoilt.longest_still();
   HealthItem item{health_check::kDropOuts, Status::ok,
                   fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
-  if (still.size() >= kShortestFrozen && 20 * still.size() > n && still.size() < n) {
+  if (still.size() >= kShortestFrozen && static_cast<double>(still.size()) > kMuchFrozen * static_cast<double>(n) &&
+      still.size() < n) {
     item.status = Status::problem;
     item.message = fmt::format("both channels do not change from {:.4g} s for {:.4g} s ({:.2g} % of the record)",
                                trace.time[still.begin], trace.time[still.end - 1] - trace.time[still.begin],
@@ -188,7 +188,7 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   const bool loses = are_lost(lost, plateaus);
   if (gaps.count == 0 && spoilt_by.empty() && !loses) return item;
   const auto faults = static_cast<double>(gaps.count + spoilt.spikes());
-  const bool many = loses || faults > 1e-3 * static_cast<double>(n) || spoilt.frozen_part() > 0.05;
+  const bool many = loses || faults > kMuchFaulty * static_cast<double>(n) || spoilt.frozen_part() > kMuchFrozen;
   item.status = many ? Status::problem : Status::warning;
   item.message.clear();
   if (gaps.count > 0) {

@@ -11,8 +11,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-constexpr std::size_t kThinned = 16384;
-
 /// Where all but one value in a thousand lie at each end.
 Extremes usual_range(std::span<const double> x) {
   std::vector<double> some = thinned(x, kThinned);

@@ -28,7 +28,7 @@ std::vector<Level> levels_of(const BlockMeans& velocity, const Plateaus& plateau
                              std::span<const double> friction) {
   std::vector<double> sizes;
   for (const StickPlateau& run : plateaus.runs) sizes.push_back(static_cast<double>(run.size()));
-  const double least = 0.25 * median(std::move(sizes));
+  const double least = kShortestPlateau * median(std::move(sizes));
   std::vector<Level> levels;
   for (const StickPlateau& run : plateaus.runs) {
     const std::size_t begin = run.inner_begin() * velocity.length, end = run.inner_end() * velocity.length;
@@ -56,7 +56,7 @@ double creep_of(const std::vector<Level>& levels) {
   double squares = 0;
   for (double f : falls) squares += (f - fall) * (f - fall);
   const auto n = static_cast<double>(falls.size());
-  return fall > 5e-4 * size && fall > 4 * std::sqrt(squares) / n ? fall / size : 0;
+  return fall > kLeastCreep * size && fall > kCreepErrors * std::sqrt(squares) / n ? fall / size : 0;
 }
 
 // Friction less its mean, over its spread.
@@ -114,7 +114,7 @@ LinearFit fit_order(const std::vector<Level>& levels, const Design& design) {
     right += row * (level.value - origin);
   }
   const SymmetricSystem solved = solve_symmetric_system(normal, right);
-  if (!(solved.reciprocal_condition >= 1e-8)) return fit;
+  if (!(solved.reciprocal_condition >= kFittable)) return fit;
   fit.inverse = solved.inverse;
   fit.x = solved.x;
   fit.x(0) += origin;
@@ -207,7 +207,8 @@ OrderFit fit_best_order(const std::vector<Level>& levels, Design design, double 
 void exclude_far(std::vector<Level>& levels, const OrderFit& best) {
   std::vector<double> deviation;
   for (const Level& level : levels) deviation.push_back(std::abs(level.value - best.design.row(level).dot(best.fit.x)));
-  const double limit = std::max(5 * kSigmaPerMad * median(deviation), 1e-12 * std::abs(best.fit.x(0)));
+  const double limit =
+      std::max(kFarLevel * kSigmaPerMad * median(deviation), kRoundingOfLevel * std::abs(best.fit.x(0)));
   for (std::size_t r = 0; r < levels.size(); ++r) levels[r].used = deviation[r] <= limit;
 }
 
@@ -220,7 +221,7 @@ struct Residuals {
   /// Of one level, enlarged by the correlation from plateau to plateau.
   double variance(Eigen::Index parameters) const {
     const double freedom = left.count - static_cast<double>(parameters);
-    return left.squares / freedom * variance_inflation(left.correlation(0.95));
+    return left.squares / freedom * variance_inflation(left.correlation(kMostCorrelation));
   }
 };
 
@@ -253,7 +254,7 @@ DiscRipple ripple_of(const OrderFit& best, double variance) {
 bool is_same_in_both_halves(const std::vector<Level>& levels, const OrderFit& best, double std_error) {
   const std::complex<double> early = half_of(levels, best.design, best.fit.x, false);
   const std::complex<double> late = half_of(levels, best.design, best.fit.x, true);
-  return std::abs(early - late) < 0.35 * best.fit.x.segment<2>(2).norm() + 6 * std_error;
+  return std::abs(early - late) < kHalvesOfRipple * best.fit.x.segment<2>(2).norm() + kSignificance * std_error;
 }
 
 }  // namespace
@@ -278,7 +279,8 @@ RippleEstimate estimate_ripple(const BlockMeans& velocity, const Plateaus& plate
     exclude_far(levels, best);
   }
   const Residuals residuals = residuals_of(levels, best);
-  const double fewest = std::max(static_cast<double>(kFewestPlateaus), 0.7 * static_cast<double>(levels.size()));
+  const double fewest =
+      std::max(static_cast<double>(kFewestPlateaus), kLevelsKept * static_cast<double>(levels.size()));
   if (residuals.left.count < fewest) return estimate;
   estimate.plateaus = static_cast<std::size_t>(residuals.left.count);
   estimate.level = best.fit.x(0);
