@@ -120,7 +120,8 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
     return steady ? motion.conditions.speed.value * motion.time[i] : recorded[i];
   };
   const bool known = motion.size() > 0 && (steady || !recorded.empty());
-  const bool turns = known && std::abs(angle(motion.size() - 1) - angle(0)) > 4 * std::numbers::pi;  // two revolutions
+  const bool turns =
+      known && std::abs(angle(motion.size() - 1) - angle(0)) > kinematics::kRevolutionsOfAngle * 2 * std::numbers::pi;
   std::vector<double> levels;
   std::vector<Eigen::VectorXd> rows;
   double noise = 0;

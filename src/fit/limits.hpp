@@ -2,12 +2,15 @@
 
 #include <cstddef>
 
+#include "segmentation/limits.hpp"
+
 // The thresholds by which fits decide, with their reasons.
 
 namespace tribofit {
 
-/// A spread from cycle to cycle needs three of them: fewer leave no degree of freedom beside a mean and its trend.
-inline constexpr std::size_t kFewestCycles = 3;
+// Cycles that carry a fit, and samples of a slip that show a curve.
+using segmentation::kFewestCycles;
+using segmentation::kShortestSlip;
 
 /// Noise is taken about parabolas: over 200 samples at most, which even a ramp that creeps, or sliding at a speed that
 /// is swept, is close to, and over a quarter of a slip. 12 leave three quarters of their degrees of freedom beside the
@@ -26,6 +29,22 @@ inline constexpr double kPartBesideParabola = 1.0 / 3;
 /// is not distinguished from the shape of the law.
 inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
 
+/// Part of the rate of the values, and of that of samples that are folded, up to which a line is looked for: nearer to
+/// a half it is not distinguishable from its alias. Part of a slip in which a ring is looked for, and its fewest
+/// values.
+inline constexpr double kHighestLine = 0.4, kHighestRing = 0.45, kRingsWithin = 0.6;
+inline constexpr std::size_t kFewestOfRing = 32;
+/// Values that are transformed, and their fewest; the highest lines that are taken, and bins beside each that are its
+/// own: a line in slip alone has side lines at the frequency of stick-slip. Bins beside a peak that are searched in the
+/// whole record, and the step of the search in its own bins.
+inline constexpr std::size_t kMostTransformed = std::size_t{1} << 18, kFewestTransformed = 64, kMostLines = 3,
+                             kBinsOfLine = 4;
+inline constexpr double kBesidePeak = 1.5, kFinerThanBin = 0.1;
+/// Samples of a stick whose remainder about a parabola shows a line, and samples of all that do; variance of noise that
+/// a line makes, from which it is taken off, and what is left of the variance at least.
+inline constexpr std::size_t kShortestStickOfLine = 20, kFewestOfStickLine = 1000;
+inline constexpr double kLineInNoise = 0.3, kLeftBesideLine = 0.05;
+
 /// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are
 /// distinct: less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more
 /// than chance would make them, before noise that raises whole slips is there: it is one test a model. Less: white
@@ -37,9 +56,9 @@ inline constexpr double kLoudest = 3;
 
 // ---- slips
 
-/// Samples of a slip that show a curve, of a stick that show a spread, and units of evidence of a record that never
-/// sticks: enough for folds and long-run variances, and each long beside what is remembered.
-inline constexpr std::size_t kShortestSlip = 4, kShortestStick = 40, kPiecesWithoutStick = 40;
+/// Samples of a stick that show a spread, and units of evidence of a record that never sticks: enough for folds and
+/// long-run variances, and each long beside what is remembered.
+inline constexpr std::size_t kShortestStick = 40, kPiecesWithoutStick = 40;
 /// Of the slip, friction after re-stick: what rings there is over after the first, and the spring has raised friction
 /// little over the second.
 inline constexpr double kAfterRestick = 0.015, kMeanAfterRestick = 0.06;
@@ -69,6 +88,11 @@ inline constexpr double kWellAbove = 1.25, kFarAboveFloor = 100;
 
 /// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
 inline constexpr double kLearntByHeart = 1.5;
+
+/// Part of the fall from mu_s to mu_k that was not recorded at its slow or fast end, from which that level is
+/// extrapolated: a law that holds over nine tenths gives it to a few per cent of the fall. Larger: levels that rest on
+/// the law alone pass for measured ones.
+inline constexpr double kExtrapolated = 0.1;
 
 /// Mean relative errors that count as close, and as an outline only ([D] calls 8 % good).
 inline constexpr double kClose = 0.02, kOutline = 0.08;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "assessment.hpp"
+#include "limits.hpp"
 
 namespace tribofit {
 
@@ -81,7 +82,7 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
   const std::optional<double> at_slowest = remaining_fall(model.law(), p, fit.slowest);
   if (!at_slowest) return;
   const double missing = 1 - *at_slowest;
-  if (missing > 0.1) {
+  if (missing > kExtrapolated) {
     fit.messages.push_back(
         fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the drop to mu_k "
                     "has already happened",
@@ -89,7 +90,7 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
   }
   const double reached = remaining_fall(model.law(), p, fit.fastest).value_or(0);
   const double drop = std::abs(fit.parameters[0].value - fit.parameters[1].value);
-  if (reached > 0.1 && drop > 0) {
+  if (reached > kExtrapolated && drop > 0) {
     fit.messages.push_back(fmt::format(
         "mu_k is extrapolated: at the fastest slip ({:.1f} mm/s) {:.0f} % of the drop from mu_s is still to come",
         fit.fastest * 1e3, 100 * reached));

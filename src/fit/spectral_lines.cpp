@@ -42,7 +42,7 @@ double median_slip_time(const Observations& observations) {
       lengths.push_back(observations.time[slip.end - 1] - slip.break_away_time);
     }
   }
-  if (lengths.size() < 3) return 0;
+  if (lengths.size() < kFewestCycles) return 0;
   return median(std::move(lengths));
 }
 
@@ -77,7 +77,7 @@ namespace {
 
 /// Adds to `series`, sampled at `rate` from time 0, what is left of a stick about a parabola.
 void add_stick(const Motion& motion, const SampleRange& stick, double rate, std::vector<double>& series) {
-  if (stick.size() < 20) return;
+  if (stick.size() < kShortestStickOfLine) return;
   const auto friction = std::span<const double>(motion.friction).subspan(stick.begin, stick.size());
   const Parabola parabola = fit_parabola(friction);
   for (std::size_t i = 0; i < stick.size(); ++i) {
@@ -91,9 +91,8 @@ void add_stick(const Motion& motion, const SampleRange& stick, double rate, std:
 
 double noise_without_line(const Record& record, double noise) {
   const Motion& motion = *record.motion;
-  if (motion.size() < 64 || !(motion.step > 0)) return noise;
-  constexpr std::size_t kMostSamples = 1 << 17;
-  std::vector<double> series(std::min(motion.size(), kMostSamples), 0.0);
+  if (motion.size() < kFewestTransformed || !(motion.step > 0)) return noise;
+  std::vector<double> series(std::min(motion.size(), kMostTransformed / 2), 0.0);
   double squares = 0;
   std::size_t count = 0;
   for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, 1 / motion.step, series);
@@ -101,15 +100,15 @@ double noise_without_line(const Record& record, double noise) {
     squares += x * x;
     count += x != 0 ? 1 : 0;
   }
-  if (count < 1000) return noise;
+  if (count < kFewestOfStickLine) return noise;
   const Spectrum spectrum = amplitude_spectrum(series, motion.step);
   double peak = 0;
   for (const double a : spectrum.amplitude) peak = std::max(peak, a);
   // The line fills only the sticks.
   const double amplitude = peak * static_cast<double>(series.size()) / static_cast<double>(count);
   const double variance = squares / static_cast<double>(count), line = 0.5 * amplitude * amplitude;
-  if (line < 0.3 * variance) return noise;
-  return std::sqrt(std::max(noise * noise - line, 0.05 * noise * noise));
+  if (line < kLineInNoise * variance) return noise;
+  return std::sqrt(std::max(noise * noise - line, kLeftBesideLine * noise * noise));
 }
 
 namespace {
@@ -118,15 +117,14 @@ namespace {
 /// slip alone, or in stick alone, has side lines at the frequency of stick-slip, and what a law leaves of every slip is
 /// made of them.
 std::vector<double> take_peaks(Spectrum spectrum, double lowest, double highest) {
-  constexpr std::size_t kMost = 3, kNeighbours = 4;
   std::vector<double> peaks;
-  while (peaks.size() < kMost) {
+  while (peaks.size() < kMostLines) {
     const double peak = peak_frequency(spectrum, lowest, highest);
     if (!(peak > 0)) break;
     peaks.push_back(peak);
     const auto bin = static_cast<std::size_t>(std::lround(peak / spectrum.bin_width));
-    const std::size_t end = std::min(spectrum.amplitude.size(), bin + kNeighbours + 1);
-    for (std::size_t k = bin - std::min(bin, kNeighbours); k < end; ++k) spectrum.amplitude[k] = 0;
+    const std::size_t end = std::min(spectrum.amplitude.size(), bin + kBinsOfLine + 1);
+    for (std::size_t k = bin - std::min(bin, kBinsOfLine); k < end; ++k) spectrum.amplitude[k] = 0;
   }
   return peaks;
 }
@@ -139,11 +137,10 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   const Motion& motion = *record.motion;
   const double rate = observation_rate(observations);
   if (!(rate > 0) || observations.slips.empty()) return lines;
-  highest = std::min(highest, 0.4 * rate);
-  constexpr double kMostSamples = 1 << 18;
-  const double length = std::min(motion.duration(), kMostSamples / rate);
+  highest = std::min(highest, kHighestLine * rate);
+  const double length = std::min(motion.duration(), static_cast<double>(kMostTransformed) / rate);
   const auto n = static_cast<std::size_t>(length * rate);
-  if (n < 64 || highest <= lowest) return lines;
+  if (n < kFewestTransformed || highest <= lowest) return lines;
   std::vector<double> series(n, 0.0);
   for (const auto& slip : observations.slips) {
     if (slip.record != 0) continue;
@@ -154,7 +151,7 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   }
   for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, rate, series);
   // The whole record resolves more finely than the stretch that was transformed.
-  const double width = 1.5 / length, fine = 0.1 / motion.duration();
+  const double width = kBesidePeak / length, fine = kFinerThanBin / motion.duration();
   std::vector<std::pair<double, double>> found;  // strength and frequency
   for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
     std::pair<double, double> best = {-1, coarse};
@@ -173,8 +170,8 @@ SpectralLines strongest_ringing(const Observations& observations, std::span<cons
   SpectralLines line;
   const double rate = observation_rate(observations);
   if (!(rate > 0)) return line;
-  const auto n = static_cast<std::size_t>(0.6 * median_slip_time(observations) * rate);
-  if (n < 32) return line;
+  const auto n = static_cast<std::size_t>(kRingsWithin * median_slip_time(observations) * rate);
+  if (n < kFewestOfRing) return line;
   std::vector<double> total(n, 0.0), count(n, 0.0);
   for (const auto& slip : observations.slips) {
     if (!slip.from_stick) continue;
@@ -195,7 +192,7 @@ SpectralLines strongest_ringing(const Observations& observations, std::span<cons
     for (std::size_t k = begin; k < end; ++k) mean += total[k] / static_cast<double>(end - begin);
     fast[i] = total[i] - mean;
   }
-  const double peak = peak_frequency(amplitude_spectrum(fast, 1 / rate), lowest, 0.45 * rate);
+  const double peak = peak_frequency(amplitude_spectrum(fast, 1 / rate), lowest, kHighestRing * rate);
   if (peak > 0) line.frequencies.push_back(peak);
   line.places = static_cast<double>(n) / 2;
   return line;

@@ -94,7 +94,8 @@ inline constexpr std::size_t kMostColumns = 4096;
 inline constexpr std::size_t kLongestLine = std::size_t{1} << 20, kLargestManifest = 16 * kLongestLine;
 /// TDMS: properties of an object, objects (groups and channels) of a file, and pieces of all channels, which then take
 /// 200 MB.
-inline constexpr std::size_t kMostProperties = 4096, kMostObjects = 65536, kMostPieces = std::size_t{4} << 20;
+inline constexpr std::size_t kMostTdmsProperties = 4096, kMostTdmsObjects = 65536,
+                             kMostTdmsPieces = std::size_t{4} << 20;
 /// MATLAB: characters that are kept as a fact, structures in one another, and arrays of a file with the fields of
 /// structures; bytes of a name and of all names of a structure, and dimensions of an array.
 inline constexpr std::size_t kLongestMatText = 1000, kMostMatArrays = 65536;

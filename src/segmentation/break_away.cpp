@@ -35,7 +35,7 @@ std::size_t rises_above(const Motion& m, const Rise& r, double level) {
 Rise rise_of(const Motion& m, const Onset& onset) {
   const Rise flat{onset, 0, onset.stick_begin};
   const std::size_t n = onset.slip - onset.stick_begin;
-  if (n < 32) return flat;
+  if (n < kShowsLevel) return flat;
   // A short stick ends well before the velocity has grown to where the slip begins.
   const std::size_t half = rises_above(m, flat, 0.5 * above_stick(m, flat, onset.slip));
   const std::size_t doublings = kDoublings * (onset.slip - half);
@@ -50,7 +50,7 @@ Rise rise_of(const Motion& m, const Onset& onset) {
   const bool creeps = 4 * (onset.slip - half) > n || std::abs(second) > kAlreadyThere * std::abs(third);
   const std::size_t grown = creeps ? n / 4 : std::clamp(doublings, n / 4, n);
   const std::size_t length = std::min(n / 4, n - grown), end = onset.slip - grown;
-  if (length < 4) return flat;
+  if (length < kShortestQuarter) return flat;
   Rise rise{onset, 0, end};
   for (std::size_t i = end - length; i < end; ++i) rise.stick_level += above_stick(m, flat, i);
   rise.stick_level /= static_cast<double>(length);
@@ -63,8 +63,8 @@ double growth_time(const Motion& m, const std::vector<Rise>& rises, double level
   for (const Rise& r : rises) {
     const std::size_t low = rises_above(m, r, level);
     std::size_t high = low;
-    while (high + 1 < m.size() && above_stick(m, r, high) < 3 * level) ++high;
-    times.push_back(static_cast<double>(high - low) / std::log(3.0));
+    while (high + 1 < m.size() && above_stick(m, r, high) < kGrowthRatio * level) ++high;
+    times.push_back(static_cast<double>(high - low) / std::log(kGrowthRatio));
   }
   return std::max(0.5, median(std::move(times)));
 }
@@ -72,10 +72,11 @@ double growth_time(const Motion& m, const std::vector<Rise>& rises, double level
 Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   Window w;
   const std::size_t crossing = rises_above(m, r, level);
-  // Eight time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp
+  // Some time constants, but not into the part of the stick that gives the level: a creeping contact has no sharp
   // onset.
   const auto stick = static_cast<double>(r.onset.slip - std::min(r.level_end, crossing));
-  const auto before = static_cast<std::size_t>(std::clamp(8 * growth, 4.0, std::max(4.0, std::min(4000.0, stick))));
+  const auto before = static_cast<std::size_t>(
+      std::clamp(kTimeConstants * growth, kShortestGrowth, std::max(kShortestGrowth, std::min(kLongestGrowth, stick))));
   w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
   // In a short stick the window may reach back into the end of the slip before.
   while (w.begin < crossing && above_stick(m, r, w.begin) > level) ++w.begin;
@@ -97,10 +98,9 @@ struct CommonGrowth {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B)
 };
 
-// Up to 96 rises, evenly picked.
+// Rises, evenly picked.
 std::vector<Window> pool_of(const Motion& motion, const std::vector<Rise>& rises, double level, double growth) {
-  constexpr std::size_t most_pooled = 96;
-  const std::size_t stride = (rises.size() + most_pooled - 1) / most_pooled;
+  const std::size_t stride = (rises.size() + kMostPooled - 1) / kMostPooled;
   std::vector<Window> pool;
   for (std::size_t i = 0; i < rises.size(); i += stride) {
     pool.push_back(window_of(motion, rises[i], level, growth));
@@ -118,18 +118,19 @@ CommonGrowth fit_common_growth(const Motion& motion, const std::vector<Rise>& ri
   std::vector<Window> with_jump_pool = pool;
   PooledFit& fit = common.fit;
   fit = fit_growth(pool, start, false);
-  const Growth jump_start{fit.growth.a, fit.growth.lambda, 0.1 * level};
+  const Growth jump_start{fit.growth.a, fit.growth.lambda, kFirstJump * level};
   const PooledFit jump = fit_growth(with_jump_pool, jump_start, true);
   Noise colour = noise_of(pool, fit.growth);
   // A jump must earn its place against the noise, coloured as it may be.
-  if (jump.rss < fit.rss && fit.rss - jump.rss > 40 * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
-      jump.rss < 0.9 * fit.rss) {
+  if (jump.rss < fit.rss &&
+      fit.rss - jump.rss > kJumpExplains * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
+      jump.rss < kJumpLeaves * fit.rss) {
     fit = jump;
     colour = noise_of(with_jump_pool, fit.growth);
   }
   // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
   // factor of three on the rates, a jump of the size of the window.
-  common.variance = std::max(colour.effective(), 1e-12 * level * level);
+  common.variance = std::max(colour.effective(), kRoundingOfLevel * level * level);
   const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
   const Eigen::Matrix3d information = fit.information / common.variance + Eigen::Matrix3d(plausible.asDiagonal());
   common.covariance = information.inverse();
@@ -157,7 +158,7 @@ bool contact_creeps(const std::vector<Rise>& rises, const std::vector<Window>& w
     const double crossing = static_cast<double>(w.begin) + w.crossing;
     gradualness.push_back((w.crossing - w.t0) / std::max(1.0, static_cast<double>(rises[k].onset.slip_end) - crossing));
   }
-  return median(std::move(gradualness)) > 0.3;
+  return median(std::move(gradualness)) > kGradual;
 }
 
 /// Break-away in samples from the begin of a window.
@@ -169,14 +170,14 @@ Located settle_break_away(const Window& w, const CommonGrowth& common, bool cree
   const double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
   if (creeps) return {w.crossing, std::min(error, common.time)};
   const Sums s = sums_of(w, common.fit.growth, w.t0);
-  if (w.t0 < w.crossing - 0.5 && s.h > 0) {
+  if (w.t0 < w.crossing - kShowsGrowth && s.h > 0) {
     const Eigen::Vector3d lever = s.mixed / s.h;
     const double own = common.variance / s.h + std::max(0.0, lever.dot(common.covariance * lever));
-    return {w.t0, std::min(error, std::sqrt(own + 1.0 / 144))};  // at best a fraction of a sample
+    return {w.t0, std::min(error, std::sqrt(own + kBestBreakAway))};
   }
   // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
   std::size_t i = w.v.size() - 1;
-  while (i > 0 && w.v[i] > 0.25 * common.level) --i;
+  while (i > 0 && w.v[i] > kLeavesStick * common.level) --i;
   const auto t0 = static_cast<double>(i);
   return {t0, std::max(1.0, w.crossing - t0)};
 }
@@ -187,7 +188,8 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   std::vector<BreakAway> result;
   if (onsets.empty()) return result;
   const double noise = motion.velocity_noise;
-  const double level = std::max({0.01 * peak, std::min(25 * noise, 0.03 * peak), std::min(8 * noise, 0.06 * peak)});
+  const double level = std::max({kGrowthOverPeak * peak, std::min(kGrowthOverNoise * noise, kGrowthAtMost * peak),
+                                 std::min(kinematics::kSlipsOverError * noise, kinematics::kSlipsOverFastest * peak)});
   std::vector<Rise> rises;
   for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
   const CommonGrowth common = fit_common_growth(motion, rises, level);
@@ -205,12 +207,12 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
 
 double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, int direction, double peak) {
   const double noise = motion.velocity_noise;
-  const double low = std::min(4 * noise, 0.02 * peak),
-               high = std::max({0.02 * peak, std::min(25 * noise, 0.06 * peak)});
+  const double low = std::min(kRestickNoise * noise, kRestickAtMost * peak),
+               high = std::max(kEndAtLeast * peak, std::min(kEndOverNoise * noise, kEndAtMost * peak));
   const auto u = [&](std::size_t i) { return direction * above_plateau(motion, i); };
   // First sample on the plateau, or the slowest where the motion turns before it gets there.
   std::size_t last = slip.end;
-  for (std::size_t i = slip.end; i < std::min(next, slip.end + 64) && u(last) > low; ++i)
+  for (std::size_t i = slip.end; i < std::min(next, slip.end + kRestickWithin) && u(last) > low; ++i)
     last = u(i) < u(last) ? i : last;
   std::size_t first = last;
   while (first > slip.begin && u(first - 1) < high) --first;
@@ -244,16 +246,16 @@ std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t e
 
 StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction) {
   StickFriction result;
-  std::size_t begin = stick.size() > 40 ? stick.begin + stick.size() / 2 : stick.begin;
+  std::size_t begin = stick.size() > kHalfOfStick ? stick.begin + stick.size() / 2 : stick.begin;
   std::size_t end = std::min(stick.end, motion.size());
   while (end > begin && motion.time[end - 1] >= time - motion.step) --end;
   // The line goes on from the last good sample; lone spoilt ones before it are on the line already.
   if (end > begin && motion.has_fault(end - 1, SampleFault::friction)) {
     while (end > stick.begin && motion.has_fault(end - 1, SampleFault::friction)) --end;
-    begin = end > stick.begin + 40 ? stick.begin + (end - stick.begin) / 2 : stick.begin;
+    begin = end > stick.begin + kHalfOfStick ? stick.begin + (end - stick.begin) / 2 : stick.begin;
   }
   begin = begin_of_pull(motion, begin, end);
-  if (end < begin + 3) {
+  if (end < begin + kShortestLine) {
     result.value = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");
     result.std_error = result.slope = std::nan("");
     return result;
@@ -263,10 +265,12 @@ StickFriction friction_at(const Motion& motion, SampleRange stick, double time, 
   const double n = parabola.count, curvature_norm = parabola.curvature_norm();
   if (n <= 3) parabola.curvature = 0;
   const Remainder left = remainder_about(parabola, friction);
-  const double variance = left.squares / std::max(1.0, n - 3) * variance_inflation(left.correlation(0.98));
+  const double variance = left.squares / std::max(1.0, n - 3) * variance_inflation(left.correlation(kMostCorrelation));
   const double x = (time - motion.time[begin]) / motion.step - parabola.centre();
   double factor = 1 / n + x * x / parabola.line_norm();
-  const bool is_curved = n > 20 && parabola.curvature * parabola.curvature * curvature_norm > 25 * variance;
+  const bool is_curved =
+      n > static_cast<double>(kShortestParabola) &&
+      parabola.curvature * parabola.curvature * curvature_norm > kClearCurvature * kClearCurvature * variance;
   if (is_curved) factor += std::pow(x * x - parabola.shift(), 2) / curvature_norm;
   const double line = parabola.mean + parabola.slope * x;
   result.value = direction * (is_curved ? parabola.at(x) : line);

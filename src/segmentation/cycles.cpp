@@ -8,6 +8,8 @@
 #include <span>
 
 #include "break_away.hpp"
+#include "ingest/limits.hpp"
+#include "limits.hpp"
 #include "measures.hpp"
 #include "phases.hpp"
 #include "spoilt_stretches.hpp"
@@ -22,7 +24,6 @@ using segmentation::Onset;
 using segmentation::RawSlip;
 using segmentation::Thresholds;
 
-constexpr std::size_t least_stick = 3;  // samples
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Index of the first sample later than `time`, near `guess`.
@@ -91,7 +92,7 @@ std::vector<Cycle> phases(const Motion& motion, const std::vector<RawSlip>& slip
     Cycle& c = cycles[with_stick[k]];
     const std::size_t first = std::max(c.stick.begin, first_after(motion.time, found[k].time, c.stick.end));
     c.stick.end = c.slip.begin = std::min(first, c.slip.end - 1);
-    if (c.stick.size() < least_stick) {  // the velocity only turns near zero
+    if (c.stick.size() < segmentation::kShortestStick) {  // the velocity only turns near zero
       c.stick = {};
       c.stick_complete = false;
       if (with_stick[k] == 0) continue;
@@ -122,10 +123,9 @@ bool any_stick(const Motion& motion, const std::vector<Cycle>& cycles, const Thr
 
 /// A block that rests before or after it slides does not stick and slip: what there is to see is the sliding.
 bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const Thresholds& t) {
-  constexpr std::ptrdiff_t kFewest = 3;  // break-aways that carry an analysis of cycles
   const auto break_aways =
       std::count_if(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
-  if (break_aways >= kFewest) return false;
+  if (static_cast<std::size_t>(break_aways) >= segmentation::kFewestCycles) return false;
   std::size_t sliding = 0;
   for (const RawSlip& slide : segmentation::without_rests(motion, segmentation::find_slides(motion), t.peak))
     sliding += slide.samples.size();
@@ -134,11 +134,11 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
 
 /// First samples after a gap in the clock, and both ends of what a fault of the recording spoilt.
 std::vector<std::size_t> gaps_of(const Motion& motion) {
-  constexpr double longest = 1.5;  // samples
   std::vector<std::size_t> gaps;
   for (const Step& step : motion.steps) {
     const std::size_t b = step.begin;
-    if (b > 0 && b < motion.size() && motion.time[b] - motion.time[b - 1] > longest * motion.step) gaps.push_back(b);
+    if (b > 0 && b < motion.size() && motion.time[b] - motion.time[b - 1] > kGapInterval * motion.step)
+      gaps.push_back(b);
   }
   for (const SampleRange& stretch : segmentation::spoilt_stretches(motion)) {
     gaps.push_back(stretch.begin);
@@ -156,7 +156,7 @@ void cut_at_gaps(const Motion& motion, std::vector<Cycle>& cycles) {
                  in_slip = c.slip.begin < gap && gap < c.slip.end;
       if (in_stick) c.stick.begin = std::min(gap, c.stick.end);
       if (in_stick || in_slip) c.stick_complete = false;
-      if (in_slip || (in_stick && c.stick.size() < least_stick)) {
+      if (in_slip || (in_stick && c.stick.size() < segmentation::kShortestStick)) {
         c.stick = {};
         c.break_away_time = c.break_away_time_std_error = unknown;
       }
@@ -285,17 +285,17 @@ void add_notes(Segmentation& result) {
   if (cycles.front().stick.size() == 0)
     result.notes.push_back("the record begins in slip: the first break-away is not in it");
   if (!cycles.back().slip_complete) result.notes.push_back("the last slip is cut off by the end of the record");
-  constexpr double least_slip = 4;  // samples that show a curve
   std::vector<double> lengths;
   for (const Cycle& c : cycles) lengths.push_back(static_cast<double>(c.slip.size()));
   const double usual = median(std::move(lengths));
-  if (usual < least_slip) {
+  if (usual < static_cast<double>(segmentation::kShortestSlip)) {
     result.notes.push_back(
         fmt::format("only {:.3g} sample{} a slip: too few for a curve", usual, usual == 1 ? "" : "s"));
   }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;
-  if (complete < 3) result.notes.push_back(fmt::format("only {} complete cycle{}", complete, complete == 1 ? "" : "s"));
+  if (complete < segmentation::kFewestCycles)
+    result.notes.push_back(fmt::format("only {} complete cycle{}", complete, complete == 1 ? "" : "s"));
 }
 
 /// Points, which are sorted by v_r: one slip for each direction. At rest friction shows it.

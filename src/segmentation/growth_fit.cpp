@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
@@ -132,7 +133,7 @@ Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
     all += left;
   }
   if (all.squares <= 0) return {};
-  return {all.squares / all.count, variance_inflation(all.correlation(0.98))};
+  return {all.squares / all.count, variance_inflation(all.correlation(kMostCorrelation))};
 }
 
 }  // namespace tribofit::segmentation

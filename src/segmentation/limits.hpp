@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+
+#include "kinematics/limits.hpp"
+
 // The thresholds by which stick and slip are found, with their reasons. What rest is, is said in kinematics/limits.hpp.
 
 namespace tribofit::segmentation {
@@ -9,6 +13,37 @@ namespace tribofit::segmentation {
 /// (a positioning system of published friction then comes out with half of it).
 inline constexpr double kReversalPart = 0.01;
 
+// ---- slips
+
+/// Parts of a record whose largest excursions make the typical peak, part of the largest from which one of them has a
+/// slip, and the largest that may be outliers, one in so many at most.
+inline constexpr std::size_t kPartsOfRecord = 512, kOutlyingPeaks = 2, kPartsPerOutlier = 8;
+inline constexpr double kHasSlip = 0.2;
+/// Standard deviations of the noise, and of the typical peak at most and at least, from which a slip is one (the first
+/// and the last are kinematics' kSlipsOverError and kSlipsOverFastest) and down to which it lasts. Larger: slips lose
+/// their ends; smaller: noise divides them.
+inline constexpr double kSlipAtMost = 0.15, kStickOverError = 5, kStickAtMost = 0.075, kStickOverPeak = 0.03;
+/// Rounding of omega r - v_b, over the fastest of both: no motion.
+inline constexpr double kRoundingOfVelocity = 1e-12;
+/// Of the typical peak, from which a slip shows how long slips last; below which one is ringing after a re-stick where
+/// it lasts less than the next of that time. Samples of a spike, where it lasts less than the last of it.
+inline constexpr double kShowsDuration = 0.4, kChatterPeak = 0.2, kChatterTime = 0.35;
+inline constexpr double kSpikeSamples = 3, kSpikeTime = 0.1;
+/// Samples between two slips in opposite directions that show whether v_r stays or passes: a third at either end.
+inline constexpr std::size_t kShortestTurn = 6;
+
+// ---- sticks
+
+/// Samples of a stick: one or two are where the velocity turns near zero. Of so many its shape shows, and it rests
+/// where its ends, without these parts, are at the level of its middle.
+inline constexpr std::size_t kShortestStick = 3, kShortestShape = 10;
+inline constexpr double kEndsOfStick = 0.1, kMiddleOfStick = 0.3;
+/// Samples of a mean, and such means in a row, that make a rest within sliding.
+inline constexpr std::size_t kRestOver = 16, kFewestRests = 2;
+/// Cycles that carry an analysis of cycles: a spread needs three, fewer leave no degree of freedom beside a mean and
+/// its trend. Samples of a slip that show a curve.
+inline constexpr std::size_t kFewestCycles = 3, kShortestSlip = 4;
+
 // ---- break-away
 
 /// Doublings of the velocity before a slip, at the pace of the last, before which a stick shows its own level:
@@ -17,6 +52,42 @@ inline constexpr std::size_t kDoublings = 6;
 /// Part of the level in the third quarter of a stick that is there in the second: growth doubles several times between
 /// them, creep does not.
 inline constexpr double kAlreadyThere = 0.5;
+/// Samples of a stick that shows its own level, and of a quarter of it; a stick whose growth takes more than such a
+/// part of it creeps.
+inline constexpr std::size_t kShowsLevel = 32, kShortestQuarter = 4;
+/// Of the typical peak, and standard deviations of the noise with the part that they reach at most, up to which growth
+/// is fitted: it is exponential there, and clear of the noise. Of two noises the second is the least.
+inline constexpr double kGrowthOverPeak = 0.01, kGrowthOverNoise = 25, kGrowthAtMost = 0.03;
+/// Levels between which the time constant of growth is taken, over one another; time constants before the level that
+/// are fitted, and their fewest and most samples.
+inline constexpr double kGrowthRatio = 3, kTimeConstants = 8, kShortestGrowth = 4, kLongestGrowth = 4000;
+/// Rises that are fitted together: more do not move the rate.
+inline constexpr std::size_t kMostPooled = 96;
+/// Variances of the noise that a jump must explain, part of the squares that it may leave, and where its search begins,
+/// over the level.
+inline constexpr double kJumpExplains = 40, kJumpLeaves = 0.9, kFirstJump = 0.1;
+/// Rounding of the level, squared.
+inline constexpr double kRoundingOfLevel = 1e-12;
+/// Growth over the slip, from which a contact creeps: it has no sharp onset.
+inline constexpr double kGradual = 0.3;
+/// Samples before the level from which a break-away shows; of the level, where the velocity leaves the stick where none
+/// does; and variance of the best [samples, squared]: a twelfth of a sample.
+inline constexpr double kShowsGrowth = 0.5, kLeavesStick = 0.25, kBestBreakAway = 1.0 / 144;
+
+// ---- re-stick
+
+/// Standard deviations of the noise, and of the typical peak at most, down to which v_r comes to rest; the same from
+/// which the end of a slip is a straight line, with its least; and samples after the slip among which it is.
+inline constexpr double kRestickNoise = 4, kRestickAtMost = 0.02;
+inline constexpr double kEndOverNoise = 25, kEndAtMost = 0.06, kEndAtLeast = 0.02;
+inline constexpr std::size_t kRestickWithin = 64;
+
+// ---- friction at break-away
+
+/// Samples of a stick whose second half is enough for a line, fewest of a line, and from which it may be a parabola
+/// where its curvature is so many standard errors. Correlation of neighbours that sticks are long enough to show.
+inline constexpr std::size_t kHalfOfStick = 40, kShortestLine = 3, kShortestParabola = 20;
+inline constexpr double kClearCurvature = 5, kMostCorrelation = 0.98;
 
 // ---- a block at one speed
 
@@ -49,8 +120,8 @@ inline constexpr double kSwings = 0.1;
 
 /// Longest stick over the mean one, from which sticks are uneven: runout and ripple make them differ by less.
 inline constexpr double kUnevenSticks = 3;
-/// Samples without which there is nothing to segment, and points without which no law has a value to spare.
-inline constexpr std::size_t kFewestSamples = 16, kFewestPoints = 5;
+/// Points without which no law has a value to spare.
+inline constexpr std::size_t kFewestPoints = 5;
 /// Slips from which the long-run variance of their mean is known; of fewer their scatter says more.
 inline constexpr std::size_t kManySlips = 30;
 

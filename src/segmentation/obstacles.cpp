@@ -20,9 +20,8 @@ bool is_constant(const std::vector<double>& channel) {
 
 /// A block on its spring that slides at one speed: what its velocity does is within the noise of its reading.
 bool slides_at_one_speed(const Motion& motion, const Segmentation& segmentation) {
-  constexpr std::size_t kEnough = 20000;  // samples for a quantile
   if (segmentation.kind != MotionKind::always_slipping || motion.velocity_kind != VelocityKind::block) return false;
-  const std::vector<double> some = thinned(motion.relative_velocity, kEnough);
+  const std::vector<double> some = thinned(motion.relative_velocity, kinematics::kEnough);
   const double range = quantile(some, 0.995) - quantile(some, 0.005);
   return range < std::min(segmentation::kWidthOfNoise * motion.velocity_noise,
                           segmentation::kOneSpeed * std::abs(median(some)));
@@ -43,7 +42,7 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
         "or of a slider on a spring --kind spring-slider with --speed and --stiffness"};
   if (motion.kind == RecordKind::spring_slider && !must_slip)
     return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
-  if (!motion.is_points() && motion.size() < segmentation::kFewestSamples)
+  if (!motion.is_points() && motion.size() < kinematics::kFewestSamples)
     return {fmt::format("there are only {} samples: too few for any analysis", motion.size())};
   std::vector<std::string> found;
   if (is_constant(motion.friction))

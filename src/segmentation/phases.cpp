@@ -11,12 +11,15 @@
 namespace tribofit::segmentation {
 namespace {
 
+using kinematics::kMovesWithDisc;
 using kinematics::kRestDepth;
 using kinematics::kRestNoise;
+using kinematics::kSlipsOverError;
+using kinematics::kSlipsOverFastest;
 
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
 double typical_peak(const Motion& motion) {
-  constexpr std::size_t parts = 512;
+  constexpr std::size_t parts = kPartsOfRecord;
   const std::size_t n = motion.size(), length = std::max<std::size_t>(1, (n + parts - 1) / parts);
   std::vector<double> peaks;
   const double plateau = motion.plateau_velocity;
@@ -27,8 +30,8 @@ double typical_peak(const Motion& motion) {
   }
   std::sort(peaks.begin(), peaks.end());
   // One lone outlier must not set the scale: the largest only counts when the next ones come near it.
-  const double largest = peaks[peaks.size() - 1 - std::min<std::size_t>(2, (peaks.size() - 1) / 8)];
-  const auto first = std::lower_bound(peaks.begin(), peaks.end(), 0.2 * largest);
+  const double largest = peaks[peaks.size() - 1 - std::min(kOutlyingPeaks, (peaks.size() - 1) / kPartsPerOutlier)];
+  const auto first = std::lower_bound(peaks.begin(), peaks.end(), kHasSlip * largest);
   return median(std::vector<double>(first, peaks.end()));
 }
 
@@ -68,13 +71,14 @@ std::vector<RawSlip> hysteresis(const Motion& motion, const Thresholds& t) {
 void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   std::vector<double> durations;
   for (const RawSlip& slip : slips) {
-    if (slip.peak > 0.4 * peak) durations.push_back(static_cast<double>(slip.samples.size()));
+    if (slip.peak > kShowsDuration * peak) durations.push_back(static_cast<double>(slip.samples.size()));
   }
   const double usual = durations.empty() ? 0 : median(std::move(durations));
   std::erase_if(slips, [&](const RawSlip& slip) {
     const auto duration = static_cast<double>(slip.samples.size());
     const bool whole = slip.begins_within && slip.ends_within;
-    return (whole && slip.peak < 0.2 * peak && duration < 0.35 * usual) || (duration < 3 && duration < 0.1 * usual);
+    return (whole && slip.peak < kChatterPeak * peak && duration < kChatterTime * usual) ||
+           (duration < kSpikeSamples && duration < kSpikeTime * usual);
   });
 }
 
@@ -90,10 +94,11 @@ Thresholds thresholds_of(const Motion& motion) {
   for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
   fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
   if (motion.stick.below > 0) return {motion.stick.below, motion.stick.below, peak > motion.stick.below ? peak : 0};
-  if (peak <= std::max(8 * noise, 1e-12 * fastest)) return {8 * noise, 5 * noise, 0};
+  if (peak <= std::max(kSlipsOverError * noise, kRoundingOfVelocity * fastest))
+    return {kSlipsOverError * noise, kStickOverError * noise, 0};
   t.peak = peak;
-  t.slip = std::max(0.06 * peak, std::min(8 * noise, 0.15 * peak));
-  t.stick = std::max(0.03 * peak, std::min(5 * noise, 0.075 * peak));
+  t.slip = std::max(kSlipsOverFastest * peak, std::min(kSlipsOverError * noise, kSlipAtMost * peak));
+  t.stick = std::max(kStickOverPeak * peak, std::min(kStickOverError * noise, kStickAtMost * peak));
   return t;
 }
 
@@ -175,7 +180,6 @@ std::vector<RawSlip> find_slides(const Motion& motion) {
 }
 
 std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSlip>& slides, double peak) {
-  constexpr std::size_t kBlock = 16, kFewest = 2;  // samples of a mean; means in a row that make a rest
   const double limit = std::max(motion.velocity_noise, kRestDepth * peak);
   std::vector<RawSlip> moving;
   for (const RawSlip& slide : slides) {
@@ -185,28 +189,27 @@ std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSl
       moving.push_back(slide);
       moving.back().samples = {begin, end};
     };
-    for (std::size_t i = begin; i < slide.samples.end; i += kBlock) {
-      const std::size_t count = std::min(kBlock, slide.samples.end - i);
+    for (std::size_t i = begin; i < slide.samples.end; i += kRestOver) {
+      const std::size_t count = std::min(kRestOver, slide.samples.end - i);
       const double mean = mean_of(std::span<const double>(motion.relative_velocity).subspan(i, count));
       if (std::abs(mean - motion.plateau_velocity) <= limit) {
         if (blocks++ == 0) rest = i;
         continue;
       }
-      if (blocks >= kFewest) {
+      if (blocks >= kFewestRests) {
         keep(rest);
         begin = i;
       }
       blocks = 0;
     }
-    keep(blocks >= kFewest ? rest : slide.samples.end);
+    keep(blocks >= kFewestRests ? rest : slide.samples.end);
   }
   return moving;
 }
 
 bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thresholds) {
-  constexpr std::size_t kFewest = 3, kShape = 10;  // samples that can rest; of which the shape shows
   const std::size_t n = stick.size();
-  if (n < kFewest) return false;
+  if (n < kShortestStick) return false;
   const bool block = motion.velocity_kind == VelocityKind::block;
   if (block && motion.disc_velocity.empty()) return true;
   const auto mean = [&](double from, double to) {
@@ -214,16 +217,18 @@ bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thr
     const auto end = std::max(begin + 1, static_cast<std::size_t>(to * static_cast<double>(n)));
     return mean_of(std::span<const double>(motion.relative_velocity).subspan(stick.begin + begin, end - begin));
   };
-  const double middle = mean(0.3, 0.7), noise = motion.velocity_noise;
-  if (block && std::abs(middle) <= 0.5 * std::abs(motion.disc_velocity[stick.begin + n / 2])) return true;
+  const double middle = mean(kMiddleOfStick, 1 - kMiddleOfStick), noise = motion.velocity_noise;
+  if (block && std::abs(middle) <= kMovesWithDisc * std::abs(motion.disc_velocity[stick.begin + n / 2])) return true;
   if (std::abs(middle) > std::max(kRestNoise * noise, kRestDepth * thresholds.peak)) return false;
-  return n < kShape || std::abs(0.5 * (mean(0.1, 0.3) + mean(0.7, 0.9)) - middle) <= noise;
+  if (n < kShortestShape) return true;
+  const double before = mean(kEndsOfStick, kMiddleOfStick), after = mean(1 - kMiddleOfStick, 1 - kEndsOfStick);
+  return std::abs(0.5 * (before + after) - middle) <= noise;
 }
 
 bool only_reverses(const Motion& motion, const RawSlip& before, const RawSlip& after, const Thresholds& thresholds) {
   if (before.direction == after.direction) return false;
   const std::size_t begin = before.samples.end, end = after.samples.begin, n = end - begin;
-  if (n < 6) return true;
+  if (n < kShortestTurn) return true;
   const std::size_t third = n / 3;
   double first = 0, last = 0;
   for (std::size_t k = 0; k < third; ++k) {

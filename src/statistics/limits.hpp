@@ -45,6 +45,21 @@ inline constexpr double kChanceOfLine = 0.5;
 inline constexpr std::size_t kFewestOfLine = 32, kSlowestBinOfLine = 4;
 inline constexpr double kChanceOfPeriod = 1e-3;
 
+// ---- the strongest line of a signal
+
+/// Bin of the transform below which a drift is not distinguishable from a line.
+inline constexpr std::size_t kSlowestBin = 3;
+/// Harmonics that may exceed their fundamental (short slips are pulses), and its height over theirs where it is one.
+inline constexpr std::size_t kHighestHarmonic = 10;
+inline constexpr double kFundamentalHeight = 0.5;
+/// Samples that are transformed: more cost time, and the reduced record shows low lines as well.
+inline constexpr std::size_t kMostTransformedAtOnce = std::size_t{1} << 15;
+/// Samples in a period of what is kept of a spectrum (what lies above then folds back from seven times as high on), and
+/// of a line whose place is refined.
+inline constexpr double kSamplesPerPeriod = 8, kSamplesPerRefined = 16;
+/// Samples of a spectrum.
+inline constexpr std::size_t kFewestOfSpectrum = 16, kFewestReduced = 8;
+
 // ---- local derivatives
 
 /// Squares that a window leaves over the usual ones, from which there is a kink in it, and over those of a window

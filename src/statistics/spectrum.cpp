@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "golden_section.hpp"
+#include "limits.hpp"
 #include "reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
@@ -66,20 +67,19 @@ struct Line {
 // Short slips are pulses, whose harmonics can exceed the fundamental: a line of half the height at a half, a third ...
 // a tenth of the strongest is taken for what it is.
 std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strongest, std::size_t first) {
-  for (std::size_t divisor = 10; divisor >= 2; --divisor) {
+  for (std::size_t divisor = kHighestHarmonic; divisor >= 2; --divisor) {
     const std::size_t near = strongest / divisor;
     if (near <= first) continue;
     const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(near - 1);
     const auto peak = std::max_element(begin, begin + 3 + static_cast<std::ptrdiff_t>(near / 50));
-    if (*peak > 0.5 * lines[strongest]) return static_cast<std::size_t>(peak - lines.begin());
+    if (*peak > kFundamentalHeight * lines[strongest]) return static_cast<std::size_t>(peak - lines.begin());
   }
   return strongest;
 }
 
-// Strongest line above three bins: below, a drift is not distinguishable from a line.
 Line strongest_line(std::span<const double> signal, double step) {
   const Spectrum spectrum = amplitude_spectrum(signal, step);
-  constexpr std::size_t first = 3;
+  constexpr std::size_t first = kSlowestBin;
   if (spectrum.amplitude.size() <= first + 1) return {};
   const auto& lines = spectrum.amplitude;
   const auto strongest = static_cast<std::size_t>(std::max_element(lines.begin() + first, lines.end()) - lines.begin());
@@ -117,12 +117,11 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
 }
 
 Spectrum spectrum_up_to(std::span<const double> signal, double step, double top) {
-  constexpr double kSamplesPerPeriod = 8;  // what lies above then folds back from seven times `top` on
-  if (signal.size() < 16 || !(step > 0) || !(top > 0)) return {};
+  if (signal.size() < kFewestOfSpectrum || !(step > 0) || !(top > 0)) return {};
   top = std::min(top, 0.5 / step);
   const auto every = static_cast<std::size_t>(std::max(1.0, 1 / (kSamplesPerPeriod * top * step)));
   const BlockMeans reduced = block_means(signal, every, step);
-  if (reduced.mean.size() < 8) return {};
+  if (reduced.mean.size() < kFewestReduced) return {};
   Spectrum out = amplitude_spectrum(reduced.mean, reduced.step);
   out.amplitude.resize(std::min(out.amplitude.size(), static_cast<std::size_t>(top / out.bin_width) + 1));
   for (std::size_t k = 0; k < out.amplitude.size(); ++k) {
@@ -163,8 +162,7 @@ Spectrum averaged_spectrum(std::span<const double> signal, double step, std::siz
 SpectralPeak fundamental(std::span<const double> signal, double step, std::size_t plain_size) {
   SpectralPeak peak;
   if (signal.size() < 8 || !(step > 0)) return peak;
-  constexpr std::size_t most = std::size_t{1} << 15;
-  constexpr double lines_per_period = 16;
+  constexpr std::size_t most = kMostTransformedAtOnce;
   // The whole record, reduced, sees low lines; one stretch at the full rate sees what the reduction would have lost.
   const std::size_t reduction = (signal.size() + most - 1) / most;
   const BlockMeans reduced = block_means(signal, reduction, step);
@@ -173,7 +171,7 @@ SpectralPeak fundamental(std::span<const double> signal, double step, std::size_
   if (reduction > 1) {
     const Line fast = strongest_line(signal.first(std::min(signal.size(), most)), step);
     if (fast.frequency > 0.5 / reduced.step && fast.amplitude > line.amplitude) {
-      const auto blocks = static_cast<std::size_t>(1 / (lines_per_period * fast.frequency * step));
+      const auto blocks = static_cast<std::size_t>(1 / (kSamplesPerRefined * fast.frequency * step));
       const BlockMeans finer = block_means(signal, std::max<std::size_t>(1, blocks), step);
       const Line refined = strongest_line(finer.mean, finer.step);
       line = {refined.frequency,

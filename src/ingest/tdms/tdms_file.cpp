@@ -157,8 +157,8 @@ class Parser {
     const auto [known, is_new] = object_of_.emplace(path, objects_.size());
     const std::size_t k = known->second;
     if (is_new) {
-      if (objects_.size() == kMostObjects)
-        refuse(at(), fmt::format("more than {} groups and channels", kMostObjects), "export fewer channels");
+      if (objects_.size() == kMostTdmsObjects)
+        refuse(at(), fmt::format("more than {} groups and channels", kMostTdmsObjects), "export fewer channels");
       objects_.push_back({path, names_of(path), 0, 0, {}, {}});
       indices_.emplace_back();
     }
@@ -228,8 +228,8 @@ class Parser {
       object.properties[known->second] = std::move(property);
       return;
     }
-    if (object.properties.size() >= kMostProperties) {
-      refuse(type_at, fmt::format("more than {} properties of {}", kMostProperties, object.path));
+    if (object.properties.size() >= kMostTdmsProperties) {
+      refuse(type_at, fmt::format("more than {} properties of {}", kMostTdmsProperties, object.path));
     }
     object.properties.push_back(std::move(property));
   }
@@ -293,8 +293,8 @@ class Parser {
       piece.chunks = 1;
     }
     if (!object.pieces.empty() && goes_on(object.pieces.back(), piece)) return;
-    if (++pieces_ > kMostPieces) {
-      refuse(piece.begin, fmt::format("the values are in more than {} pieces", kMostPieces),
+    if (++pieces_ > kMostTdmsPieces) {
+      refuse(piece.begin, fmt::format("the values are in more than {} pieces", kMostTdmsPieces),
              "defragment the file in LabVIEW, or export it as CSV");
     }
     object.pieces.push_back(piece);
