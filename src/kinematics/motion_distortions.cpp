@@ -50,7 +50,7 @@ void MotionStages::undo_zero() {
 bool MotionStages::clips_slips() const {
   const auto is_cut = [&](const EndRuns& end) {
     const double level = end.pile.count > 0 ? end.pile.level : end.at;
-    const bool crowds = end.count >= 6 || end.pile.count > 0;
+    const bool crowds = end.count >= kFewestAtEnd || end.pile.count > 0;
     return crowds && std::abs(level - search_.plateaus.level) > 0.5 * search_.plateaus.depth;
   };
   return is_cut(range_ends_.velocity[0]) || is_cut(range_ends_.velocity[1]);

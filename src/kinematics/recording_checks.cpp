@@ -75,6 +75,61 @@ struct Units {
   std::uint8_t kind;
 };
 
+/// Whether a limit holds what crowds at an end of the range. Where nothing sticks a channel may rest there, as friction
+/// does at the fastest of some constant speeds, but not far from zero and without its noise.
+bool is_held(const EndRuns& end, bool sticks) {
+  const PileUp& pile = end.pile;
+  if (pile.count == 0) return false;
+  if (sticks) return pile.is_quiet || pile.density >= kCrowdedAlone;
+  return pile.is_quiet && pile.is_still && end.is_far;
+}
+
+/// An end of the velocity's range without what rests there in stick; where that is not known, what crowds may.
+EndRuns without_rest(EndRuns end, double range, const std::optional<LevelRange>& plateau) {
+  const auto is_rest = [&](double width) {
+    const double off = kSettled * std::max(std::abs(plateau->low), std::abs(plateau->high)) + width;
+    return end.at >= plateau->low - off && end.at <= plateau->high + off;
+  };
+  if (plateau && is_rest(kRoundingOfRange * range)) end.count = 0;
+  if (!plateau || is_rest(range / static_cast<double>(kNarrowestRange))) end.pile.count = 0;
+  return end;
+}
+
+/// Reports the samples at an end of a channel's range. Returns where they are; null: there are none.
+const std::vector<SampleSpan>* add_range_end(const Units& channel, const EndRuns& end, bool sticks, std::size_t samples,
+                                             const char* unreliable, HealthItem& item) {
+  const bool held = is_held(end, sticks), repeats = end.count >= kFewestAtEnd;
+  if (!repeats && !held) return nullptr;
+  const std::size_t count = std::max(end.count, held ? end.pile.count : 0);
+  const double share = static_cast<double>(count) / static_cast<double>(samples);
+  item.status = share > kMuchClipped ? Status::problem : Status::warning;
+  item.message = fmt::format(
+      "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they are not used, {} unreliable",
+      channel.name, channel.factor * (repeats ? end.at : end.pile.level), channel.unit, count, 100 * share, unreliable);
+  return held ? &end.pile.spans : &end.spans;
+}
+
+/// rate: largest change of the channel in a second, where changes crowd at it; 0: they do not.
+void add_slew(const Units& channel, double rate, HealthItem& item) {
+  if (rate == 0) return;
+  const bool is_first = item.status == Status::ok;
+  item.status = Status::problem;
+  item.message = fmt::format(
+      "{}{}{} changes by at most {:.3g}{} per second: the slew rate of its amplifier limits it; mu_s, mu_k and the "
+      "law's decay (alpha) "
+      "are "
+      "unreliable",
+      is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * rate, channel.unit);
+}
+
+void compare_with_declared(double largest_velocity, const Instruments& instruments, HealthItem& item) {
+  const auto& declared = instruments.vibrometer.range;
+  if (!declared || !(largest_velocity > 0) || largest_velocity < kAtDeclaredRange * declared->value) return;
+  item.status = Status::warning;
+  item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest_velocity,
+                             1e3 * declared->value);
+}
+
 struct Gaps {
   std::size_t count = 0;
   double longest = 0;  // [s]
@@ -112,57 +167,21 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   const bool is_force = trace.friction_kind == FrictionKind::force;
   const Units friction{"friction", 1, is_force ? " N" : "", SampleFault::friction};
   const Units velocity{"velocity", 1e3, " mm/s", SampleFault::velocity};
-  const auto add_warning = [&](const Units& channel, const EndRuns& end, const char* unreliable) {
-    const PileUp& pile = end.pile;
-    // Where nothing sticks a channel may rest at an end of its range, but not far from zero and quiet.
-    const bool holds = resting.sticks ? pile.is_quiet || pile.density >= kCrowdedAlone : pile.is_quiet && end.is_far;
-    const bool is_clipped = pile.count > 0 && holds;
-    if (end.count < kFewestAtEnd && !is_clipped) return;
-    const std::size_t count = std::max(end.count, is_clipped ? pile.count : 0);
-    const double share = static_cast<double>(count) / static_cast<double>(trace.size());
-    item.status = share > kMuchClipped ? Status::problem : Status::warning;
-    item.message = fmt::format(
-        "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they are not used, {} unreliable",
-        channel.name, channel.factor * (end.count < kFewestAtEnd ? pile.level : end.at), channel.unit, count,
-        100 * share, unreliable);
-    spoilt.add_clipped(is_clipped ? pile.spans : end.spans, channel.kind);
+  const auto add_end = [&](const Units& channel, const EndRuns& end, const char* unreliable) {
+    const std::vector<SampleSpan>* spans = add_range_end(channel, end, resting.sticks, trace.size(), unreliable, item);
+    if (spans != nullptr) spoilt.add_clipped(*spans, channel.kind);
   };
   const auto& [low, high] = ends.friction;
-  if (low.at <= 0) add_warning(friction, low, high.at <= 0 ? "mu_s is" : "the lowest friction is");
-  if (high.at >= 0) add_warning(friction, high, "mu_s is");
+  if (low.at <= 0) add_end(friction, low, high.at <= 0 ? "mu_s is" : "the lowest friction is");
+  if (high.at >= 0) add_end(friction, high, "mu_s is");
   const double range = std::abs(ends.velocity[1].at - ends.velocity[0].at);
-  for (const EndRuns& end : ends.velocity) {
-    const auto rests_at = [&](double level, double width) {
-      if (!resting.plateau) return false;
-      const LevelRange& rest = *resting.plateau;
-      const double off = kSettled * std::max(std::abs(rest.low), std::abs(rest.high)) + width;
-      return level >= rest.low - off && level <= rest.high + off;
-    };
-    EndRuns seen = end;
-    if (rests_at(end.at, kRoundingOfRange * range)) seen.count = 0;
-    if (rests_at(end.at, range / static_cast<double>(kNarrowestRange)) || !resting.plateau) seen.pile.count = 0;
-    add_warning(velocity, seen, "mu_k and alpha are");
+  for (const EndRuns& end : ends.velocity)
+    add_end(velocity, without_rest(end, range, resting.plateau), "mu_k and the law's decay (alpha) are");
+  if (resting.sticks) {
+    add_slew(friction, ends.friction_slew / trace.interval(), item);
+    add_slew(velocity, ends.velocity_slew / trace.interval(), item);
   }
-  const auto add_slew = [&](const Units& channel, double change) {
-    if (!resting.sticks || change == 0) return;
-    const bool is_first = item.status == Status::ok;
-    item.status = Status::problem;
-    item.message = fmt::format(
-        "{}{}{} changes by at most {:.3g}{} per second: the slew rate of its amplifier limits it; mu_s, "
-        "mu_k and alpha are unreliable",
-        is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * change / trace.interval(),
-        channel.unit);
-  };
-  add_slew(friction, ends.friction_slew);
-  add_slew(velocity, ends.velocity_slew);
-  if (item.status == Status::ok && instruments.vibrometer.range && ends.largest_velocity > 0) {
-    const double declared = instruments.vibrometer.range->value;
-    if (ends.largest_velocity >= kAtDeclaredRange * declared) {
-      item.status = Status::warning;
-      item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s",
-                                 1e3 * ends.largest_velocity, 1e3 * declared);
-    }
-  }
+  if (item.status == Status::ok) compare_with_declared(ends.largest_velocity, instruments, item);
   return item;
 }
 

@@ -153,6 +153,19 @@ double noise_within(std::span<const double> x, double from, double to) {
   return median(std::move(inside)) / median(std::move(outside));
 }
 
+/// Noise of whole stretches over that of the channel. Samples that were picked for lying near one another look quiet
+/// whatever holds them; what a limit holds is quiet with all that is between.
+double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stretches) {
+  std::vector<double> inside, all;
+  for (const SampleSpan& stretch : stretches) {
+    for (std::size_t i = stretch.begin + 1; i + 1 < stretch.end; ++i) inside.push_back(std::abs(off_line(x, i)));
+  }
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / 65536);
+  for (std::size_t i = 1; i + 1 < x.size(); i += stride) all.push_back(std::abs(off_line(x, i)));
+  if (inside.size() < 16 || all.size() < 16) return 1;
+  return median(std::move(inside)) / median(std::move(all));
+}
+
 /// Counts from an end of the range inwards.
 PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts, const Extremes& range, bool upper) {
   PileUp best;
@@ -174,6 +187,7 @@ PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts
   best.from = from, best.to = to;
   best.is_quiet = noise_within(x, from, to) < kQuiet;
   best.spans = spans_at_limit(x, from, to);
+  best.is_still = noise_over(x, best.spans) < kQuiet;
   return best;
 }
 

@@ -35,6 +35,7 @@ struct PileUp {
   double density = 0;             ///< over that of three such widths below it
   double from = 0, to = 0;        ///< what the crowd lies between
   bool is_quiet = false;          ///< the noise that the channel has elsewhere is not on it
+  bool is_still = false;          ///< nor on the whole stretches, where what lies in the crowd was not picked for it
   std::vector<SampleSpan> spans;  ///< the stretches at the limit, with the samples between them
 };
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -183,6 +184,41 @@ TEST(Health, APlateauWithoutNoiseIsNoClipping) {
       const HealthItem found = item(compute_motion(std::move(trace)), "clipping");
       EXPECT_EQ(found.status, Status::ok) << found.message;
     }
+  }
+}
+
+/// A held block over twelve speeds of a disc, a thousand samples each: friction of Coulomb and viscous parts.
+Trace speed_steps(std::mt19937_64& engine) {
+  std::vector<double> speeds;
+  for (int k = 0; k < 12; ++k) speeds.push_back(1.5e-3 * std::pow(60.0, k / 11.0));
+  std::shuffle(speeds.begin(), speeds.end(), engine);
+  std::normal_distribution<double> noise(0, 0.003);
+  Trace trace;
+  trace.velocity_kind = VelocityKind::fixed_block;
+  trace.conditions.radius = {0.015, "file"};
+  for (std::size_t i = 0; i < 12000; ++i) {
+    const double speed = speeds[i / 1000];
+    trace.time.push_back(5e-3 * static_cast<double>(i));
+    trace.disc_speed.push_back(speed / 0.015);
+    trace.friction.push_back(0.35 + 1.5 * speed + noise(engine));
+  }
+  trace.steps = {{0, trace.size(), "", trace.conditions}};
+  return trace;
+}
+
+TEST(Health, FrictionOfTheFastestStepIsNoClipping) {
+  std::mt19937_64 engine(3);
+  for (int record = 0; record < 40; ++record) {
+    const Trace trace = speed_steps(engine);
+    EXPECT_EQ(item(compute_motion(trace), "clipping").status, Status::ok)
+        << item(compute_motion(trace), "clipping").message;
+    // The same with an amplifier that ends below the fastest, a little noise behind it.
+    Trace clipped = trace;
+    std::normal_distribution<double> noise(0, 0.0003);
+    for (double& mu : clipped.friction) mu = std::min(mu, 0.35 + 1.5 * 0.08) + noise(engine);
+    const HealthItem found = item(compute_motion(std::move(clipped)), "clipping");
+    EXPECT_EQ(found.status, Status::problem) << found.message;
+    EXPECT_THAT(found.message, ::testing::HasSubstr("friction stays at"));
   }
 }
 
