@@ -45,7 +45,7 @@ HealthItem check_mean(const Motion& motion) {
   item.status = HealthItem::Status::problem;
   item.message += std::abs(mean / disc) < kGainOff
                       ? ": this is the velocity of the block; name the column v_b"
-                      : ": zero or gain of v_r, or radius or speed, are wrong; alpha is unreliable";
+                      : ": zero or gain of v_r, or radius or speed, are wrong; the law's decay (alpha) is unreliable";
   return item;
 }
 
@@ -62,7 +62,7 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
   if (plateaus.runs.size() < kFewestPeriods) return item;
   const MeanVelocity mean = mean_velocity(motion, plateaus, factor);
   if (mean.disc == 0) {
-    if (is_off) item.message += ": its zero is off, and alpha with it";
+    if (is_off) item.message += ": its zero is off, and the law's decay (alpha) with it";
     return item;
   }
   const double gain = (mean.relative - rest) / mean.disc;
@@ -74,15 +74,15 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
   } else if (std::abs(gain - 1) > kGainOff) {
     item.status = Status::problem;
     item.message += fmt::format(
-        ": v_r reads {:.3g} times the truth, or radius or speed are wrong; alpha is "
+        ": v_r reads {:.3g} times the truth, or radius or speed are wrong; the law's decay (alpha) is "
         "unreliable",
         gain);
   } else if (is_off) {
-    item.message += ": its zero is off, and alpha with it";
+    item.message += ": its zero is off, and the law's decay (alpha) with it";
   } else if (std::abs(gain - 1) > kGainWarned) {
     item.status = Status::warning;
     item.message += fmt::format(
-        ": v_r may read {:.3g} times the truth, and alpha with it, or radius or speed are "
+        ": v_r may read {:.3g} times the truth, and the law's decay (alpha) with it, or radius or speed are "
         "off",
         gain);
   }

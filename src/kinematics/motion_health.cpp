@@ -74,7 +74,7 @@ HealthItem MotionStages::check_band() const {
   if (samples >= kFewSlipSamples) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and alpha are "
+      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and the law's decay (alpha) are "
       "unreliable",
       samples);
   return item;

@@ -120,12 +120,13 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
       : compression != 0
           ? fmt::format("the velocity channel is nonlinear: the gain is {:.3g} % {} at the highest speed; corrected{}",
                         100 * std::abs(compression), compression > 0 ? "less" : "more",
-                        is_guess ? " with a cubic characteristic, mu_k and alpha are unreliable" : "")
-      : speed_was_stated ? "the velocity channel is nonlinear, or samples are missing; mu_k and alpha are "
-                           "unreliable"
-                         : "the velocity has a zero error, or its channel is nonlinear (mu_k and alpha are then "
-                           "unreliable); give "
-                           "--speed to decide";
+                        is_guess ? " with a cubic characteristic, mu_k and the law's decay (alpha) are unreliable" : "")
+      : speed_was_stated
+          ? "the velocity channel is nonlinear, or samples are missing; mu_k and the law's decay (alpha) are "
+            "unreliable"
+          : "the velocity has a zero error, or its channel is nonlinear (mu_k and the law's decay (alpha) are then "
+            "unreliable); give "
+            "--speed to decide";
 }
 
 }  // namespace tribofit::kinematics

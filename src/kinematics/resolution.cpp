@@ -51,7 +51,7 @@ HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, doubl
                     1e3 * steps.velocity));
     if (steps.velocity > kTooCoarse * steps.largest_velocity) {
       item.status = HealthItem::Status::problem;
-      item.message += "; alpha is unreliable, use a smaller range of the vibrometer";
+      item.message += "; the law's decay (alpha) is unreliable, use a smaller range of the vibrometer";
     }
   }
   if (steps.friction > kCoarseStep * steps.friction_range) {
@@ -59,7 +59,7 @@ HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, doubl
                        steps.friction, kind == FrictionKind::force ? " N" : ""));
     if (steps.friction > kTooCoarseFriction * steps.friction_range) {
       item.status = HealthItem::Status::problem;
-      item.message += "; mu_k and alpha are unreliable";
+      item.message += "; mu_k and the law's decay (alpha) are unreliable";
     }
   }
   return item;

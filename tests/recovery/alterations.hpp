@@ -258,8 +258,9 @@ inline const std::vector<Alteration>& beyond_rescue() {
       {"both: means of 0.5 ms", averaged({kFriction, kVelocity}, 0.5e-3), "bandwidth", "low-pass"},
       {"both: means of 1 ms", averaged({kFriction, kVelocity}, 1e-3), "bandwidth", "low-pass"},
       {"velocity: means of 2 ms", averaged({kVelocity}, 2e-3), "bandwidth", "low-pass"},
-      {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "alpha is unreliable"},
-      {"friction: twenty levels", rounded(kFriction, 0.02), "resolution", "alpha are unreliable"},
+      {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "the law's decay (alpha) is unreliable"},
+      {"friction: twenty levels", rounded(kFriction, 0.02), "resolution",
+       "mu_k and the law's decay (alpha) are unreliable"},
       {"one in five samples lost, 20 ms each", lost(0.2, 400), "drop-outs", "samples were lost"},
   };
   return list;
