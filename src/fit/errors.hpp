@@ -34,12 +34,7 @@ class FullRecord {
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 
-/// 1/f noise of friction as it shows over times in which no law changes it but as a parabola: in stick, and where
-/// nothing sticks in stretches of the sliding. No law has to be right for it.
-struct FlickerNoise {
-  double power = 0;    ///< a of the spectrum a/f: half the variance in every e-fold of time; 0: none shows
-  double samples = 0;  ///< length of the stretches that it was taken over
-};
+/// Of a record, for its observations: a fit finds it there (Observations::flicker_noise).
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
 /// Writes it to the observations of one record, with what it does to each slip: as much in every e-fold of time, from
 /// the slip to the record.

@@ -97,12 +97,12 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
 /// as much in every e-fold of time, and those in which no law has to be right bound what it has over longer times:
 /// friction that wanders by more does so itself. left: variance of what a model leaves beside other noise; what a fit
 /// takes away at low frequencies is not left.
-double slow_sensor_noise(std::span<const Record> records, double left) {
+double slow_sensor_noise(std::span<const Record> records, const Observations& observations, double left) {
   double variance = 0;
-  for (const Record& record : records) {
-    const FlickerNoise flicker = flicker_noise(*record.motion, *record.segmentation);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const FlickerNoise& flicker = observations.flicker_noise[r];
     if (!(flicker.power > 0)) continue;
-    const double times = static_cast<double>(record.motion->size()) / (kPartBesideParabola * flicker.samples);
+    const double times = static_cast<double>(records[r].motion->size()) / (kPartBesideParabola * flicker.samples);
     variance += 2 * flicker.power * std::log(std::max(1.0, times)) / static_cast<double>(records.size());
   }
   return std::sqrt(std::clamp(variance, 0.0, std::max(0.0, left)));
@@ -127,8 +127,8 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
   if (!points) {
-    floor.slow_noise =
-        slow_sensor_noise(context.records, std::pow(fit.error.rmse, 2) - std::pow(floor.noise, 2) - scatter);
+    floor.slow_noise = slow_sensor_noise(context.records, context.observations,
+                                         std::pow(fit.error.rmse, 2) - std::pow(floor.noise, 2) - scatter);
   }
   floor.rmse = std::sqrt(std::pow(floor.noise, 2) + std::pow(floor.slow_noise, 2) + scatter);
   set_floor(floor, fit);

@@ -173,8 +173,9 @@ FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentatio
 }
 
 void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out) {
-  if (motion.is_points()) return;
-  const double power = flicker_noise(motion, segmentation).power;
+  out.flicker_noise = {motion.is_points() ? FlickerNoise{} : flicker_noise(motion, segmentation)};
+  const double power = out.flicker_noise.front().power;
+  if (!(power > 0)) return;
   for (auto& slip : out.slips) {
     const auto times = static_cast<double>(motion.size()) / static_cast<double>(slip.samples.size());
     slip.slow_variance = 2 * power * std::log(times);

@@ -331,6 +331,7 @@ Observations join(std::vector<Observations> records) {
     }
     out.cycles += next.cycles;
     out.sticks.insert(out.sticks.end(), next.sticks.begin(), next.sticks.end());
+    out.flicker_noise.insert(out.flicker_noise.end(), next.flicker_noise.begin(), next.flicker_noise.end());
     out.stick_noise.insert(out.stick_noise.end(), next.stick_noise.begin(), next.stick_noise.end());
     // Channels missing on one side cannot be used by an effect of all.
     const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {

@@ -26,6 +26,13 @@ struct RecordScales {
   double mass = 4;               ///< largest friction force over the acceleration that one value in twenty exceeds [kg]
 };
 
+/// 1/f noise of friction as it shows over times in which no law changes it but as a parabola: in stick, and where
+/// nothing sticks in stretches of the sliding. No law has to be right for it.
+struct FlickerNoise {
+  double power = 0;    ///< a of the spectrum a/f: half the variance in every e-fold of time; 0: none shows
+  double samples = 0;  ///< length of the stretches that it was taken over
+};
+
 /// The samples over which an error is taken: those of every slip, and one break-away per cycle.
 ///
 /// This is the definition for the whole library: rigid-stick laws are judged over the slip samples plus one break-away
@@ -68,10 +75,11 @@ struct Observations {
   std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<SlipObservation> slips;
-  std::vector<StickCreep> sticks;       ///< creep as evidence; empty unless add_stick_evidence() filled it
-  std::vector<StickNoise> stick_noise;  ///< of each record
-  double stick_unit = 0;                ///< residual that stands for one standard deviation of v_r in stick [1 or N]
-  std::size_t cycles = 0;               ///< units of evidence
+  std::vector<StickCreep> sticks;           ///< creep as evidence; empty unless add_stick_evidence() filled it
+  std::vector<StickNoise> stick_noise;      ///< of each record
+  std::vector<FlickerNoise> flicker_noise;  ///< of each record
+  double stick_unit = 0;   ///< residual that stands for one standard deviation of v_r in stick [1 or N]
+  std::size_t cycles = 0;  ///< units of evidence
   std::size_t samples_per_value = 1;
   double mean_load = 1;         ///< N0 [N]
   double mean_temperature = 0;  ///< T0 [degC]
