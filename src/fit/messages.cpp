@@ -37,11 +37,7 @@ void add_condition(Fit& fit) {
       over_floor(fit)));
 }
 
-}  // namespace
-
-void add_messages(const std::vector<bool>& unconstrained, const std::vector<std::vector<std::size_t>>& groups,
-                  Fit& fit) {
-  add_condition(fit);
+void add_undetermined(const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {
   for (const std::vector<std::size_t>& group : groups) {
     std::string names;
     for (const std::size_t k : group) {
@@ -59,7 +55,10 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
                              " is not determined: its 95 % interval holds every value within its bounds");
     }
   }
-  add_correlations(fit);
+}
+
+/// Parameters that no sample depends on, and those at a bound.
+void add_bounded(const std::vector<bool>& unconstrained, Fit& fit) {
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
     if (unconstrained[k] && fit.protocol == Protocol::joint) {
@@ -72,11 +71,18 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
                                          p.parameter.unit == "1" ? "" : " " + p.parameter.unit));
     }
   }
+}
+
+void add_correlated(Fit& fit) {
   for (const Correlation& c : fit.correlations) {
     fit.messages.push_back(
         fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
                     shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
   }
+}
+
+/// Levels of friction that lie beyond the speeds that were recorded.
+void add_extrapolated(Fit& fit) {
   const FrictionModel& model = fit.model;
   const std::vector<double> p = fit.values();
   const std::optional<double> at_slowest = remaining_fall(model.law(), p, fit.slowest);
@@ -95,6 +101,18 @@ void add_messages(const std::vector<bool>& unconstrained, const std::vector<std:
         "mu_k is extrapolated: at the fastest slip ({:.1f} mm/s) {:.0f} % of the drop from mu_s is still to come",
         fit.fastest * 1e3, 100 * reached));
   }
+}
+
+}  // namespace
+
+void add_messages(const std::vector<bool>& unconstrained, const std::vector<std::vector<std::size_t>>& groups,
+                  Fit& fit) {
+  add_condition(fit);
+  add_undetermined(groups, fit);
+  add_correlations(fit);
+  add_bounded(unconstrained, fit);
+  add_correlated(fit);
+  add_extrapolated(fit);
 }
 
 }  // namespace tribofit

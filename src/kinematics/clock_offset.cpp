@@ -212,6 +212,67 @@ void refuse_strangers(const std::vector<double>& falls, const std::vector<double
       "give the two files of one run");
 }
 
+/// Times at which friction falls and at which the velocity leaves its plateau.
+struct BreakAways {
+  std::vector<double> falls, jumps;
+};
+
+BreakAways find_break_aways(const std::vector<double>& friction_time, const std::vector<double>& friction,
+                            const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
+  const double low = quantile(thinned(friction, kEnough), kEndsOfFriction),
+               high = quantile(thinned(friction, kEnough), 1 - kEndsOfFriction);
+  const Plateau plateau = find_plateau(velocity);
+  if (!(high > low) || !(plateau.reach > 0)) return {};
+  BreakAways out;
+  out.falls = upward_crossings(
+      friction_time, [&](std::size_t i) { return -friction[i]; }, -(low + kFallFrom * (high - low)),
+      -(low + kFallTo * (high - low)));
+  out.jumps = upward_crossings(
+      velocity_time, [&](std::size_t i) { return std::abs(velocity[i] - plateau.velocity); }, kRiseFrom * plateau.reach,
+      kRiseTo * plateau.reach);
+  for (std::vector<double>* events : {&out.falls, &out.jumps})
+    events->resize(std::min(events->size(), kMostBreakAways));
+  return out;
+}
+
+/// The offset of a candidate that leaves least of friction for the events that it matches.
+struct BestOffset {
+  double offset = 0;
+  Candidate candidate;
+  double ambiguity = 0;  ///< what it leaves over what the next best one does
+};
+
+BestOffset best_offset(const std::vector<Candidate>& candidates, const ForceBalance& unbalanced, double reach,
+                       std::size_t n, double tolerance) {
+  const std::size_t coarse = std::max<std::size_t>(1, n / kScanned);
+  BestOffset best;
+  double least = std::numeric_limits<double>::infinity(), second = least;
+  for (const Candidate& candidate : candidates) {
+    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, tolerance);
+    const double cost = unbalanced(offset, 0, n, coarse) / static_cast<double>(candidate.support);
+    second = std::min(second, std::max(least, cost));
+    if (!(cost < least)) continue;
+    least = cost;
+    best.offset = offset;
+    best.candidate = candidate;
+  }
+  best.ambiguity = least / second;
+  return best;
+}
+
+/// The same offset from contiguous parts: their spread is what wanders from cycle to cycle.
+double uncertainty_of(double offset, const ForceBalance& unbalanced, std::size_t n, std::size_t stride,
+                      double interval) {
+  constexpr std::size_t parts = kPartsOfRecord;
+  double squares = 0;
+  for (std::size_t i = 0; i < parts; ++i) {
+    const double part = unbalanced.minimise(offset, kSearchReachOfPart * interval, i * n / parts, (i + 1) * n / parts,
+                                            stride, kFoundInPart * interval);
+    squares += (part - offset) * (part - offset);
+  }
+  return std::sqrt(squares / (parts * (parts - 1.0)));
+}
+
 }  // namespace
 }  // namespace tribofit::kinematics
 
@@ -220,59 +281,28 @@ namespace tribofit {
 ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, const std::vector<double>& friction,
                                   const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
   using namespace kinematics;
-  const double low = quantile(thinned(friction, kEnough), kEndsOfFriction),
-               high = quantile(thinned(friction, kEnough), 1 - kEndsOfFriction);
-  const Plateau plateau = find_plateau(velocity);
-  if (!(high > low) || !(plateau.reach > 0)) return {};
-  auto falls = upward_crossings(
-      friction_time, [&](std::size_t i) { return -friction[i]; }, -(low + kFallFrom * (high - low)),
-      -(low + kFallTo * (high - low)));
-  auto jumps = upward_crossings(
-      velocity_time, [&](std::size_t i) { return std::abs(velocity[i] - plateau.velocity); }, kRiseFrom * plateau.reach,
-      kRiseTo * plateau.reach);
-  if (falls.size() > kMostBreakAways) falls.resize(kMostBreakAways);
-  if (jumps.size() > kMostBreakAways) jumps.resize(kMostBreakAways);
+  const auto [falls, jumps] = find_break_aways(friction_time, friction, velocity_time, velocity);
   if (std::min(falls.size(), jumps.size()) < kFewestBreakAways) return {};
-
   const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
   // Friction falls twice a cycle, at break-away and again at re-stick.
   const double period = median_interval(jumps);
   const double width = std::max(kCoincideSamples * interval, kCoincidePart * period);
   auto candidates = coincidences(falls, jumps, width, kOffsetsApart * period);
-  const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
   // Instruments started by one trigger share their clock.
   if (!candidates.empty()) candidates.push_back({0, candidates.front().support});
-  const std::size_t n = friction.size(), coarse = std::max<std::size_t>(1, n / kScanned);
+
+  const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
+  const std::size_t n = friction.size();
   // Either of these may have been matched, and both lag behind the jump.
   const double reach = std::max(kReachSamples * interval, kReachPart * period);
-  double best = 0, matched = 0, least = std::numeric_limits<double>::infinity(), second = least;
-  std::size_t support = 0;
-  for (const Candidate& candidate : candidates) {
-    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, kFoundInScan * interval);
-    const double cost = unbalanced(offset, 0, n, coarse) / static_cast<double>(candidate.support);
-    second = std::min(second, std::max(least, cost));
-    if (cost < least) {
-      least = cost;
-      best = offset;
-      matched = candidate.offset;
-      support = candidate.support;
-    }
-  }
-  refuse_strangers(falls, jumps, matched, width, unbalanced(best, 0, n, coarse), least / second);
+  const BestOffset best = best_offset(candidates, unbalanced, reach, n, kFoundInScan * interval);
+  const std::size_t coarse = std::max<std::size_t>(1, n / kScanned), fine = std::max<std::size_t>(1, n / kSearched);
+  refuse_strangers(falls, jumps, best.candidate.offset, width, unbalanced(best.offset, 0, n, coarse), best.ambiguity);
   ClockOffset result;
-  result.events = support;
-  result.ambiguity = candidates.size() > 1 ? least / second : 0;
-  const std::size_t fine = std::max<std::size_t>(1, n / kSearched);
-  result.offset = unbalanced.minimise(best, kSearchReach * interval, 0, n, fine, kFound * interval);
-  // The same from contiguous parts: their spread is what wanders from cycle to cycle.
-  constexpr std::size_t parts = kPartsOfRecord;
-  double squares = 0;
-  for (std::size_t i = 0; i < parts; ++i) {
-    const double part = unbalanced.minimise(result.offset, kSearchReachOfPart * interval, i * n / parts,
-                                            (i + 1) * n / parts, fine, kFoundInPart * interval);
-    squares += (part - result.offset) * (part - result.offset);
-  }
-  result.uncertainty = std::sqrt(squares / (parts * (parts - 1.0)));
+  result.events = best.candidate.support;
+  result.ambiguity = candidates.size() > 1 ? best.ambiguity : 0;
+  result.offset = unbalanced.minimise(best.offset, kSearchReach * interval, 0, n, fine, kFound * interval);
+  result.uncertainty = uncertainty_of(result.offset, unbalanced, n, fine, interval);
   return result;
 }
 

@@ -108,43 +108,6 @@ std::string describe(const char* name, const Band& band) {
   return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
 }
 
-/// Samples beside re-stick among which its jump of friction is.
-std::size_t delay_window(const Plateaus& plateaus, std::size_t factor, double step) {
-  std::vector<double> sticks, slips;
-  for (std::size_t k = 0; k < plateaus.runs.size(); ++k) {
-    sticks.push_back(static_cast<double>(plateaus.runs[k].size()));
-    if (k > 0) slips.push_back(static_cast<double>(plateaus.runs[k].begin - plateaus.runs[k - 1].end));
-  }
-  if (slips.empty()) return static_cast<std::size_t>(kShortestDelay);
-  const double shorter = std::min(median(std::move(sticks)), median(std::move(slips))) * static_cast<double>(factor);
-  return static_cast<std::size_t>(
-      std::clamp(std::min(kDelayReach * shorter, kLongestWindow / step), kShortestDelay, kLongestDelay));
-}
-
-/// How much later friction jumps in the last third of the slips than in the first, beside the velocity.
-struct ClockDrift {
-  double gained = 0, std_error = 0, time = 1;  // [s]
-};
-
-ClockDrift clock_drift(const std::vector<double>& times, const std::vector<double>& delays) {
-  const std::size_t third = delays.size() / 3;
-  if (third < kFewestPeriods) return {};
-  const auto part = [&](const std::vector<double>& values, std::size_t begin) {
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                               values.begin() + static_cast<std::ptrdiff_t>(begin + third));
-  };
-  const std::size_t last = delays.size() - third;
-  const double before = median(part(delays, 0)), after = median(part(delays, last));
-  std::vector<double> off;
-  for (std::size_t k = 0; k < third; ++k) {
-    off.push_back(std::abs(delays[k] - before));
-    off.push_back(std::abs(delays[last + k] - after));
-  }
-  const double scatter = kSigmaPerMad * median(std::move(off));
-  return {after - before, 2 * scatter / std::sqrt(static_cast<double>(third)),
-          median(part(times, last)) - median(part(times, 0))};
-}
-
 }  // namespace
 
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
@@ -217,7 +180,8 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
-        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and alpha are not "
+        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and the law's decay (alpha) "
+        "are not "
         "those "
         "of the contact, a bandwidth of {:.2g} Hz is needed",
         restick.corner(), restick.slips, restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless);
@@ -231,62 +195,6 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (!velocity.empty() && differ) {
     item.message += "; the channels have different filters; the lag between them looks like memory";
   }
-  return item;
-}
-
-HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
-  HealthItem item{health_check::kChannelDelay, Status::ok, "no re-stick to compare the channels at"};
-  const std::span<const double> v(motion.relative_velocity), mu(motion.friction);
-  const std::size_t n = v.size();
-  const double edge = kEdgeOfRest * plateaus.depth;
-  const std::size_t half = delay_window(plateaus, factor, motion.step);
-  const double furthest = kDelayReach * std::clamp(kLongestWindow / motion.step, kShortestDelay,
-                                                   kLongestDelay);  // that rest is from the edge
-  std::vector<double> jump(2 * half, 0.0), single(2 * half);
-  std::vector<double> times, delays;  // of single slips
-  std::size_t used = 0;
-  for (const StickPlateau& run : plateaus.runs) {
-    std::size_t i = std::min(run.inner_begin() * factor, n - 1);
-    while (i > 0 && std::abs(v[i] - motion.plateau_velocity) < edge) --i;
-    if (i < half + 1 || i + half + 1 >= n || used >= kMostDelays) continue;
-    const double sign = v[i] > motion.plateau_velocity ? 1 : -1;
-    // The velocity still needs edge/|dv/dt| to reach zero.
-    const double slope = (v[i - 1] - v[i + 1]) / 2 * sign;
-    const double rest = slope > 0 ? std::min(std::abs(v[i] - motion.plateau_velocity) / slope, furthest) : 0;
-    const std::size_t zero = i + static_cast<std::size_t>(rest + 0.5);
-    if (zero + half + 1 >= n) continue;
-    for (std::size_t k = 0; k < 2 * half; ++k) single[k] = sign * (mu[zero + k + 1 - half] - mu[zero + k - half]);
-    for (std::size_t k = 0; k < 2 * half; ++k) jump[k] += single[k];
-    times.push_back(motion.time[zero]);
-    delays.push_back(motion.step *
-                     static_cast<double>(std::min_element(single.begin(), single.end()) - single.begin()));
-    ++used;
-  }
-  if (used < kFewestForMedian) return item;
-  const ClockDrift drift = clock_drift(times, delays);
-  if (std::abs(drift.gained) > std::max(kDriftSamples * motion.step, kSignificance * drift.std_error)) {
-    item.status = Status::problem;
-    item.message = fmt::format(
-        "friction falls behind the velocity by {:.2f} ms from the first third of the record to the last ({:.0f} ppm, "
-        "{} "
-        "slips): their clocks drift apart; mu_k and alpha are unreliable",
-        1e3 * drift.gained, 1e6 * drift.gained / drift.time, used);
-    return item;
-  }
-  const auto sharpest = std::min_element(jump.begin(), jump.end());
-  double squares = 0;
-  for (double j : jump) squares += j * j;
-  squares -= *sharpest * *sharpest;
-  const double spread = std::sqrt(squares / static_cast<double>(jump.size() - 1));
-  if (-*sharpest < kClearJump * spread) {
-    item.message = fmt::format(
-        "friction does not jump at re-stick ({} slips): no statement on a delay between the channels", used);
-    return item;
-  }
-  const double delay = motion.step * (static_cast<double>(sharpest - jump.begin()) - static_cast<double>(half) + 0.5);
-  item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)",
-                             1e3 * std::abs(delay), delay >= 0 ? "after" : "before", used);
-  if (std::abs(delay) > std::max(kDelayWarned, kDelayWarnedSamples * motion.step)) item.status = Status::warning;
   return item;
 }
 

@@ -46,66 +46,85 @@ Cycle blank_cycle(const RawSlip& slip) {
   return c;
 }
 
-/// Stick before each slip: where it begins, and whether there is one at all.
-std::vector<Cycle> phases(const Motion& motion, const std::vector<RawSlip>& slips, const Thresholds& t) {
-  std::vector<Cycle> cycles;
-  std::vector<Onset> onsets;
-  std::vector<std::size_t> with_stick;
-  std::size_t stick_follows = 0;
-  for (std::size_t k = 0; k < slips.size(); ++k) {
-    const RawSlip& slip = slips[k];
-    Cycle c = blank_cycle(slip);
-    std::size_t after = slip.samples.end;  // first sample of what follows the slip
-    if (slip.ends_within) {
-      const std::size_t next = k + 1 < slips.size() ? slips[k + 1].samples.begin : motion.size();
-      c.restick_time = segmentation::locate_restick(motion, slip.samples, next, slip.direction, t.peak);
-      // Friction jumps at re-stick: a sample that may lie on either side of it belongs to neither phase.
-      const double half = 0.5 * motion.step;
-      c.slip.end = std::max(slip.samples.begin + 1, first_after(motion.time, c.restick_time - half, slip.samples.end));
-      after = std::max(c.slip.end, first_after(motion.time, c.restick_time + half, slip.samples.end));
+/// The cycles of a record as they are found: slips in order, each with the stick before it, then the break-aways.
+class PhaseFinder {
+ public:
+  PhaseFinder(const Motion& motion, const std::vector<RawSlip>& slips, const Thresholds& thresholds)
+      : motion_(motion), slips_(slips), thresholds_(thresholds) {}
+
+  std::vector<Cycle> find() {
+    for (std::size_t k = 0; k < slips_.size(); ++k) {
+      Cycle c = blank_cycle(slips_[k]);
+      const std::size_t after = end_slip(k, c);
+      begin_stick(k, c);
+      cycles_.push_back(c);
+      stick_follows_ = after;
     }
-    std::size_t stick_begin = 0;
-    bool sticks = slip.begins_within && motion.velocity_kind != VelocityKind::fixed_block;
+    if (!cycles_.empty()) end_in_stick(cycles_.back(), slips_.back().ends_within && can_stick());
+    set_break_aways();
+    return std::move(cycles_);
+  }
+
+ private:
+  bool can_stick() const { return motion_.velocity_kind != VelocityKind::fixed_block; }
+
+  static void end_in_stick(Cycle& c, bool does) {
+    c.slip_complete = does;
+    if (!does) c.restick_time = unknown;
+  }
+
+  /// Returns the first sample of what follows the slip. Friction jumps at re-stick: a sample that may lie on either
+  /// side of it belongs to neither phase.
+  std::size_t end_slip(std::size_t k, Cycle& c) const {
+    const RawSlip& slip = slips_[k];
+    if (!slip.ends_within) return slip.samples.end;
+    const std::size_t next = k + 1 < slips_.size() ? slips_[k + 1].samples.begin : motion_.size();
+    c.restick_time = segmentation::locate_restick(motion_, slip.samples, next, slip.direction, thresholds_.peak);
+    const double half = 0.5 * motion_.step;
+    c.slip.end = std::max(slip.samples.begin + 1, first_after(motion_.time, c.restick_time - half, slip.samples.end));
+    return std::max(c.slip.end, first_after(motion_.time, c.restick_time + half, slip.samples.end));
+  }
+
+  /// Where the motion only reverses, the slip before has not ended in stick.
+  void begin_stick(std::size_t k, Cycle& c) {
+    const RawSlip& slip = slips_[k];
+    bool sticks = slip.begins_within && can_stick();
     if (k > 0) {
-      stick_begin = stick_follows;
-      sticks = sticks && !segmentation::only_reverses(motion, slips[k - 1], slip, t);
-      // Where the motion only reverses, the slip before has not ended in stick.
-      cycles.back().slip_complete = slips[k - 1].ends_within && sticks;
-      if (!sticks) cycles.back().restick_time = unknown;
+      sticks = sticks && !segmentation::only_reverses(motion_, slips_[k - 1], slip, thresholds_);
+      end_in_stick(cycles_.back(), slips_[k - 1].ends_within && sticks);
     }
-    if (sticks && stick_begin < slip.samples.begin) {
-      c.stick = {stick_begin, slip.samples.begin};
-      c.stick_complete = k > 0;
-      with_stick.push_back(k);
-      onsets.push_back({stick_begin, slip.samples.begin, c.slip.end, slip.direction});
-    }
-    cycles.push_back(c);
-    stick_follows = after;
+    if (!sticks || stick_follows_ >= slip.samples.begin) return;
+    c.stick = {stick_follows_, slip.samples.begin};
+    c.stick_complete = k > 0;
+    with_stick_.push_back(k);
+    onsets_.push_back({stick_follows_, slip.samples.begin, c.slip.end, slip.direction});
   }
-  if (!cycles.empty()) {
-    const bool ends = slips.back().ends_within && motion.velocity_kind != VelocityKind::fixed_block;
-    cycles.back().slip_complete = ends;
-    if (!ends) cycles.back().restick_time = unknown;
-  }
-  const std::vector<BreakAway> found = segmentation::locate_break_aways(motion, onsets, t.peak);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    Cycle& c = cycles[with_stick[k]];
-    const std::size_t first = std::max(c.stick.begin, first_after(motion.time, found[k].time, c.stick.end));
-    c.stick.end = c.slip.begin = std::min(first, c.slip.end - 1);
-    if (c.stick.size() < segmentation::kShortestStick) {  // the velocity only turns near zero
-      c.stick = {};
+
+  void set_break_aways() {
+    const std::vector<BreakAway> found = segmentation::locate_break_aways(motion_, onsets_, thresholds_.peak);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      Cycle& c = cycles_[with_stick_[k]];
+      const std::size_t first = std::max(c.stick.begin, first_after(motion_.time, found[k].time, c.stick.end));
+      c.stick.end = c.slip.begin = std::min(first, c.slip.end - 1);
+      if (c.stick.size() >= segmentation::kShortestStick) {
+        c.break_away_time = found[k].time;
+        c.break_away_time_std_error = found[k].std_error;
+        continue;
+      }
+      c.stick = {};  // the velocity only turns near zero
       c.stick_complete = false;
-      if (with_stick[k] == 0) continue;
-      Cycle& before = cycles[with_stick[k] - 1];
-      before.slip_complete = false;
-      before.restick_time = unknown;
-      continue;
+      if (with_stick_[k] > 0) end_in_stick(cycles_[with_stick_[k] - 1], false);
     }
-    c.break_away_time = found[k].time;
-    c.break_away_time_std_error = found[k].std_error;
   }
-  return cycles;
-}
+
+  const Motion& motion_;
+  const std::vector<RawSlip>& slips_;
+  const Thresholds& thresholds_;
+  std::vector<Cycle> cycles_;
+  std::vector<Onset> onsets_;
+  std::vector<std::size_t> with_stick_;  ///< the cycles of these onsets
+  std::size_t stick_follows_ = 0;        ///< first sample after the slip before
+};
 
 /// Whether anything sticks: what is slow beside the fastest slip need not be at rest.
 bool any_stick(const Motion& motion, const std::vector<Cycle>& cycles, const Thresholds& t) {
@@ -347,7 +366,7 @@ Segmentation find_cycles(const Motion& motion) {
   result.stick_threshold = t.stick;
   result.rms_velocity = rms_block_velocity(motion);
   const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
-  result.cycles = phases(motion, slips, t);
+  result.cycles = PhaseFinder(motion, slips, t).find();
   cut_at_gaps(motion, result.cycles);
   const bool sticks = any_stick(motion, result.cycles, t);
   result.kind = sticks ? MotionKind::stick_slip : MotionKind::always_slipping;

@@ -60,64 +60,90 @@ double fit_time(const Window& w, const Growth& growth, double start) {
   return t0;
 }
 
+namespace {
+
+/// What the windows say of the growth that they share, each with its own break-away taken out.
+struct SharedGrowth {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  std::vector<Sums> windows;
+};
+
+SharedGrowth shared_growth(const std::vector<Window>& windows, const Growth& growth, const std::vector<double>& times,
+                           bool with_jump) {
+  SharedGrowth out;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    out.windows.push_back(sums_at<true>(windows[i], growth, times[i]));
+    const Sums& s = out.windows.back();
+    out.hessian += s.shared;
+    out.gradient += s.gradient;
+    if (s.h <= 0) continue;
+    out.hessian -= s.mixed * s.mixed.transpose() / s.h;
+    out.gradient -= s.mixed * (s.g / s.h);
+  }
+  if (!with_jump) {
+    out.hessian.row(2).setZero(), out.hessian.col(2).setZero();
+    out.hessian(2, 2) = 1, out.gradient(2) = 0;
+  }
+  return out;
+}
+
+/// A growth and the break-away of each window with it.
+struct Trial {
+  Growth growth;
+  std::vector<double> times;
+  double rss = 0;
+};
+
+double squares_left(const std::vector<Window>& windows, const Growth& growth, const std::vector<double>& times) {
+  double rss = 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) rss += sums_at<false>(windows[i], growth, times[i]).rss;
+  return rss;
+}
+
+/// The next trial by Levenberg and Marquardt.
+Trial damped_step(const std::vector<Window>& windows, const SharedGrowth& shared, Trial trial, double damping,
+                  bool with_jump) {
+  Eigen::Matrix3d damped = shared.hessian;
+  damped.diagonal() *= 1 + damping;
+  const Eigen::Vector3d step = solve_symmetric(damped, shared.gradient);
+  trial.growth.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
+  trial.growth.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
+  trial.growth.b = with_jump ? std::max(0.0, trial.growth.b + step(2)) : 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const Sums& s = shared.windows[i];
+    if (s.h > 0) trial.times[i] += (s.g - s.mixed.dot(step)) / s.h;
+    trial.times[i] = std::clamp(trial.times[i], -2.0, windows[i].crossing);
+  }
+  trial.rss = std::isfinite(step.sum()) ? squares_left(windows, trial.growth, trial.times) : HUGE_VAL;
+  return trial;
+}
+
+}  // namespace
+
 PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
   PooledFit fit;
-  fit.growth = growth;
+  Trial best{growth, {}, 0};
+  for (const Window& w : windows) best.times.push_back(w.t0), fit.samples += w.v.size();
+  best.rss = squares_left(windows, growth, best.times);
   double damping = 1e-3;
-  const auto total = [&](const Growth& g, const std::vector<double>& t0) {
-    double rss = 0;
-    for (std::size_t i = 0; i < windows.size(); ++i) rss += sums_at<false>(windows[i], g, t0[i]).rss;
-    return rss;
-  };
-  std::vector<double> times;
-  for (const Window& w : windows) times.push_back(w.t0), fit.samples += w.v.size();
-  fit.rss = total(growth, times);
   for (int iteration = 0; iteration < 30; ++iteration) {
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    std::vector<Sums> all;
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      all.push_back(sums_at<true>(windows[i], fit.growth, times[i]));
-      const Sums& s = all.back();
-      hessian += s.shared;
-      gradient += s.gradient;
-      if (s.h <= 0) continue;
-      hessian -= s.mixed * s.mixed.transpose() / s.h;
-      gradient -= s.mixed * (s.g / s.h);
-    }
-    if (!with_jump) {
-      hessian.row(2).setZero(), hessian.col(2).setZero();
-      hessian(2, 2) = 1, gradient(2) = 0;
-    }
-    fit.information = hessian;
-    bool better = false;
+    const SharedGrowth shared = shared_growth(windows, best.growth, best.times, with_jump);
+    fit.information = shared.hessian;
     double gain = 0;
-    for (int attempt = 0; attempt < 8 && !better; ++attempt) {
-      Eigen::Matrix3d damped = hessian;
-      damped.diagonal() *= 1 + damping;
-      const Eigen::Vector3d step = solve_symmetric(damped, gradient);
-      Growth next = fit.growth;
-      next.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
-      next.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
-      next.b = with_jump ? std::max(0.0, next.b + step(2)) : 0;
-      std::vector<double> moved = times;
-      for (std::size_t i = 0; i < windows.size(); ++i) {
-        const Sums& s = all[i];
-        if (s.h > 0) moved[i] += (s.g - s.mixed.dot(step)) / s.h;
-        moved[i] = std::clamp(moved[i], -2.0, windows[i].crossing);
-      }
-      const double rss = std::isfinite(step.sum()) ? total(next, moved) : HUGE_VAL;
-      if (rss < fit.rss) {
-        gain = fit.rss - rss;
-        fit.growth = next, fit.rss = rss, times = std::move(moved), better = true;
-        damping = std::max(1e-6, damping * 0.2);
-      } else {
-        damping = std::min(1e6, 8 * (damping + 1e-4));
-      }
+    for (int attempt = 0; attempt < 8 && gain == 0; ++attempt) {
+      Trial next = damped_step(windows, shared, best, damping, with_jump);
+      const bool is_better = next.rss < best.rss;
+      damping = is_better ? std::max(1e-6, damping * 0.2) : std::min(1e6, 8 * (damping + 1e-4));
+      if (!is_better) continue;
+      gain = best.rss - next.rss;
+      best = std::move(next);
     }
-    if (!better || gain < 1e-7 * fit.rss) break;
+    if (gain == 0 || gain < 1e-7 * best.rss) break;
   }
-  for (std::size_t i = 0; i < windows.size(); ++i) windows[i].t0 = times[i];
+  fit.growth = best.growth;
+  fit.rss = best.rss;
+  for (std::size_t i = 0; i < windows.size(); ++i) windows[i].t0 = best.times[i];
   return fit;
 }
 
