@@ -347,6 +347,9 @@ inline constexpr std::size_t kThinned = 16384, kValuesForRepeats = 20000;
 inline constexpr double kRepeatsOfSteps = 0.2;
 /// Samples in a row at an extreme that are no chance, and all of them at a limit of the range: two such rows.
 inline constexpr std::size_t kShortestAtEnd = 3, kFewestAtEnd = 6;
+/// Steps by which a run at an extreme would have passed it, below which nothing was cut: the flattest peak of a law at
+/// break-away, a fourth power of time, stays 5 times as long in its last step as in the one before.
+inline constexpr double kStepsOfATurn = 8;
 /// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error.
 inline constexpr double kMuchClipped = 1e-3;
 /// Rounding over the range of a channel, and part of the declared range from which a channel is at its end. Part of a
@@ -370,7 +373,6 @@ inline constexpr std::size_t kShortestStretch = 16;
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-
 /// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range.
 inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
@@ -382,7 +384,6 @@ inline constexpr double kQuiet = 0.7;
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000;
 /// Samples between two at the limit that are taken for clipped too (noise brings them below it), and beside a stretch.
 inline constexpr std::size_t kClipHole = 32, kClipMargin = 8;
-
 /// Samples of a mean in which a crowd is looked for behind noise as wide as its own, how dense it must be, and means in
 /// a row: friction that is held is so for a good part of a stick.
 inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
@@ -391,7 +392,6 @@ inline constexpr double kCrowdedSmoothed = 8;
 /// nearly they are alike, and how many are so in a row. A steepest slope is passed through, it does not last.
 inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
 inline constexpr std::size_t kShortestSlew = 8;
-
 /// Standstill at an end of a stick-slip record: the block rests for so many periods at less than this part of the
 /// plateau.
 inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;

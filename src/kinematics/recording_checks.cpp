@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "health_checks.hpp"
 #include "ingest/limits.hpp"
@@ -47,19 +48,41 @@ std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks,
   return runs;
 }
 
+/// Whether the longest run at a limit is a turn that the channel's steps are too coarse to show, as noiseless friction
+/// makes where its law is flat at rest: had the run gone on as fast as it is entered and left, it would have passed the
+/// limit by a few steps.
+bool turns_over(std::span<const double> x, double limit, const std::vector<SampleSpan>& runs) {
+  double step = std::numeric_limits<double>::infinity();
+  for (double value : x) {
+    if (value != limit) step = std::min(step, std::abs(value - limit));
+  }
+  const SampleSpan longest = *std::ranges::max_element(runs, {}, &SampleSpan::size);
+  const auto rate = [&](std::span<const double> outwards) {  // steps in a sample; a run at an end of the record: any
+    if (outwards.empty()) return std::numeric_limits<double>::infinity();
+    const auto next = std::ranges::find_if(outwards, [&](double value) { return value != outwards.front(); });
+    return std::abs(outwards.front() - limit) / step / static_cast<double>(next - outwards.begin());
+  };
+  const std::vector<double> before(x.rend() - static_cast<std::ptrdiff_t>(longest.begin), x.rend());
+  const double entered = rate(before), left = rate(x.subspan(longest.end));
+  return static_cast<double>(longest.size()) / (1 / entered + 1 / left) < kStepsOfATurn;
+}
+
 /// smooths: a crowd is looked for behind noise, too. A velocity crowds where the contact creeps.
 std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks, bool smooths) {
   const Extremes range = chunks.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < kFewestSamples || range.low == range.high || repeats_elsewhere(x, range)) return ends;
-  std::array<PileUp, 2> piles = find_pile_ups(x);
-  const std::array<PileUp, 2> smoothed = smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
+  // Without noise a limit repeats one value, and the crowd of a turn is as quiet as all the rest.
+  const bool has_noise = turns_often(x);
+  std::array<PileUp, 2> piles = has_noise ? find_pile_ups(x) : std::array<PileUp, 2>{};
+  const std::array<PileUp, 2> smoothed = has_noise && smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
   for (std::size_t k = 0; k < 2; ++k) {
     if (piles[k].density < kCrowdedAlone && !piles[k].is_quiet && smoothed[k].count > 0) piles[k] = smoothed[k];
   }
   for (std::size_t k = 0; k < 2; ++k) {
     ends[k].spans = runs_at(x, chunks, ends[k].at);
+    if (!ends[k].spans.empty() && turns_over(x, ends[k].at, ends[k].spans)) ends[k].spans.clear();
     for (const SampleSpan& run : ends[k].spans) ends[k].count += run.size();
     ends[k].pile = piles[k];
     ends[k].is_far = std::abs(ends[k].at) >= std::abs(ends[1 - k].at);
@@ -116,9 +139,7 @@ void add_slew(const Units& channel, double rate, HealthItem& item) {
   item.status = Status::problem;
   item.message = fmt::format(
       "{}{}{} changes by at most {:.3g}{} per second: the slew rate of its amplifier limits it; mu_s, mu_k and the "
-      "law's decay (alpha) "
-      "are "
-      "unreliable",
+      "law's decay (alpha) are unreliable",
       is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * rate, channel.unit);
 }
 

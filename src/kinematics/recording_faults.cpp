@@ -193,6 +193,13 @@ PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts
 
 }  // namespace
 
+bool turns_often(std::span<const double> channel) {
+  std::size_t turns = 0;
+  for (std::size_t i = 1; i + 1 < channel.size(); ++i)
+    turns += (channel[i] - channel[i - 1]) * (channel[i + 1] - channel[i]) < 0 ? 1U : 0U;
+  return static_cast<double>(turns) > kManyTurns * static_cast<double>(channel.size());
+}
+
 ChannelFaults find_channel_faults(std::span<const double> channel, std::span<const double> beside) {
   ChannelFaults faults;
   if (channel.size() < kFewestDistributed) return faults;

@@ -27,6 +27,9 @@ ChannelFaults find_channel_faults(std::span<const double> channel, std::span<con
 /// Puts straight lines between good neighbours in the place of spans; at an end the good neighbour's value.
 void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel);
 
+/// Whether the channel has noise above its steps: it turns again and again.
+bool turns_often(std::span<const double> channel);
+
 /// Samples that crowd at an end of a channel's range, closer than any turning point lets them: a converter or an
 /// amplifier at its limit, with or without noise on it.
 struct PileUp {

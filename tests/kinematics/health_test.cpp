@@ -187,6 +187,21 @@ TEST(Health, APlateauWithoutNoiseIsNoClipping) {
   }
 }
 
+TEST(Health, FrictionThatIsFlatAtBreakAwayIsNoClipping) {
+  for (double rpm : {1.0, 4.0}) {
+    truth::Rig rig;
+    rig.friction_noise = rig.velocity_noise = 0;
+    rig.flat_at_rest = true;
+    rig.rpm = rpm;
+    Trace trace = truth::simulate(rig).trace;
+    for (double& mu : trace.friction) mu = 1e-5 * std::round(1e5 * mu);  // as a file has it
+    EXPECT_EQ(item(compute_motion(trace), "clipping").status, Status::ok)
+        << item(compute_motion(trace), "clipping").message;
+    for (double& mu : trace.friction) mu = std::min(mu, 0.5);
+    EXPECT_EQ(item(compute_motion(std::move(trace)), "clipping").status, Status::problem);
+  }
+}
+
 /// A held block over twelve speeds of a disc, a thousand samples each: friction of Coulomb and viscous parts.
 Trace speed_steps(std::mt19937_64& engine) {
   std::vector<double> speeds;

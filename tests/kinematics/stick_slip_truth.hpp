@@ -22,6 +22,7 @@ struct Rig {
   double friction_noise = 0.003, velocity_noise = 2e-5, noise_correlation = 0, scatter = 0;
   double wander = 0;  // correlation of the scatter from cycle to cycle
   bool coulomb = false;
+  bool flat_at_rest = false;  // friction falls as exp(-(decay v)^2)
   unsigned seed = 1;
   double ripple = 0, ripple_order = 1, ripple_phase = 0;  // omega (1 + A cos(n omega t + phase))
   double speed() const { return rpm * 2 * std::numbers::pi / 60; }
@@ -74,7 +75,9 @@ class Block {
  private:
   double law(double v) const {
     const double drop = level_ - rig_.kinetic_friction;
-    return rig_.kinetic_friction + drop * (rig_.coulomb ? (v > 0 ? 0.0 : 1.0) : std::exp(-rig_.decay * v));
+    if (rig_.coulomb) return rig_.kinetic_friction + drop * (v > 0 ? 0.0 : 1.0);
+    const double x = rig_.decay * v;
+    return rig_.kinetic_friction + drop * std::exp(rig_.flat_at_rest ? -x * x : -x);
   }
   double acceleration(double x, double v, double t) const {
     return (rig_.load * law(rig_.disc(t) - v) - rig_.stiffness * x - damping_ * v) / rig_.mass;
