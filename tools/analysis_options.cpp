@@ -86,6 +86,9 @@ void add_pairs(const std::string& text, const std::string& option, std::map<std:
 
 /// "4rpm", or the linear speed under the block at the one friction radius that is stated ("1.1mm/s"): omega = v/r.
 double speed_from(const std::string& text, const Condition& radius) {
+  if (text.find_first_not_of("+-.0123456789eE ") == std::string::npos)
+    throw InputError("--speed: '" + text + "' has no unit",
+                     "write " + text + "rpm, " + text + "rad/s or " + text + "mm/s");
   if (!is_linear_speed(text)) return positive(text, Quantity::angular_velocity, "--speed");
   const double velocity = positive(text, Quantity::velocity, "--speed");
   if (radius.known()) return velocity / radius.value;

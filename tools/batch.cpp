@@ -225,6 +225,25 @@ ExitStatus status_of(const Campaign& campaign, const BatchOutcome& outcome) {
   return outcome.failed > 0 || outcome.stopped || !campaign.problems.empty() ? ExitStatus::failed : ExitStatus::done;
 }
 
+/// The next command with the options of this one; where nothing was fitted, what the first file holds.
+std::string next_after(const Campaign& campaign, const BatchOutcome& outcome,
+                       const std::vector<std::string>& arguments) {
+  const std::string first = campaign.runs.front().trace.path;
+  if (outcome.fitted + outcome.present == 0) {
+    return fmt::format("\nNext, to see what the files hold:\n  identify columns {}\n", shell_quoted(first));
+  }
+  std::string command = "identify diagnose";
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (arguments[k] == "--protocol") {
+      ++k;
+    } else if (arguments[k] != "--profile") {
+      command += " " + shell_quoted(arguments[k]);
+    }
+  }
+  return fmt::format("\nNext, to see what the laws miss:\n  {} {}\n", command,
+                     shell_quoted(campaign.folder.empty() ? first : as_folder(campaign.folder)));
+}
+
 }  // namespace
 
 std::string as_folder(std::string name) {
@@ -273,9 +292,7 @@ ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const Ident
     print(fmt::format("{}; results in {}{}\n", counts(outcome), folder,
                       s.out.empty() ? " (name another folder with --out)" : ""));
     print(s.shard.empty()
-              ? fmt::format("\nNext, to see what the laws miss:\n  identify diagnose {}\n",
-                            shell_quoted(campaign.folder.empty() ? campaign.runs.front().trace.path
-                                                                 : as_folder(campaign.folder)))
+              ? next_after(campaign, outcome, arguments)
               : fmt::format("\nNext, when every shard is done:\n  identify merge {}\n", shell_quoted(folder)));
   }
   return worse(status_of(campaign, outcome), refused);

@@ -138,7 +138,7 @@ std::string next_step(const ColumnListing& listing, const std::string& path) {
   if (trial.needs_radius) examples.emplace_back("15mm for the friction radius of your machine");
   for (const std::string& unit : listing.assumed) examples.push_back(unit + ", whose unit the file does not state");
   return fmt::format("\nNext{}:\n  identify{} --columns {} {}\n",
-                     examples.empty() ? "" : ", where you must check " + listed(examples),
+                     examples.empty() ? "" : " (check " + listed(examples) + ")",
                      trial.needs_radius ? " --radius 15mm" : "", shell_quoted(listing.selection), shell_quoted(path));
 }
 

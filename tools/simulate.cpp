@@ -316,6 +316,8 @@ void run_simulate(const SimulateRequest& request) {
   std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
                                  motion.break_away_count(), plan.machine.model.name());
   text += fmt::format("{}: the truth; over slip the true law leaves an RMSE of {:.6f}\n", truth_path, floor);
+  if (plan.sensors.friction_noise == 0 && plan.sensors.velocity_noise == 0 && plan.options.scatter.deviation == 0)
+    text += "without noise and scatter; --noise-mu, --noise-v and --scatter add them\n";
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
     text += fmt::format("values not given are those of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
   }

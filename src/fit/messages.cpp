@@ -31,10 +31,9 @@ void add_correlations(Fit& fit) {
 /// Errors are those of a law that holds.
 void add_condition(Fit& fit) {
   if (!is_conditional(fit)) return;
-  fit.messages.push_back(fmt::format(
-      "errors and intervals assume that the law is right, but it is not: the held-out error is {:.3g} times "
-      "the noise floor",
-      over_floor(fit)));
+  fit.messages.emplace_back(
+      "errors and intervals assume that the law is right, but it is not: the held-out error is well above the noise "
+      "floor");
 }
 
 void add_undetermined(const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {

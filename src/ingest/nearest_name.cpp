@@ -43,6 +43,10 @@ std::string nearest_name(std::string_view text, std::span<const std::string> kno
 }
 
 std::string likely_name(std::string_view text, std::span<const std::string> known) {
+  constexpr std::size_t kFewestLetters = 3;  // a name may be meant by its part: lag, frictional-lag
+  const auto has_part = [&](const std::string& name) { return name.find(text) != std::string::npos; };
+  if (text.size() >= kFewestLetters && std::ranges::count_if(known, has_part) == 1)
+    return *std::ranges::find_if(known, has_part);
   const std::string nearest = nearest_name(text, known);
   return distance(text, nearest) <= std::max<std::size_t>(2, text.size()) ? nearest : std::string();
 }

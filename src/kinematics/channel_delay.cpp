@@ -137,7 +137,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
         "friction does not jump at re-stick ({} slips): no statement on a delay between the channels", slips);
     return item;
   }
-  item.message = fmt::format("friction jumps {:.2f} ms {} the velocity reaches re-stick (roughly, {} slips)",
+  item.message = fmt::format("friction jumps about {:.2f} ms {} the velocity reaches re-stick ({} slips)",
                              1e3 * std::abs(*delay), *delay >= 0 ? "after" : "before", slips);
   if (std::abs(*delay) > std::max(kDelayWarned, kDelayWarnedSamples * motion.step)) item.status = Status::warning;
   return item;

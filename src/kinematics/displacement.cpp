@@ -175,8 +175,9 @@ void settle_counterface(const LocalDerivatives& x, const LocalDerivatives& y, bo
     const double ground = resistance(trace.friction, x.slope), base = resistance(trace.friction, against_base);
     counterface = ground >= base ? Counterface::ground : Counterface::base;
     notes.push_back(fmt::format(
-        "motion: the mass rubs on {}: against that motion friction works in the wrong direction in {:.2g} % of its "
-        "power, and {:.2g} % against the {} ({} --rubs-on)",
+        "motion: the mass rubs on {}: friction would drive that motion in {:.2g} % of its power, and in {:.2g} % "
+        "against "
+        "the {} ({} --rubs-on)",
         ground >= base ? "ground that stands still" : "the moving base", 50 * (1 - std::max(ground, base)),
         50 * (1 - std::min(ground, base)), ground >= base ? "base" : "ground",
         1 - std::max(ground, base) > kAlikePowers * (1 - std::min(ground, base)) ? "not clear: state it with"

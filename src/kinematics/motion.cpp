@@ -126,6 +126,10 @@ void MotionStages::take_speed_from_plateau() {
   if (!is_block() || disc_.known) return;
   const bool unknown = !search_.sticks || trace_.disc_speed.size() == trace_.size();
   if (unknown && !kinematics::is_useless(trace_)) {
+    if (search_.sticks && !trace_.conditions.radius.known()) {
+      throw InputError("v_r cannot be made: the speed of the disc is recorded, but not the radius of the contact",
+                       "give --radius, as in --radius 15mm", {trace_.path, 0, ""});
+    }
     throw InputError("v_r cannot be made: the block never sticks, so that no plateau shows the speed of the disc",
                      "give --radius and --speed, or a column with v_r", {trace_.path, 0, ""});
   }

@@ -85,7 +85,16 @@ std::string folded_command(const std::string& command, std::size_t width) {
   constexpr std::size_t kIndent = 2, kContinued = 6;
   std::string text(kIndent, ' ');
   std::size_t column = kIndent;
+  std::vector<std::string> parts;  // an option stays with its value
   for (const std::string& word : split_command(command)) {
+    if (!parts.empty() && parts.back().starts_with("--") && parts.back().find(' ') == std::string::npos &&
+        !word.starts_with("-")) {
+      parts.back() += " " + word;
+    } else {
+      parts.push_back(word);
+    }
+  }
+  for (const std::string& word : parts) {
     const bool first = column == kIndent;
     const std::size_t length = displayed(word);
     if (!first && column + 1 + length + 2 > width) {

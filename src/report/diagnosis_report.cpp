@@ -51,7 +51,7 @@ Chart ladder_chart(const DiagnosedTraces& result) {
 /// Shares of the law and of the final model beside the same variables.
 Chart where_chart(const Diagnosis& d) {
   Chart chart{.id = "where",
-              .title = "Where the error above the noise floor goes",
+              .title = "What the error above the noise floor varies with",
               .note = where_sentence(d.where) + " Shares overlap where variables go together.",
               .x = {"share", "%", 0, 105},
               .height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size())),

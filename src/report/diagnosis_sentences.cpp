@@ -26,10 +26,10 @@ std::string named_effect(const DiagnosedTraces& result, const Rung& rung) {
   return statement.empty() ? text : text + ": " + statement;
 }
 
-/// The effect, or "runout or drift, which are not distinguishable with these data" for a group.
+/// The effect, or "runout or drift, which these data cannot distinguish" for a group.
 std::string found_clause(const DiagnosedTraces& result, const Rung& rung) {
   if (rung.equivalent.empty()) return named_effect(result, rung);
-  return fmt::format("{} or {}, which are not distinguishable with these data. The best fit has {}",
+  return fmt::format("{} or {}, which these data cannot distinguish; the best fit has {}",
                      spelled(result, rung.added), enumerated(rung.equivalent, "or"), named_effect(result, rung));
 }
 
@@ -37,7 +37,7 @@ std::string found_sentence(const DiagnosedTraces& result) {
   const std::vector<Rung> found = found_effects(result.diagnosis);
   if (found.empty()) return "The model is incomplete.";
   if (found.size() == 1) return "The effect found is " + found_clause(result, found.front()) + ".";
-  std::string text = fmt::format("{} effects were found.", found.size());
+  std::string text = fmt::format("{} effects were found:", found.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     text += fmt::format(" ({}) {}.", k + 1, found_clause(result, found[k]));
   }

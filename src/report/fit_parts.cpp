@@ -171,6 +171,21 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
   }
 }
 
+namespace {
+
+/// Two figures with as many digits as show that they differ.
+std::string distinct(double first, double second) {
+  constexpr int kFewest = 3, kMost = 6;
+  std::string a, b;
+  for (int digits = kFewest; digits <= kMost && a == b; ++digits) {
+    a = significant(first, digits);
+    b = significant(second, digits);
+  }
+  return a + " against " + b;
+}
+
+}  // namespace
+
 void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section) {
   add_protocols(fits, motion, section);
   const std::vector<LawComparison> comparisons = compare_laws(fits, best);
@@ -178,9 +193,8 @@ void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& 
   for (const LawComparison& c : comparisons) {
     const Fit &first = fits[c.first], &second = fits[c.second];
     const Fit &ahead = c.comparison.first_better ? first : second, &behind = c.comparison.first_better ? second : first;
-    const std::string figures =
-        fmt::format("{} against {}, {}", significant(first.error.held_out_rmse, 3),
-                    significant(second.error.held_out_rmse, 3), p_value_text(c.comparison.p_value));
+    const std::string figures = fmt::format("{}, {}", distinct(first.error.held_out_rmse, second.error.held_out_rmse),
+                                            p_value_text(c.comparison.p_value));
     section.plain(c.clear ? fmt::format("{} has the smaller held-out error than {} ({}).", ahead.model.name(),
                                         behind.model.name(), figures)
                           : fmt::format("{} and {} are not distinguishable with these data (held-out error {}).",

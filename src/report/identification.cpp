@@ -13,7 +13,7 @@ namespace tribofit {
 namespace {
 
 std::string verdict_on(const Identification& r, const Fit& fit) {
-  const auto level = [&](double value) { return significant(value, 2) + (friction_unit(r.motion) == "N" ? " N" : ""); };
+  const auto level = [&](double value) { return significant(value, 3) + (friction_unit(r.motion) == "N" ? " N" : ""); };
   const bool bare = fit.model.effects().empty();
   const std::string name = (bare ? "The " : "The law ") + fit.model.name() + (bare ? " law" : "");
   const std::string held_out = level(fit.error.held_out_rmse), floor = level(fit.floor.rmse);
@@ -69,7 +69,7 @@ std::string open_problems(const Identification& r) {
     if (item.status != HealthItem::Status::ok && health_check::bears_on_values(item.check)) names.push_back(item.check);
   }
   return names.empty() ? ""
-                       : fmt::format(" The values depend on what the health check says of {}.", fmt::join(names, ", "));
+                       : fmt::format(" The values hold only if what Health says of {} is resolved.", fmt::join(names, ", "));
 }
 
 /// No fit that could be relied on.

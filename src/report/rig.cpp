@@ -48,7 +48,7 @@ void add_rig(const RigFit& rig, TerminalText& text) {
   text.heading("Rig");
   if (!table.rows.empty()) text.table(table);
   if (rig.stiffness.determined && rig.mass.determined) {
-    text.item("from", fmt::format("force balance over {} cycles; it leaves {} {} in means over {} ms", rig.cycles,
+    text.item("from", fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} ms)", rig.cycles,
                                   significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
                                   significant(rig.smoothing / kMillisecond, 2)));
     if (rig.stick_slope_stiffness.determined) {

@@ -98,7 +98,7 @@ std::string twin_verdict(const TwinIdentification& result) {
   const std::string& law = twin.columns[last];
   std::string text;
   if (last > 0 && std::isfinite(twin.rms_difference[0]) && std::isfinite(twin.rms_difference[last])) {
-    text = fmt::format("With {} the disagreement goes from {:.1f} to {:.1f} standard errors. ",
+    text = fmt::format("With {} the disagreement falls from {:.1f} to {:.1f} standard errors. ",
                        law.substr(std::min(law.size(), law.find('+') + 2)), twin.rms_difference[0],
                        twin.rms_difference[last]);
   }
@@ -115,7 +115,7 @@ std::string twin_verdict(const TwinIdentification& result) {
   }
   if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
   return text + fmt::format(
-                    "The twin of the {} law fails over {} (the worst first): the law, the rig or the record "
+                    "The twin of the {} law fails in {} (the worst first): the law, the rig or the record "
                     "is not as assumed.",
                     law, fmt::join(twin.failures(last), ", "));
 }

@@ -223,7 +223,7 @@ void say_what_fails(Twin& twin) {
     std::string names;
     for (const std::string& name : off) names += (names.empty() ? "" : ", ") + name;
     twin.messages.push_back(twin.columns[c] + (off.empty() ? ": the twin moves as the record does, within its errors"
-                                                           : ": the twin fails over " + names));
+                                                           : ": the twin fails in " + names));
   }
 }
 

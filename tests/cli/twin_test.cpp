@@ -43,7 +43,7 @@ TEST(TwinCommand, AHiddenEffectShowsAndFallsWhenItIsAdded) {
       "--effect frictional-lag:tau=2ms --out trace.csv --quiet");
   const Outcome bare = shop.identify("twin --radius 15mm --load 50N trace.csv");
   ASSERT_EQ(bare.status, 0) << bare.err;
-  EXPECT_THAT(bare.out, HasSubstr("fails over"));
+  EXPECT_THAT(bare.out, HasSubstr("fails in"));
   EXPECT_THAT(bare.out, HasSubstr("\n  identify diagnose --radius 15mm --load 50N trace.csv\n"));
   const Outcome both = shop.identify("twin --radius 15mm --load 50N --effect frictional-lag --json - trace.csv");
   ASSERT_EQ(both.status, 0) << both.err;

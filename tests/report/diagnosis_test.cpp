@@ -198,7 +198,7 @@ TEST(DiagnosisPage, NamesAGroupAndTheTestThatWouldSplitIt) {
   result.diagnosis.next_experiment = "Record three revolutions.";
   EXPECT_THAT(
       prose(result),
-      AllOf(HasSubstr("The effect found is runout or drift or heating, which are not distinguishable with these data"),
+      AllOf(HasSubstr("The effect found is runout or drift or heating, which these data cannot distinguish"),
             HasSubstr("runout, drift and heating fit these data equally well"),
             HasSubstr("Discriminating experiment: Record three revolutions.")));
 }

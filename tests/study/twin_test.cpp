@@ -122,7 +122,7 @@ TEST(Twin, NamesWhatFailsTheWorstFirst) {
       before = std::abs(m.simulated[0].difference);
     }
   }
-  EXPECT_THAT(twin.messages.back(), HasSubstr("fails over"));
+  EXPECT_THAT(twin.messages.back(), HasSubstr("fails in"));
 }
 
 TEST(Twin, MeasuresAreThoseOfTheMotion) {

@@ -186,7 +186,7 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   chart.id = d.id + "-cycles";
   chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
   chart.note = "Cycles " + std::to_string(first) + " to " + std::to_string(first + kShownCycles - 1) +
-               ". In stick the spring sets friction, so the law speaks in slip only.";
+               ". In stick the spring sets friction, so the law applies in slip only.";
   chart.height = 470;
   for (std::size_t k = first; k < first + kShownCycles; ++k) shade_phases(motion, cycles[k], chart);
   std::vector<Chart> charts = {chart};

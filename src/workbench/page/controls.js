@@ -42,7 +42,7 @@ function formulaChoice() {
   };
   text.onkeydown = (event) => { if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply(); };
   return make("fieldset", {}, make("legend", {}, "An effect of your own"),
-    field("Formula: variables v [mm/s], acceleration, t [s], angle [rad], distance [mm], stick_time [s]; starts behind ;", text),
+    field("Formula: variables v [mm/s], acceleration, t [s], angle [rad], distance [mm], stick_time [s]; after a semicolon the start values", text),
     make("button", { type: "button", id: "apply-formula", onclick: apply }, "Apply formula"));
 }
 

@@ -44,7 +44,7 @@ function showStatus(rung) {
     `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles not used in the fit (blocks held out in turn); ` +
     `${ratio ? `${number(ratio, 3)} times the noise floor, ` : ""}` +
     `${rung.cycles}${rung.cycles < workbench.world.cycles ? ` of ${workbench.world.cycles}` : ""} cycles; ` +
-    (rung.full ? "fitted as the command below does it" : "quick fit, being refined");
+    (rung.full ? "the fit of the command at the foot of this page" : "quick fit, being refined");
   document.getElementById("workbench-command").textContent = rung.command;
 }
 

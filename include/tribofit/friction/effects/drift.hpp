@@ -9,10 +9,9 @@ struct Drift {
   static constexpr std::string_view key = "drift";
   /// Distinguishes a drift from what levels off.
   static constexpr std::string_view record_longer =
-      "record ten times as long at a quarter of the disc speed on fresh, cool surfaces too: a drift goes on at the "
-      "same "
-      "rate, heating levels off and run-in takes the same distance; or pause ten minutes and restart: heating comes "
-      "back";
+      "also record a run ten times as long at a quarter of the disc speed on fresh, cool surfaces: a drift goes on at "
+      "the same rate, heating levels off and run-in takes the same distance; or pause ten minutes and restart: heating "
+      "comes back";
 
   static EffectInfo info() {
     return {.key = std::string(key),

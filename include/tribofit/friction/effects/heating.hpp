@@ -32,7 +32,7 @@ struct Heating {
         .sketch = {.view = SketchView::time, .values = {0.1, 8}},
         .hidden = {.sizes = {0.05, 0.1}, .either_sign = true, .others = {{.lower = 8, .upper = 15}}},
         .pairs = {looks_like<RunIn>(
-                      "record 30 s at four times the disc speed on fresh, cool surfaces too: heating keeps its time, "
+                      "also record 30 s at four times the disc speed on fresh, cool surfaces: heating keeps its time, "
                       "run-in its distance; or pause ten minutes and restart: heating comes back, run-in does not"),
                   looks_like<Drift>(Drift::record_longer)}};
   }

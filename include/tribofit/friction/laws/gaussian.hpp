@@ -11,7 +11,7 @@ struct GaussianLaw : TwoLevelLaw<GaussianLaw> {
   static constexpr std::string_view key = "gaussian";
 
   static LawInfo info() {
-    return {.statement = "friction stays near its static level up to a speed and falls to its kinetic one beyond it",
+    return {.statement = "friction stays near its static level up to a certain speed, then falls to its kinetic level",
             .equation = "mu = mu_k + (mu_s - mu_k) exp(-(v/v_s)^2)",
             .source =
                 "L. C. Bo, D. Pavelescu, Wear 82 (1982) 277; B. Armstrong-Helouvry, Control of Machines with Friction, "
