@@ -209,8 +209,14 @@ bool is_most_left(const std::vector<Fit>& fits, double floor) {
   return fits.size() > 1 && clear && last * last - floor * floor > limits::kMostLeft * (first * first - floor * floor);
 }
 
+/// Most of what the last rung leaves above the noise floor is a level of friction that wanders slowly.
+bool wanders(const Trial& top, const Fit& fit) {
+  const double above = std::pow(fit.error.held_out_rmse, 2) - std::pow(fit.floor.rmse, 2);
+  return slow_noise_of(top.linear).variance_within() > limits::kMostOfTheError * above;
+}
+
 /// Far above the noise floor, an error that no recorded variable explains is not explained either.
-void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis) {
+void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Diagnosis& diagnosis) {
   const bool added = fits.size() > 1;
   diagnosis.verdict = structured ? Verdict::unexplained : added ? Verdict::effect_found : Verdict::sufficient;
   const bool possible = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -224,13 +230,15 @@ void decide(const std::vector<Fit>& fits, bool structured, Diagnosis& diagnosis)
     diagnosis.messages.push_back("the effects found explain less than half of the error above the noise floor");
     return;
   }
-  // Few cycles that wander say little of a noise floor, and as little of an error.
-  if (!(error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse)) return;
+  // Few cycles that wander say little of a noise floor, and as little of an error, unless it is many times as large.
+  const bool beyond_chance =
+      error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse;
+  if (!beyond_chance && !is_clearly_above_floor(fits.back())) return;
   diagnosis.verdict = Verdict::unexplained;
-  diagnosis.messages.push_back(
-      fmt::format("what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: "
-                  "it changes from cycle to cycle, or with something that was not recorded",
-                  left_over));
+  diagnosis.messages.push_back(fmt::format(
+      "what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: {}", left_over,
+      wanders(top, fits.back()) ? "most of it wanders slowly over time, as slow noise does"
+                                : "it changes from cycle to cycle, or with something that was not recorded"));
 }
 
 /// Values of a slip in which candidates are fitted.
@@ -320,7 +328,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
   diagnosis.ladder = rungs_of(ladder, all, out.fits);
-  decide(out.fits, !structure.empty(), diagnosis);
+  decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   progress.say("a closed form of the rest", 0.95);
   if (!structure.empty()) diagnosis.formula = closed_form(context, ladder.top(), structure.front());

@@ -44,6 +44,10 @@ bool is_far_above_floor(const Fit& fit) {
   return over_floor(fit) > kFarAboveFloor;
 }
 
+bool is_clearly_above_floor(const Fit& fit) {
+  return over_floor(fit) > kClearlyAbove;
+}
+
 double relative_error(double measured, double model) {
   return measured == 0 ? std::nan("") : std::abs((measured - model) / measured);
 }

@@ -37,6 +37,9 @@ bool is_far_above_floor(const Fit& fit);
 /// [D] Eq 5, |(measured - model)/measured|; NaN where nothing was measured to compare with.
 double relative_error(double measured, double model);
 
+/// It is so far above the noise floor that no noise makes it so: the law lacks something, whatever else is known.
+bool is_clearly_above_floor(const Fit& fit);
+
 /// The fit leaves clearly more than the noise floor, so that a mean that agrees may hide what it misses.
 bool well_above_floor(const Fit& fit);
 

@@ -86,6 +86,10 @@ inline constexpr double kAtFloor = 1.15;
 /// from which it says no more than "far above".
 inline constexpr double kWellAbove = 1.25, kFarAboveFloor = 100;
 
+/// And from which no noise makes it so, however slow: of empty records with white, coloured and 1/f noise none is
+/// beyond 1.2. A record that wanders more than that is not described by law and noise floor.
+inline constexpr double kClearlyAbove = 2;
+
 /// Held-out error over that of the fitted cycles from which a model has learnt its cycles by heart.
 inline constexpr double kLearntByHeart = 1.5;
 

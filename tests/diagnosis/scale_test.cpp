@@ -152,6 +152,29 @@ TEST(SlowNoise, AWrongLawDoesNotRaiseTheNoiseFloor) {
   EXPECT_LE(raised, 2);
 }
 
+/// Friction that wanders as no noise of the law's does is not described by a law with a noise floor, however little few
+/// swings say of their own size: such a law is not called enough.
+TEST(SlowNoise, AWanderFarAboveTheNoiseFloorIsUnexplained) {
+  int large = 0, slow = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const TraceInput input = speed_steps([](double v) { return 0.3 + 0.2 * std::exp(-0.05 * v); }, seed);
+    auto trace = std::make_shared<Trace>(*input.trace);
+    std::mt19937_64 engine(100 + seed);
+    std::normal_distribution<double> normal;
+    double wander = 0;
+    for (double& friction : trace->friction) friction += wander += 0.0008 * normal(engine);
+    const Diagnosis out = diagnose(std::vector<TraceInput>{{trace->path, {}, trace}}).diagnosis;
+    if (!(out.ladder.back().held_out_rmse > 2 * out.floor_rmse)) continue;
+    ++large;
+    EXPECT_EQ(out.verdict, Verdict::unexplained) << seed << ": " << out.ladder.back().held_out_rmse / out.floor_rmse;
+    for (const std::string& message : out.messages) {
+      if (message.find("wanders slowly") != std::string::npos) ++slow;
+    }
+  }
+  EXPECT_GE(large, 6);
+  EXPECT_GE(slow, 1);
+}
+
 /// Another law of the list says with fewer parameters what one of the first laws says with an effect.
 TEST(BaseLaw, TheLawsOfTheListCompete) {
   const std::vector<std::pair<std::string, std::function<double(double)>>> truths = {
