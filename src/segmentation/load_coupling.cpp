@@ -1,6 +1,8 @@
 #include "tribofit/segmentation/load_coupling.hpp"
 
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "limits.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
@@ -15,24 +17,42 @@ struct Line {
   bool known = false;
 };
 
+/// Takes the straight line over time out of a course.
+void remove_trend(std::vector<double>& course) {
+  const auto n = static_cast<double>(course.size());
+  double mean = 0, moment = 0, squares = 0;
+  for (const double value : course) mean += value / n;
+  for (std::size_t i = 0; i < course.size(); ++i) {
+    const double t = static_cast<double>(i) - 0.5 * (n - 1);
+    moment += t * (course[i] - mean);
+    squares += t * t;
+  }
+  for (std::size_t i = 0; i < course.size() && squares > 0; ++i) {
+    course[i] -= mean + moment / squares * (static_cast<double>(i) - 0.5 * (n - 1));
+  }
+}
+
 /// Noise on friction would flatten the line of least squares. Friction a twentieth of the cycle earlier and later
-/// serves as an instrument: it follows the same course and does not share the noise (Reiersol 1945).
+/// serves as an instrument: it follows the same course and does not share the noise (Reiersol 1945). A load that rises
+/// steadily does not follow friction, which rises over most of the cycle: a line over time is taken out of both.
 Line line_of(const Motion& motion, std::size_t begin, std::size_t end) {
   Line line;
   const std::size_t shift = (end - begin) / 20;
   const auto n = static_cast<double>(end - begin - 2 * shift);
-  const auto instrument = [&](std::size_t i) { return motion.friction[i - shift] + motion.friction[i + shift]; };
-  double mean_load = 0, mean_friction = 0, mean_instrument = 0;
+  double mean_load = 0, mean_friction = 0;
+  std::vector<double> load, friction, instrument;
   for (std::size_t i = begin + shift; i < end - shift; ++i) {
-    mean_load += motion.load[i] / n;
-    mean_friction += motion.friction[i] / n;
-    mean_instrument += instrument(i) / n;
+    load.push_back(motion.load[i]);
+    friction.push_back(motion.friction[i]);
+    instrument.push_back(motion.friction[i - shift] + motion.friction[i + shift]);
+    mean_load += load.back() / n;
+    mean_friction += friction.back() / n;
   }
+  for (std::vector<double>* course : {&load, &friction, &instrument}) remove_trend(*course);
   double with_load = 0, with_friction = 0;
-  for (std::size_t i = begin + shift; i < end - shift; ++i) {
-    const double z = instrument(i) - mean_instrument;
-    with_load += z * (motion.load[i] - mean_load);
-    with_friction += z * (motion.friction[i] - mean_friction);
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    with_load += instrument[i] * load[i];
+    with_friction += instrument[i] * friction[i];
   }
   line.known = with_friction > 0;
   if (!line.known) return line;

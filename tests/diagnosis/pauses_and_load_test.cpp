@@ -103,6 +103,17 @@ TEST(LoadCoupling, ALoadThatSwingsByItselfIsNone) {
   EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.01);
 }
 
+/// Friction rises over most of a cycle, and so does this load, which is turned up by a tenth within the record.
+TEST(LoadCoupling, ALoadThatIsRampedIsNone) {
+  for (const double rise : {0.2, -0.2}) {
+    Drive drive = steady();
+    drive.load = [rise](double t) { return 50 + rise * t; };
+    const Simulated simulated = make({}, {}, drive, 0.004);
+    const Estimate found = load_coupling(simulated.motion, simulated.segmentation);
+    EXPECT_LT(std::abs(found.value), 4 * found.std_error + 0.001) << rise;
+  }
+}
+
 TEST(ChangePoint, IsFoundWithIntervalsThatHoldIt) {
   for (const double when : {9.37, 14.05, 21.62}) {
     const Simulated simulated = make({make_effect("step")}, {0.02, when}, steady(), 0.004);
