@@ -53,6 +53,32 @@ bool take_step(const Bounds& bounds, const std::vector<bool>& free, const Eigen:
   return is_long;
 }
 
+/// Sets the squares of the cycles that a fold holds out, at q.
+///
+/// The squares on every sample at p are known; means over a few samples give their change exactly where the two curves
+/// differ by a nearly constant amount within such a mean. Where the change is as large as the squares themselves that
+/// is not so, and every sample is looked at.
+void set_squares_of_fold(const FitContext& context, const std::vector<std::size_t>& held, const std::vector<double>& p,
+                         const std::vector<double>& q, Fit& fit) {
+  const Observations& observations = context.observations;
+  const ModelResiduals residuals(context.model, observations, held);
+  const std::vector<double> at_q = residuals.squares(q.data()), at_p = residuals.squares(p.data());
+  double known = 0, change = 0;
+  const std::size_t count = std::min(at_q.size(), at_p.size());
+  for (std::size_t k = 0; k < count; ++k) change += std::abs(at_q[k] - at_p[k]);
+  for (const std::size_t s : held) known += fit.cycle_squares[observations.slips[s].cycle];
+  if (!(change > known)) {
+    for (std::size_t k = 0; k < count; ++k) fit.cycle_squares[observations.slips[held[k]].cycle] += at_q[k] - at_p[k];
+    return;
+  }
+  const FullRecord record(context.records, observations, context.model.needs());
+  const std::vector<double> exact = sample_errors(context.model, q, record, observations).squares;
+  for (const std::size_t s : held) {
+    const std::size_t cycle = observations.slips[s].cycle;
+    fit.cycle_squares[cycle] = exact[cycle];
+  }
+}
+
 }  // namespace
 
 void cross_validate(const FitContext& context, const Solution& solution, const NormalEquations& equations,
@@ -73,13 +99,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
     const Eigen::VectorXd step = step_without(context, solution, equations, free, fit, fold);
     const bool is_long = take_step(context.bounds, free, step, q);
     if (is_long && !context.by_extremes()) q = context.solve(kept, p, quick_search()).p;
-    // The squares on every sample at p are known; means over a few samples give their change exactly
-    // where the two curves differ by a nearly constant amount within such a mean.
-    const ModelResiduals residuals(context.model, observations, held);
-    const std::vector<double> at_q = residuals.squares(q.data()), at_p = residuals.squares(p.data());
-    for (std::size_t k = 0; k < std::min(at_q.size(), at_p.size()); ++k) {
-      fit.cycle_squares[observations.slips[held[k]].cycle] += at_q[k] - at_p[k];
-    }
+    set_squares_of_fold(context, held, p, q, fit);
   }
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
   const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);

@@ -12,19 +12,12 @@ namespace tribofit {
 
 namespace {
 
-/// Influence of each cycle on the parameters. One on its bound is fixed for the others; its own error is what it would
-/// have if it were not.
+/// Influence of each cycle on the parameters. One on its bound is estimated all the same: what the data leave open of
+/// it they leave open of those that go with it.
 Eigen::MatrixXd influences_of(const FitContext& context, const Solution& solution, const NormalEquations& equations,
                               const Freedom& freedom) {
   if (context.by_extremes()) return published_influence(equations, freedom.free, solution.extremes);
-  Eigen::MatrixXd influences = influence(equations, freedom.inside);
-  if (freedom.inside == freedom.free) return influences;
-  const Eigen::MatrixXd with_bound = influence(equations, freedom.free);
-  for (std::size_t k = 0; k < freedom.free.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (freedom.free[k] && !freedom.inside[k]) influences.col(i) = with_bound.col(i);
-  }
-  return influences;
+  return influence(equations, freedom.free);
 }
 
 /// The unit of a parameter that scales with friction, where friction is a force.
@@ -77,22 +70,6 @@ void open_intervals(const std::vector<std::vector<std::size_t>>& groups, Fit& fi
   }
 }
 
-/// Points scatter independently. A parameter on its bound is as in influences_of().
-Spread spread_between_points(const FitContext& context, const NormalEquations& equations, const Freedom& freedom,
-                             double squares) {
-  Spread spread = spread_of_points(equations, squares, freedom.inside);
-  if (freedom.inside == freedom.free) return spread;
-  const Spread with_bound = spread_of_points(equations, squares, freedom.free);
-  for (std::size_t k = 0; k < context.model.parameters().size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (!freedom.free[k] || freedom.inside[k]) continue;
-    spread.std_error(i) = with_bound.std_error(i);
-    spread.degrees_of_freedom(i) = with_bound.degrees_of_freedom(i);
-    spread.covariance(i, i) = with_bound.covariance(i, i);
-  }
-  return spread;
-}
-
 }  // namespace
 
 Freedom freedom_of(const FitContext& context, const std::vector<double>& p, const NormalEquations& equations) {
@@ -120,9 +97,9 @@ void fill_parameters(const FitContext& context, const Solution& solution, const 
   const bool points = are_points(context.records);
   // Several records have levels of their own, which are no noise that wanders from one to the next.
   if (!context.by_extremes() && context.records.size() == 1 && !points)
-    slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.inside,
+    slow = slow_levels(equations, level_change(context.model, solution.values()), freedom.free,
                        context.observations.flicker);
-  const Spread spread = points ? spread_between_points(context, equations, freedom, 2 * solution.result.cost)
+  const Spread spread = points ? spread_of_points(equations, 2 * solution.result.cost, freedom.free)
                                : spread_of(influences_of(context, solution, equations, freedom), slow);
   for (std::size_t k = 0; k < solution.values().size(); ++k) {
     fit.parameters.push_back(fitted_parameter(context, solution, spread, k));
