@@ -82,4 +82,8 @@ bool is_confirmed(const Confirmation& c) {
   return c.p_value < diagnosis::limits::kChanceOfConfirmation && c.final_rmse < c.base_rmse;
 }
 
+bool contradicts_law(const Confirmation& c) {
+  return c.final_rmse > kClearlyAbove * c.floor_rmse;
+}
+
 }  // namespace tribofit

@@ -36,4 +36,7 @@ double removed_at(const Diagnosis& diagnosis, std::size_t rung);
 /// The last rung predicts the run that was not used in the fit better than the base law, and not by chance.
 bool is_confirmed(const Confirmation& confirmation);
 
+/// What the last rung leaves on the run that was not used in the fit is clearly above the noise floor of that run.
+bool contradicts_law(const Confirmation& confirmation);
+
 }  // namespace tribofit

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "conclusions.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
@@ -93,7 +94,8 @@ std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOption
   const bool distorted = motion.velocity_zero.any() || motion.velocity_low_pass.any() ||
                          motion.friction_low_pass.any() || motion.compression.any() || motion.clock_drift.any();
   const bool corrected = distorted || motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 ||
-                         motion.plateau_correction != PlateauCorrection::none;
+                         motion.plateau_correction != PlateauCorrection::none ||
+                         prepared.trace.load_coupling.value != 0;
   if (!corrected) return std::nullopt;
   MotionOptions raw = options.motion;
   raw.undo_high_pass = raw.undo_speed_ripple = raw.undo_distortions = false;
@@ -150,6 +152,13 @@ Fit of_first_record(const Fit& joint) {
     }
   }
   return fit;
+}
+
+/// What the run leaves where every parameter is its own.
+double own_floor(const Fit& joint, const Identification& trace) {
+  const Record record = {&trace.motion, &trace.segmentation};
+  const FrictionModel model = joint.model.of_one_record();
+  return fit_model(model, {&record, 1}, observations_for(model, {&record, 1}, FitDetail::quick)).floor.rmse;
 }
 
 /// The fit with what belongs to a record alone (phases, the time of a change) found anew on this one.
@@ -230,12 +239,25 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
   return out;
 }
 
+namespace {
+
+/// The law alone, which was enough for the runs it was fitted to, does not predict the run.
+void veto_law(const Confirmation& run, Diagnosis& diagnosis) {
+  if (!contradicts_law(run)) return;
+  diagnosis.verdict = Verdict::unconfirmed;
+  diagnosis.messages.push_back(fmt::format(
+      "{} contradicts the law: with every parameter frozen the error there is {:.3g}, {:.2g} times the noise "
+      "floor of {:.3g} of that run",
+      run.path, run.final_rmse, run.final_rmse / run.floor_rmse, run.floor_rmse));
+}
+
+}  // namespace
+
 void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis) {
-  if (diagnosis.verdict != Verdict::effect_found) return;
+  const Verdict found = diagnosis.verdict;
   for (const Confirmation& run : confirmations) {
-    if (!std::isfinite(run.final_rmse) ||
-        (run.final_rmse < run.base_rmse && run.p_value < limits::kChanceOfConfirmation))
-      continue;
+    if (found == Verdict::sufficient) veto_law(run, diagnosis);
+    if (found != Verdict::effect_found || !std::isfinite(run.final_rmse) || is_confirmed(run)) continue;
     diagnosis.verdict = Verdict::unconfirmed;
     diagnosis.messages.push_back(
         fmt::format("{} does not bear out what was found: there the error goes from {:.4g} to "
@@ -269,6 +291,7 @@ Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs)
   const Fit last = evaluate_frozen(with_values_of_record(rungs.back(), trace), trace.motion, trace.segmentation);
   out.base_rmse = base.error.rmse;
   out.final_rmse = last.error.rmse;
+  out.floor_rmse = own_floor(rungs.back(), trace);
   const Comparison comparison = compare_held_out(last, base);
   out.p_value = comparison.first_better ? 0.5 * comparison.p_value : 1 - 0.5 * comparison.p_value;
   return out;

@@ -47,7 +47,8 @@ Confirmation confirm(const Identification& trace, const std::vector<Fit>& rungs)
 void add_confirmation(const Identification& trace, DiagnosedTraces& diagnosed);
 
 /// A confirmation that fails vetoes what was found: on a run that was held back the last rung is no better than the
-/// base law, or no better than chance would have it.
+/// base law, or no better than chance would have it. So does a run far above its own noise floor, where no effect was
+/// found and the law was enough.
 void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis);
 
 }  // namespace tribofit::diagnosis

@@ -61,7 +61,7 @@ class Sentences {
       case Verdict::unexplained:
         return unexplained();
       case Verdict::unconfirmed:
-        return fmt::format("{} A run not used in the fit does not confirm it.", found_sentence(result_));
+        return unconfirmed();
       case Verdict::not_enough_data:
         break;
     }
@@ -107,8 +107,33 @@ class Sentences {
   /// "the held-out error falls from 0.0088 to 0.0030, ..."
   std::string fall() const {
     if (d_.ladder.size() < 2) return fmt::format("the held-out error is {}, {}", level(last()), floor_clause());
-    return fmt::format("the held-out error falls from {} to {}, {}", level(d_.ladder.front().held_out_rmse),
-                       level(last()), floor_clause());
+    const std::string first = level(d_.ladder.front().held_out_rmse);
+    if (first != level(last())) {
+      return fmt::format("the held-out error {} from {} to {}, {}",
+                         last() < d_.ladder.front().held_out_rmse ? "falls" : "rises", first, level(last()),
+                         floor_clause());
+    }
+    return fmt::format("the held-out error stays at {}, {}{}", first, floor_clause(), evidence_before_fit());
+  }
+
+  /// What shows effects that were found before any fit, where the held-out error does not.
+  std::string evidence_before_fit() const {
+    std::string text;
+    for (const Rung& rung : found_effects(d_)) {
+      const EffectFinding* finding = finding_of(d_, rung.added);
+      if (finding == nullptr || std::isfinite(finding->held_out_rmse)) continue;
+      text += fmt::format("; {} rests on other evidence: {}", rung.added, finding->reason);
+    }
+    return text;
+  }
+
+  std::string unconfirmed() const {
+    if (!found_effects(d_).empty())
+      return fmt::format("{} A run not used in the fit does not confirm it.", found_sentence(result_));
+    return fmt::format(
+        "The {} is enough for the data it was fitted to: its held-out error is {}, {}. A run not used in the fit "
+        "contradicts it.",
+        law_text(d_), level(last()), floor_clause());
   }
 
   std::string unexplained() const {
@@ -219,7 +244,12 @@ std::string confirmation_sentence(const Confirmation& c, const DiagnosedTraces& 
   }
   const std::string unit = level_unit(result);
   if (result.diagnosis.ladder.size() < 2) {
-    return fmt::format("{}: the error of the law is {}{}", c.path, significant(c.final_rmse, 3), unit);
+    const std::string error =
+        fmt::format("{}: the error of the law is {}{}", c.path, significant(c.final_rmse, 3), unit);
+    const double ratio = c.final_rmse / c.floor_rmse;
+    if (!std::isfinite(ratio)) return error;
+    return fmt::format("{}, {} times the noise floor of that run ({}{}): {}", error, significant(ratio, 2),
+                       significant(c.floor_rmse, 3), unit, contradicts_law(c) ? "not confirmed" : "confirmed");
   }
   return fmt::format("{}: with every parameter frozen the error goes from {} to {}{} ({}): {}", c.path,
                      significant(c.base_rmse, 3), significant(c.final_rmse, 3), unit, p_value_text(c.p_value),

@@ -107,7 +107,8 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
                   r.equivalent, "held_out_std_error", r.held_out_std_error);
   };
   const auto confirmation = [](const Confirmation& c) {
-    return object("path", c.path, "base_rmse", c.base_rmse, "final_rmse", c.final_rmse, "p_value", c.p_value);
+    return object("path", c.path, "base_rmse", c.base_rmse, "final_rmse", c.final_rmse, "p_value", c.p_value,
+                  "floor_rmse", c.floor_rmse);
   };
   return object("verdict", to_string(d.verdict), "law", to_string(d.law), "from_the_start", d.from_the_start, "where",
                 shares_json(d.where), "effects", list_of(d.effects, finding), "ladder", list_of(d.ladder, rung),

@@ -64,6 +64,30 @@ TEST(Confirm, ARunWithoutTheEffectVetoes) {
   EXPECT_NE(diagnosis.messages.back().find("does not bear out"), std::string::npos);
 }
 
+/// A run without the effect whose friction is another by a factor.
+Identification run_of_level(double factor, std::uint64_t seed) {
+  Identification out = run(0, 0, seed);
+  for (double& friction : out.motion.friction) friction *= factor;
+  for (Cycle& cycle : out.segmentation.cycles) cycle.break_away_friction *= factor;
+  return out;
+}
+
+TEST(Confirm, ARunThatTheLawDoesNotPredictVetoesWhereNoEffectWasFound) {
+  const Diagnosed found = diagnosed(run(0, 0, 1));
+  ASSERT_EQ(found.diagnosis.verdict, Verdict::sufficient);
+  for (const double factor : {1.0, 1.1}) {
+    Diagnosis diagnosis = found.diagnosis;
+    const Confirmation other = diagnosis::confirm(run_of_level(factor, 2), found.fits);
+    EXPECT_NEAR(other.floor_rmse, 0.003 * factor, 0.0005);
+    diagnosis::veto({other}, diagnosis);
+    EXPECT_EQ(diagnosis.verdict, factor == 1 ? Verdict::sufficient : Verdict::unconfirmed) << other.final_rmse;
+    if (factor == 1) continue;
+    ASSERT_FALSE(diagnosis.messages.empty());
+    EXPECT_NE(diagnosis.messages.back().find("run contradicts the law"), std::string::npos);
+    EXPECT_NE(diagnosis.messages.back().find("times the noise floor"), std::string::npos);
+  }
+}
+
 /// The value of a parameter of a fit within four standard errors of the truth.
 void expect_parameter(const Fit& fit, const std::string& name, double truth) {
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "folder.hpp"
@@ -217,6 +218,26 @@ TEST(DiagnosisPage, AConfirmationSaysWhetherItHeld) {
       AllOf(HasSubstr("r4.csv: with every parameter frozen the error goes from 0.00900 to 0.00330 (p < 0.0001): "
                       "confirmed"),
             HasSubstr("(p = 0.40): not confirmed")));
+}
+
+TEST(DiagnosisPage, ARunThatContradictsTheLawIsNamedWithItsErrorOverItsFloor) {
+  DiagnosedTraces result = sufficient();
+  result.diagnosis.verdict = Verdict::unconfirmed;
+  result.diagnosis.confirmations = {{"r4.csv", 0.036, 0.036, 0.5, 0.003}};
+  EXPECT_THAT(prose(result),
+              AllOf(HasSubstr("A run not used in the fit contradicts it"), Not(HasSubstr("is incomplete")),
+                    HasSubstr("the error of the law is 0.0360, 12 times the noise floor of that run (0.00300): "
+                              "not confirmed")));
+}
+
+TEST(DiagnosisPage, WhatRemovesNoErrorDoesNotMakeItFall) {
+  DiagnosedTraces result = made_up_diagnosis();
+  result.diagnosis.ladder.back().held_out_rmse = result.diagnosis.ladder.front().held_out_rmse;
+  EffectFinding& finding = result.diagnosis.effects.front();
+  finding.held_out_rmse = std::nan("");
+  finding.reason = "the plateau of stick shows it";
+  EXPECT_THAT(prose(result), AllOf(HasSubstr("the held-out error stays at"), HasSubstr("the plateau of stick shows it"),
+                                   Not(HasSubstr("falls from"))));
 }
 
 TEST(DiagnosisPage, SeveralTracesAreNamedTogether) {

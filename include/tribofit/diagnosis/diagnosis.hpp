@@ -33,7 +33,7 @@ enum class Verdict {
   sufficient,       ///< these data ask for no effect more
   effect_found,     ///< effects were added and what remains is noise
   unexplained,      ///< structure remains that no effect explains, or that one may explain but is not proven to
-  unconfirmed,      ///< effects were added, and a run that was held back does not bear them out
+  unconfirmed,      ///< a run that was held back does not bear out the law or the effects that were added
   not_enough_data,  ///< too few cycles to hold any out
 };
 /// "sufficient", "effect-found", "unexplained", "unconfirmed", "not-enough-data".
@@ -85,9 +85,10 @@ struct Rung {
 /// the time of a change), which are found anew.
 struct Confirmation {
   std::string path;
-  double base_rmse = 0;   ///< what the base law leaves there [1 or N]
-  double final_rmse = 0;  ///< what the last rung leaves there
-  double p_value = 1;     ///< that the last rung is no better
+  double base_rmse = 0;                                          ///< what the base law leaves there [1 or N]
+  double final_rmse = 0;                                         ///< what the last rung leaves there
+  double p_value = 1;                                            ///< that the last rung is no better
+  double floor_rmse = std::numeric_limits<double>::quiet_NaN();  ///< noise floor of the run itself
 };
 
 /// Where a law fails, which effects it needs, and whether it is then enough.
