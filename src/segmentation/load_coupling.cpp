@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
@@ -19,17 +20,8 @@ struct Line {
 
 /// Takes the straight line over time out of a course.
 void remove_trend(std::vector<double>& course) {
-  const auto n = static_cast<double>(course.size());
-  double mean = 0, moment = 0, squares = 0;
-  for (const double value : course) mean += value / n;
-  for (std::size_t i = 0; i < course.size(); ++i) {
-    const double t = static_cast<double>(i) - 0.5 * (n - 1);
-    moment += t * (course[i] - mean);
-    squares += t * t;
-  }
-  for (std::size_t i = 0; i < course.size() && squares > 0; ++i) {
-    course[i] -= mean + moment / squares * (static_cast<double>(i) - 0.5 * (n - 1));
-  }
+  const StraightLine line = fit_line(course);
+  for (std::size_t i = 0; i < course.size(); ++i) course[i] -= line.at(static_cast<double>(i));
 }
 
 /// Noise on friction would flatten the line of least squares. Friction a twentieth of the cycle earlier and later
