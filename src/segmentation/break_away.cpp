@@ -69,6 +69,16 @@ double growth_time(const Motion& m, const std::vector<Rise>& rises, double level
   return std::max(0.5, median(std::move(times)));
 }
 
+/// Last sample up to `last` before a step of the disc's speed that v_r follows.
+std::size_t before_step(const Motion& m, const Rise& r, std::size_t begin, std::size_t last, double level) {
+  if (m.disc_velocity.empty()) return last;
+  for (std::size_t i = last; i > begin; --i) {
+    const double step = std::abs(m.disc_velocity[i] - m.disc_velocity[i - 1]);
+    if (step > level && above_stick(m, r, i) - above_stick(m, r, i - 1) > level) return i - 1;
+  }
+  return last;
+}
+
 Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   Window w;
   const std::size_t crossing = rises_above(m, r, level);
@@ -80,13 +90,31 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   w.begin = crossing > r.onset.stick_begin + before ? crossing - before : r.onset.stick_begin;
   // In a short stick the window may reach back into the end of the slip before.
   while (w.begin < crossing && above_stick(m, r, w.begin) > level) ++w.begin;
+  // A disc that steps carries v_r over the level at once: that is no growth.
+  const std::size_t end = before_step(m, r, w.begin, crossing, level);
   w.squares.push_back(0);
-  for (std::size_t i = w.begin; i <= crossing; ++i) {
+  for (std::size_t i = w.begin; i <= end; ++i) {
     w.v.push_back(above_stick(m, r, i));
     w.squares.push_back(w.squares.back() + w.v.back() * w.v.back());
   }
-  w.crossing = static_cast<double>(crossing - w.begin);
+  w.crossing = static_cast<double>(end - w.begin);
   return w;
+}
+
+/// The rises of a record with the speeds of the disc at each, over their median: it loads the spring at that speed, and
+/// the block leaves in proportion to it.
+std::vector<Window> windows_of(const Motion& m, const std::vector<Rise>& rises, double level, double growth) {
+  std::vector<Window> windows;
+  std::vector<double> speeds;
+  for (const Rise& rise : rises) {
+    windows.push_back(window_of(m, rise, level, growth));
+    const std::size_t end = windows.back().begin + static_cast<std::size_t>(windows.back().crossing);
+    speeds.push_back(std::abs(m.disc_velocity_at(end)));
+  }
+  const double usual = median(speeds);
+  for (std::size_t k = 0; k < windows.size() && usual > 0; ++k)
+    windows[k].pull = std::clamp(speeds[k] / usual, kSlowestPull, 1 / kSlowestPull);
+  return windows;
 }
 
 /// What all break-aways of a record have in common.
@@ -99,22 +127,19 @@ struct CommonGrowth {
 };
 
 // Rises, evenly picked.
-std::vector<Window> pool_of(const Motion& motion, const std::vector<Rise>& rises, double level, double growth) {
-  const std::size_t stride = (rises.size() + kMostPooled - 1) / kMostPooled;
+std::vector<Window> pool_of(const std::vector<Window>& windows) {
+  const std::size_t stride = (windows.size() + kMostPooled - 1) / kMostPooled;
   std::vector<Window> pool;
-  for (std::size_t i = 0; i < rises.size(); i += stride) {
-    pool.push_back(window_of(motion, rises[i], level, growth));
-    pool.back().t0 = std::max(0.0, pool.back().crossing - 2 * growth);
-  }
+  for (std::size_t i = 0; i < windows.size(); i += stride) pool.push_back(windows[i]);
   return pool;
 }
 
-CommonGrowth fit_common_growth(const Motion& motion, const std::vector<Rise>& rises, double level) {
+CommonGrowth fit_common_growth(const std::vector<Window>& windows, double level, double time) {
   CommonGrowth common;
   common.level = level;
-  common.time = growth_time(motion, rises, level);
+  common.time = time;
   const Growth start{level / 4.4, 1 / common.time, 0};  // v reaches the end of the fit at x = 2
-  std::vector<Window> pool = pool_of(motion, rises, level, common.time);
+  std::vector<Window> pool = pool_of(windows);
   std::vector<Window> with_jump_pool = pool;
   PooledFit& fit = common.fit;
   fit = fit_growth(pool, start, false);
@@ -139,15 +164,12 @@ CommonGrowth fit_common_growth(const Motion& motion, const std::vector<Rise>& ri
 }
 
 // Each rise with its own break-away.
-std::vector<Window> locate_each(const Motion& motion, const std::vector<Rise>& rises, const CommonGrowth& common) {
+void locate_each(std::vector<Window>& windows, const CommonGrowth& common) {
   const Growth& growth = common.fit.growth;
-  std::vector<Window> windows;
-  for (const Rise& rise : rises) {
-    Window w = window_of(motion, rise, common.level, common.time);
-    w.t0 = fit_time(w, growth, w.crossing - std::log1p(common.level / (growth.a + growth.b)) / growth.lambda);
-    windows.push_back(std::move(w));
+  for (Window& w : windows) {
+    const double reaches = std::log1p(common.level / (w.pull * growth.a + growth.b)) / growth.lambda;
+    w.t0 = fit_time(w, growth, w.crossing - reaches);
   }
-  return windows;
 }
 
 // A contact that creeps has no sharp onset: what leads up to the slip belongs to the stick.
@@ -192,8 +214,10 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
                                  std::min(kinematics::kSlipsOverError * noise, kinematics::kSlipsOverFastest * peak)});
   std::vector<Rise> rises;
   for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
-  const CommonGrowth common = fit_common_growth(motion, rises, level);
-  const std::vector<Window> windows = locate_each(motion, rises, common);
+  const double growth = growth_time(motion, rises, level);
+  std::vector<Window> windows = windows_of(motion, rises, level, growth);
+  const CommonGrowth common = fit_common_growth(windows, level, growth);
+  locate_each(windows, common);
   const bool creeps = contact_creeps(rises, windows);
   for (std::size_t k = 0; k < rises.size(); ++k) {
     const Located at = settle_break_away(windows[k], common, creeps);

@@ -7,6 +7,7 @@
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
 namespace {
@@ -17,19 +18,19 @@ Sums sums_at(const Window& w, const Growth& growth, double t0) {
   Sums s;
   const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(t0)));
   s.rss = w.squares[std::min(first, w.v.size())];
-  const double factor = std::exp(growth.lambda);
+  const double factor = std::exp(growth.lambda), a = w.pull * growth.a;
   double e = std::exp(growth.lambda * (static_cast<double>(first) - t0));
   for (std::size_t i = first; i < w.v.size(); ++i, e *= factor) {
     const double x = growth.lambda * (static_cast<double>(i) - t0);
     const double shape = e - 1 - x;
-    const double r = w.v[i] - growth.a * shape - growth.b * (e - 1);
-    const double slope = growth.a * (e - 1) + growth.b * e;  // dv/dx
+    const double r = w.v[i] - a * shape - growth.b * (e - 1);
+    const double slope = a * (e - 1) + growth.b * e;  // dv/dx
     const double d = -growth.lambda * slope;                 // dv/dt0
     s.rss += r * r;
     s.h += d * d;
     s.g += d * r;
     if constexpr (with_shared) {
-      const Eigen::Vector3d j(growth.a * shape, x * slope, e - 1);
+      const Eigen::Vector3d j(a * shape, x * slope, e - 1);
       s.mixed += d * j;
       s.shared += j * j.transpose();
       s.gradient += j * r;
@@ -119,12 +120,13 @@ Trial damped_step(const std::vector<Window>& windows, const SharedGrowth& shared
   return trial;
 }
 
-}  // namespace
-
-PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
+PooledFit fit_all(std::vector<Window>& windows, Growth growth, bool with_jump) {
   PooledFit fit;
   Trial best{growth, {}, 0};
-  for (const Window& w : windows) best.times.push_back(w.t0), fit.samples += w.v.size();
+  for (const Window& w : windows) {
+    best.times.push_back(fit_time(w, growth, std::max(0.0, w.crossing - 2 / growth.lambda)));
+    fit.samples += w.v.size();
+  }
   best.rss = squares_left(windows, growth, best.times);
   double damping = 1e-3;
   for (int iteration = 0; iteration < 30; ++iteration) {
@@ -147,6 +149,30 @@ PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump
   return fit;
 }
 
+/// Takes out the few windows in which something else than the growth of the others happens. Whether there are any.
+bool take_out_foreign(std::vector<Window>& windows, const Growth& growth) {
+  std::vector<double> left;
+  for (const Window& w : windows)
+    left.push_back(sums_at<false>(w, growth, w.t0).rss / static_cast<double>(w.v.size()));
+  const double most = kForeignRise * median(left);
+  const auto foreign = static_cast<std::size_t>(std::ranges::count_if(left, [&](double x) { return x > most; }));
+  if (foreign == 0 || foreign * kRisesPerForeign > windows.size()) return false;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (left[i] <= most) std::swap(windows[kept++], windows[i]);
+  }
+  windows.resize(kept);
+  return true;
+}
+
+}  // namespace
+
+PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
+  const PooledFit fit = fit_all(windows, growth, with_jump);
+  // Those moved the growth and the times of the others: from the start again.
+  return take_out_foreign(windows, fit.growth) ? fit_all(windows, growth, with_jump) : fit;
+}
+
 Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
   Remainder all;
   for (const Window& w : windows) {
@@ -154,7 +180,7 @@ Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
     for (std::size_t i = 0; i < w.v.size(); ++i) {
       const double t = static_cast<double>(i) - w.t0;
       const double x = t > 0 ? growth.lambda * t : 0;
-      left.add(w.v[i] - growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x));
+      left.add(w.v[i] - w.pull * growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x));
     }
     all += left;
   }

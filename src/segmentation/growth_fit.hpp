@@ -14,6 +14,7 @@ struct Window {
   std::vector<double> squares;  // squares[i]: sum of v^2 before i, what is left over if nothing has happened yet
   double t0 = 0;                // break-away, in samples from `begin`
   double crossing = 0;          // where the velocity crosses the end of the fit
+  double pull = 1;              // speed of the disc over that of the others: A is in proportion
 };
 
 /// The growth common to all break-aways, time in samples: A, lambda, B.
@@ -42,7 +43,8 @@ struct PooledFit {
   std::size_t samples = 0;
 };
 
-/// Levenberg-Marquardt on the shared parameters, each window's t0 eliminated; sets t0 of the windows.
+/// Levenberg-Marquardt on the shared parameters, each window's t0 eliminated; sets t0 of the windows, and takes out the
+/// few that do not share the growth.
 PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump);
 
 /// Variance of what the growth leaves, and the factor by which its colour enlarges it: of the lag-one correlation

@@ -63,6 +63,12 @@ inline constexpr double kGrowthOverPeak = 0.01, kGrowthOverNoise = 25, kGrowthAt
 inline constexpr double kGrowthRatio = 3, kTimeConstants = 8, kShortestGrowth = 4, kLongestGrowth = 4000;
 /// Rises that are fitted together: more do not move the rate.
 inline constexpr std::size_t kMostPooled = 96;
+/// What one leaves over the median, from which a blow or a step of the disc's speed is in it (noise makes 3), and rises
+/// to one such at least: more are no exceptions.
+inline constexpr double kForeignRise = 10;
+inline constexpr std::size_t kRisesPerForeign = 8;
+/// Slowest disc over the others whose pull is taken as it is: where it stands still something else moves the block.
+inline constexpr double kSlowestPull = 0.05;
 /// Variances of the noise that a jump must explain, part of the squares that it may leave, and where its search begins,
 /// over the level.
 inline constexpr double kJumpExplains = 40, kJumpLeaves = 0.9, kFirstJump = 0.1;

@@ -25,8 +25,10 @@ struct Rig {
   bool flat_at_rest = false;  // friction falls as exp(-(decay v)^2)
   unsigned seed = 1;
   double ripple = 0, ripple_order = 1, ripple_phase = 0;  // omega (1 + A cos(n omega t + phase))
+  double step_at = HUGE_VAL, speed_ratio = 1;  // from then on [s] the disc turns so many times as fast
   double speed() const { return rpm * 2 * std::numbers::pi / 60; }
   double disc(double t) const {  // m/s
+    if (t >= step_at) return speed_ratio * speed() * radius;
     return speed() * radius * (1 + ripple * std::cos(ripple_order * speed() * t + ripple_phase));
   }
   double disc_acceleration(double t) const {
@@ -34,6 +36,7 @@ struct Rig {
     return -speed() * radius * ripple * w * std::sin(w * t + ripple_phase);
   }
   double disc_travel(double t) const {  // from t = 0
+    if (t >= step_at) return disc_travel(step_at - 1e-12) + (t - step_at) * disc(t);
     const double w = ripple_order * speed();
     return speed() * radius * (t + ripple / w * (std::sin(w * t + ripple_phase) - std::sin(ripple_phase)));
   }

@@ -72,6 +72,37 @@ INSTANTIATE_TEST_SUITE_P(Twins, BreakAway,
                                          Case{0, 0.004, 32.37, false}, Case{0.9, 0.004, 32.37, false},
                                          Case{0, 0.004, 52.14, true}, Case{0.9, 0.004, 52.14, true}));
 
+TEST(BreakAwayTime, AStepOfTheDiscAtOneSpoilsNoOther) {
+  for (unsigned seed : {1U, 2U, 3U}) {
+    for (double ratio : {2.0, 4.0}) {
+      truth::Rig rig;
+      rig.rate = 5000;
+      rig.rpm = 2;
+      rig.duration = 12;
+      rig.scatter = 0.003;
+      rig.seed = seed;
+      // The disc steps a little after a break-away in the middle, before the velocity has grown.
+      const truth::Run even = truth::simulate(rig);
+      const std::size_t stepping = even.break_away_time.size() / 2;
+      rig.step_at = even.break_away_time[stepping] + 1e-3;
+      rig.speed_ratio = ratio;
+      truth::Run run = truth::simulate(rig);
+      for (double t : run.trace.time) run.trace.disc_speed.push_back(rig.disc(t) / rig.radius);
+      run.trace.conditions.speed = {};
+      const Segmentation s = find_cycles(compute_motion(run.trace));
+      ASSERT_EQ(s.cycles.size(), run.break_away_time.size());
+      double before = 0, after = 0;
+      for (std::size_t k = 0; k < s.cycles.size(); ++k) {
+        const double off = s.cycles[k].break_away_time - run.break_away_time[k];
+        EXPECT_LT(std::abs(off), k == stepping ? 2e-3 : 0.5e-3) << k;  // a sample is 0.2 ms
+        if (k != stepping) (k < stepping ? before : after) += off;
+      }
+      EXPECT_LT(std::abs(before) / static_cast<double>(stepping), 0.1e-3) << ratio;
+      EXPECT_LT(std::abs(after) / static_cast<double>(s.cycles.size() - stepping - 1), 0.1e-3) << ratio;
+    }
+  }
+}
+
 TEST(BreakAwayTime, FollowsAPureShiftOfTheRecordBetweenSamples) {
   // The same motion sampled with clocks a third of a sample apart must give the same instants.
   truth::Rig rig;
