@@ -341,20 +341,19 @@ inline constexpr double kAlikePowers = 0.5;
 
 /// Samples of which a distribution can be seen.
 inline constexpr std::size_t kFewestDistributed = 64;
-/// Values that are looked at for a distribution, and for how often a channel repeats one: more do not move it.
+/// Values looked at for a distribution, and for how often a channel repeats one; part of those from which it is
+/// quantised and repeats its extremes too.
 inline constexpr std::size_t kThinned = 16384, kValuesForRepeats = 20000;
-/// Part of the values that repeat the one before, from which a channel is quantised and repeats its extremes too.
 inline constexpr double kRepeatsOfSteps = 0.2;
 /// Samples in a row at an extreme that are no chance, and all of them at a limit of the range: two such rows.
 inline constexpr std::size_t kShortestAtEnd = 3, kFewestAtEnd = 6;
 /// Steps by which a run at an extreme would have passed it, below which nothing was cut: the flattest peak of a law at
 /// break-away, a fourth power of time, stays 5 times as long in its last step as in the one before.
 inline constexpr double kStepsOfATurn = 8;
-/// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error.
-inline constexpr double kMuchClipped = 1e-3;
-/// Rounding over the range of a channel, and part of the declared range from which a channel is at its end. Part of a
+/// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error. Rounding over the
+/// range of a channel, and part of the declared range from which a channel is at its end. Part of a
 /// record that stands still or is frozen, and that is lost or spiked: the rest does not make up for more.
-inline constexpr double kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05, kMuchFaulty = 1e-3;
+inline constexpr double kMuchClipped = 1e-3, kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05, kMuchFaulty = 1e-3;
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
 /// machine leaves its range so far within a sample. The samples beside it lie within the second.
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
@@ -373,8 +372,10 @@ inline constexpr std::size_t kShortestStretch = 16;
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-/// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range.
-inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
+/// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range,
+/// which so many of some parts of a record reach: a first pull takes less.
+inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
+inline constexpr double kReachIt = 0.25;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet, the second (where a block sticks and slips, so that nothing else holds it) does not.
 inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6;
@@ -388,12 +389,11 @@ inline constexpr std::size_t kClipHole = 32, kClipMargin = 8;
 /// a row: friction that is held is so for a good part of a stick.
 inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
 inline constexpr double kCrowdedSmoothed = 8;
-/// Changes from sample to sample that an amplifier cannot exceed: steps of a converter that one of them must have, how
-/// nearly they are alike, and how many are so in a row. A steepest slope is passed through, it does not last.
+/// Changes from sample to sample that an amplifier cannot exceed: over a converter's steps, how nearly they are alike,
+/// and how many are so in a row. A steepest slope does not last.
 inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
 inline constexpr std::size_t kShortestSlew = 8;
-/// Standstill at an end of a stick-slip record: the block rests for so many periods at less than this part of the
-/// plateau.
+/// Standstill at an end of a stick-slip record: rest for so many periods at less than this part of the plateau.
 inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;
 inline constexpr std::size_t kFewestPeriods = 5;
 

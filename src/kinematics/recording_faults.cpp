@@ -166,8 +166,27 @@ double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stre
   return median(std::move(inside)) / median(std::move(all));
 }
 
-/// Counts from an end of the range inwards.
-PileUp pile_up(std::span<const double> x, const std::vector<std::size_t>& counts, const Extremes& range, bool upper) {
+/// What a good part of the parts of a record reach. The first pull on a rig that was slack passes through the rest of
+/// the range once: beside that, all of a small drop of friction looks like one level.
+Extremes often_reached(std::span<const double> x) {
+  std::vector<double> low, high;
+  const std::size_t length = x.size() / kPartsOfRange;
+  for (std::size_t k = 0; k < kPartsOfRange; ++k) {
+    const Extremes part = extremes(x.subspan(k * length, length));
+    low.push_back(part.low), high.push_back(part.high);
+  }
+  return {quantile(std::move(low), kReachIt), quantile(std::move(high), 1 - kReachIt)};
+}
+
+/// What crowds at an end of a range, counted from there inwards.
+PileUp pile_up(std::span<const double> x, const Extremes& range, bool upper) {
+  if (!(range.high > range.low)) return {};
+  std::vector<std::size_t> counts(kClipBins, 0);
+  const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
+  for (const double value : x) {
+    if (value < range.low || value > range.high) continue;
+    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((value - range.low) * scale))];
+  }
   PileUp best;
   const double bin = (range.high - range.low) / static_cast<double>(counts.size());
   double width = 0;
@@ -231,14 +250,8 @@ void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel) 
 
 std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {
   if (channel.size() < kFewestDistributed) return {};
-  const Extremes range = extremes(channel);
-  if (!(range.high > range.low)) return {};
-  std::vector<std::size_t> counts(kClipBins, 0);
-  const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
-  for (const double x : channel) {
-    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((x - range.low) * scale))];
-  }
-  return {pile_up(channel, counts, range, false), pile_up(channel, counts, range, true)};
+  const Extremes all = extremes(channel), often = often_reached(channel);
+  return {pile_up(channel, {all.low, often.high}, false), pile_up(channel, {often.low, all.high}, true)};
 }
 
 namespace {

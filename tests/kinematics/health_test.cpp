@@ -202,6 +202,40 @@ TEST(Health, FrictionThatIsFlatAtBreakAwayIsNoClipping) {
   }
 }
 
+/// The first pull on a slack rig makes the range wide: beside it a small drop of friction is no level that is held.
+TEST(Health, ASmallDropOfFrictionIsNoClipping) {
+  for (unsigned seed : {1U, 2U, 3U}) {
+    for (double drop : {0.008, 0.015, 0.03}) {
+      truth::Rig rig;
+      rig.seed = seed;
+      rig.rate = 5000;
+      rig.duration = 8;
+      rig.scatter = 0.001;
+      rig.static_friction = rig.kinetic_friction + drop;
+      rig.friction_noise = 0.002 * seed;
+      Trace trace = truth::simulate(rig).trace;
+      const std::size_t pull = trace.size() / 60;
+      for (std::size_t i = 0; i < pull; ++i)
+        trace.friction[i] *= static_cast<double>(i) / static_cast<double>(pull);
+      EXPECT_EQ(item(compute_motion(trace), "clipping").status, Status::ok)
+          << item(compute_motion(trace), "clipping").message;
+    }
+    // A limit behind noise is one, beside such a pull or not.
+    truth::Rig rig;
+    rig.seed = seed;
+    rig.friction_noise = 0;
+    Trace trace = truth::simulate(rig).trace;
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0, 0.002);
+    const std::size_t pull = trace.size() / 60;
+    for (std::size_t i = 0; i < trace.size(); ++i) {
+      const double part = std::min(1.0, static_cast<double>(i) / static_cast<double>(pull));
+      trace.friction[i] = std::min(part * trace.friction[i], 0.42) + noise(engine);
+    }
+    EXPECT_EQ(item(compute_motion(std::move(trace)), "clipping").status, Status::problem);
+  }
+}
+
 /// A held block over twelve speeds of a disc, a thousand samples each: friction of Coulomb and viscous parts.
 Trace speed_steps(std::mt19937_64& engine) {
   std::vector<double> speeds;
