@@ -25,7 +25,7 @@ Sums sums_at(const Window& w, const Growth& growth, double t0) {
     const double shape = e - 1 - x;
     const double r = w.v[i] - a * shape - growth.b * (e - 1);
     const double slope = a * (e - 1) + growth.b * e;  // dv/dx
-    const double d = -growth.lambda * slope;                 // dv/dt0
+    const double d = -growth.lambda * slope;          // dv/dt0
     s.rss += r * r;
     s.h += d * d;
     s.g += d * r;
@@ -152,8 +152,7 @@ PooledFit fit_all(std::vector<Window>& windows, Growth growth, bool with_jump) {
 /// Takes out the few windows in which something else than the growth of the others happens. Whether there are any.
 bool take_out_foreign(std::vector<Window>& windows, const Growth& growth) {
   std::vector<double> left;
-  for (const Window& w : windows)
-    left.push_back(sums_at<false>(w, growth, w.t0).rss / static_cast<double>(w.v.size()));
+  for (const Window& w : windows) left.push_back(sums_at<false>(w, growth, w.t0).rss / static_cast<double>(w.v.size()));
   const double most = kForeignRise * median(left);
   const auto foreign = static_cast<std::size_t>(std::ranges::count_if(left, [&](double x) { return x > most; }));
   if (foreign == 0 || foreign * kRisesPerForeign > windows.size()) return false;

@@ -79,7 +79,7 @@ TEST(Health, DelayBetweenTheChannels) {
     const HealthItem found = item(compute_motion(std::move(trace)), "channel-delay");
     EXPECT_EQ(found.status, Status::warning);
     double value = 0;
-    ASSERT_EQ(std::sscanf(found.message.c_str(), "friction jumps %lf ms", &value), 1) << found.message;
+    ASSERT_EQ(std::sscanf(found.message.c_str(), "friction jumps about %lf ms", &value), 1) << found.message;
     EXPECT_NEAR(value, 1e3 * std::abs(delay), 0.15);
     EXPECT_THAT(found.message, ::testing::HasSubstr(delay > 0 ? "after" : "before"));
   }
