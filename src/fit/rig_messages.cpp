@@ -82,7 +82,8 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
   fit.damping_doubtful = sags || late;
   if (sag_first && fit.high_pass.value > 0) {
     out.push_back(fmt::format(
-        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on v_b that is not undone (a force "
+        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on v_b that is not undone (a "
+        "force "
         "follows the integral of the displacement, as in no rig); without it the damping would be {:.3g} {}: undo it, "
         "or "
         "declare it as vibrometer.high_pass",

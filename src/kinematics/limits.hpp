@@ -353,7 +353,8 @@ inline constexpr double kStepsOfATurn = 8;
 /// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error. Rounding over the
 /// range of a channel, and part of the declared range from which a channel is at its end. Part of a
 /// record that stands still or is frozen, and that is lost or spiked: the rest does not make up for more.
-inline constexpr double kMuchClipped = 1e-3, kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05, kMuchFaulty = 1e-3;
+inline constexpr double kMuchClipped = 1e-3, kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05,
+                        kMuchFaulty = 1e-3;
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
 /// machine leaves its range so far within a sample. The samples beside it lie within the second.
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
@@ -381,10 +382,9 @@ inline constexpr double kReachIt = 0.25;
 inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6;
 /// Noise at the limit over that elsewhere, below which it is the limit that holds the channel still.
 inline constexpr double kQuiet = 0.7;
-/// Samples at a limit: fewer do not bear on a fit.
-inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000;
-/// Samples between two at the limit that are taken for clipped too (noise brings them below it), and beside a stretch.
-inline constexpr std::size_t kClipHole = 32, kClipMargin = 8;
+/// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
+/// brings them below it), and beside a stretch.
+inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHole = 32, kClipMargin = 8;
 /// Samples of a mean in which a crowd is looked for behind noise as wide as its own, how dense it must be, and means in
 /// a row: friction that is held is so for a good part of a stick.
 inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;

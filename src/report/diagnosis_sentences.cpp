@@ -29,8 +29,8 @@ std::string named_effect(const DiagnosedTraces& result, const Rung& rung) {
 /// The effect, or "runout or drift, which these data cannot distinguish" for a group.
 std::string found_clause(const DiagnosedTraces& result, const Rung& rung) {
   if (rung.equivalent.empty()) return named_effect(result, rung);
-  return fmt::format("{} or {}, which these data cannot distinguish; the best fit has {}",
-                     spelled(result, rung.added), enumerated(rung.equivalent, "or"), named_effect(result, rung));
+  return fmt::format("{} or {}, which these data cannot distinguish; the best fit has {}", spelled(result, rung.added),
+                     enumerated(rung.equivalent, "or"), named_effect(result, rung));
 }
 
 std::string found_sentence(const DiagnosedTraces& result) {

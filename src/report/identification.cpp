@@ -68,8 +68,9 @@ std::string open_problems(const Identification& r) {
   for (const HealthItem& item : r.motion.health) {
     if (item.status != HealthItem::Status::ok && health_check::bears_on_values(item.check)) names.push_back(item.check);
   }
-  return names.empty() ? ""
-                       : fmt::format(" The values hold only if what Health says of {} is resolved.", fmt::join(names, ", "));
+  return names.empty()
+             ? ""
+             : fmt::format(" The values hold only if what Health says of {} is resolved.", fmt::join(names, ", "));
 }
 
 /// No fit that could be relied on.

@@ -48,9 +48,10 @@ void add_rig(const RigFit& rig, TerminalText& text) {
   text.heading("Rig");
   if (!table.rows.empty()) text.table(table);
   if (rig.stiffness.determined && rig.mass.determined) {
-    text.item("from", fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} ms)", rig.cycles,
-                                  significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
-                                  significant(rig.smoothing / kMillisecond, 2)));
+    text.item("from",
+              fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} ms)", rig.cycles,
+                          significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
+                          significant(rig.smoothing / kMillisecond, 2)));
     if (rig.stick_slope_stiffness.determined) {
       text.item("check", fmt::format("the stiffness from the force balance is {:+.1f} standard errors from that by the "
                                      "slope of stick, N (dmu/dt)/(omega r)",

@@ -215,8 +215,7 @@ TEST(Health, ASmallDropOfFrictionIsNoClipping) {
       rig.friction_noise = 0.002 * seed;
       Trace trace = truth::simulate(rig).trace;
       const std::size_t pull = trace.size() / 60;
-      for (std::size_t i = 0; i < pull; ++i)
-        trace.friction[i] *= static_cast<double>(i) / static_cast<double>(pull);
+      for (std::size_t i = 0; i < pull; ++i) trace.friction[i] *= static_cast<double>(i) / static_cast<double>(pull);
       EXPECT_EQ(item(compute_motion(trace), "clipping").status, Status::ok)
           << item(compute_motion(trace), "clipping").message;
     }

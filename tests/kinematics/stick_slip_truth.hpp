@@ -25,7 +25,7 @@ struct Rig {
   bool flat_at_rest = false;  // friction falls as exp(-(decay v)^2)
   unsigned seed = 1;
   double ripple = 0, ripple_order = 1, ripple_phase = 0;  // omega (1 + A cos(n omega t + phase))
-  double step_at = HUGE_VAL, speed_ratio = 1;  // from then on [s] the disc turns so many times as fast
+  double step_at = HUGE_VAL, speed_ratio = 1;             // from then on [s] the disc turns so many times as fast
   double speed() const { return rpm * 2 * std::numbers::pi / 60; }
   double disc(double t) const {  // m/s
     if (t >= step_at) return speed_ratio * speed() * radius;

@@ -197,11 +197,10 @@ TEST(DiagnosisPage, NamesAGroupAndTheTestThatWouldSplitIt) {
   DiagnosedTraces result = made_up_diagnosis();
   result.diagnosis.ladder[1].equivalent = {"drift", "heating"};
   result.diagnosis.next_experiment = "Record three revolutions.";
-  EXPECT_THAT(
-      prose(result),
-      AllOf(HasSubstr("The effect found is runout or drift or heating, which these data cannot distinguish"),
-            HasSubstr("runout, drift and heating fit these data equally well"),
-            HasSubstr("Discriminating experiment: Record three revolutions.")));
+  EXPECT_THAT(prose(result),
+              AllOf(HasSubstr("The effect found is runout or drift or heating, which these data cannot distinguish"),
+                    HasSubstr("runout, drift and heating fit these data equally well"),
+                    HasSubstr("Discriminating experiment: Record three revolutions.")));
 }
 
 TEST(DiagnosisPage, WhatShowsInTheMotionIsNoRungButNamed) {
