@@ -92,6 +92,7 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
   while (w.begin < crossing && above_stick(m, r, w.begin) > level) ++w.begin;
   // A disc that steps carries v_r over the level at once: that is no growth.
   const std::size_t end = before_step(m, r, w.begin, crossing, level);
+  w.is_cut = end < crossing;
   w.squares.push_back(0);
   for (std::size_t i = w.begin; i <= end; ++i) {
     w.v.push_back(above_stick(m, r, i));
@@ -126,12 +127,14 @@ struct CommonGrowth {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B)
 };
 
-// Rises, evenly picked.
+// Rises that are whole, evenly picked.
 std::vector<Window> pool_of(const std::vector<Window>& windows) {
   const std::size_t stride = (windows.size() + kMostPooled - 1) / kMostPooled;
   std::vector<Window> pool;
-  for (std::size_t i = 0; i < windows.size(); i += stride) pool.push_back(windows[i]);
-  return pool;
+  for (std::size_t i = 0; i < windows.size(); i += stride) {
+    if (!windows[i].is_cut) pool.push_back(windows[i]);
+  }
+  return pool.empty() ? windows : pool;
 }
 
 CommonGrowth fit_common_growth(const std::vector<Window>& windows, double level, double time) {

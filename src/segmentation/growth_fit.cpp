@@ -124,7 +124,8 @@ PooledFit fit_all(std::vector<Window>& windows, Growth growth, bool with_jump) {
   PooledFit fit;
   Trial best{growth, {}, 0};
   for (const Window& w : windows) {
-    best.times.push_back(fit_time(w, growth, std::max(0.0, w.crossing - 2 / growth.lambda)));
+    // From the start of fit_common_growth(); a smaller pull takes longer to the same velocity.
+    best.times.push_back(std::max(0.0, w.crossing - (2 - std::log(w.pull)) / growth.lambda));
     fit.samples += w.v.size();
   }
   best.rss = squares_left(windows, growth, best.times);

@@ -14,6 +14,7 @@ struct Window {
   std::vector<double> squares;  // squares[i]: sum of v^2 before i, what is left over if nothing has happened yet
   double t0 = 0;                // break-away, in samples from `begin`
   double crossing = 0;          // where the velocity crosses the end of the fit
+  bool is_cut = false;          // the disc steps before the velocity crosses the end of the fit
   double pull = 1;              // speed of the disc over that of the others: A is in proportion
 };
 
