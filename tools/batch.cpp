@@ -232,16 +232,8 @@ std::string next_after(const Campaign& campaign, const BatchOutcome& outcome,
   if (outcome.fitted + outcome.present == 0) {
     return fmt::format("\nNext, to see what the files hold:\n  identify columns {}\n", shell_quoted(first));
   }
-  std::string command = "identify diagnose";
-  for (std::size_t k = 0; k < arguments.size(); ++k) {
-    if (arguments[k] == "--protocol") {
-      ++k;
-    } else if (arguments[k] != "--profile") {
-      command += " " + shell_quoted(arguments[k]);
-    }
-  }
-  return fmt::format("\nNext, to see what the laws miss:\n  {} {}\n", command,
-                     shell_quoted(campaign.folder.empty() ? first : as_folder(campaign.folder)));
+  return fmt::format("\nNext, to see what the laws miss:\n  {}\n",
+                     diagnose_command(arguments, campaign.folder.empty() ? first : as_folder(campaign.folder)));
 }
 
 }  // namespace

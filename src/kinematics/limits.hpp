@@ -287,7 +287,7 @@ inline constexpr double kStepPart = 0.1;
 
 // ---- steps of a converter
 
-/// Values among which steps are looked for, and levels of a channel that has some: more (12 bits) are finer than noise.
+/// Values among which steps and noise are looked for, and levels of a channel that has some: more (12 bits) are finer than noise.
 inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
 /// Part of the distances between levels that are whole numbers of the smallest, and how nearly.
 inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05;

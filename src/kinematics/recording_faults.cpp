@@ -140,17 +140,23 @@ std::vector<SampleSpan> spans_at_limit(std::span<const double> x, double from, d
   return spans;
 }
 
+/// Of the distances from a line through both neighbours; 1 where there are too few.
+double ratio_of_noise(std::vector<double> inside, std::vector<double> elsewhere) {
+  if (inside.size() < kFewestSamples || elsewhere.size() < kFewestSamples) return 1;
+  return median(std::move(inside)) / median(std::move(elsewhere));
+}
+
 /// Noise of the samples that lie in [from, to] with both neighbours, over that of the channel.
 double noise_within(std::span<const double> x, double from, double to) {
   std::vector<double> inside, outside;
   const auto is_inside = [&](std::size_t i) { return x[i] >= from && x[i] <= to; };
-  const std::size_t stride = std::max<std::size_t>(1, x.size() / 65536);
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / kValuesForSteps);
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     const bool in = is_inside(i) && is_inside(i - 1) && is_inside(i + 1);
-    if (in ? inside.size() < 65536 : i % stride == 0) (in ? inside : outside).push_back(std::abs(off_line(x, i)));
+    if (in ? inside.size() < kValuesForSteps : i % stride == 0)
+      (in ? inside : outside).push_back(std::abs(off_line(x, i)));
   }
-  if (inside.size() < 16 || outside.size() < 16) return 1;
-  return median(std::move(inside)) / median(std::move(outside));
+  return ratio_of_noise(std::move(inside), std::move(outside));
 }
 
 /// Noise of whole stretches over that of the channel. Samples that were picked for lying near one another look quiet
@@ -160,10 +166,9 @@ double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stre
   for (const SampleSpan& stretch : stretches) {
     for (std::size_t i = stretch.begin + 1; i + 1 < stretch.end; ++i) inside.push_back(std::abs(off_line(x, i)));
   }
-  const std::size_t stride = std::max<std::size_t>(1, x.size() / 65536);
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / kValuesForSteps);
   for (std::size_t i = 1; i + 1 < x.size(); i += stride) all.push_back(std::abs(off_line(x, i)));
-  if (inside.size() < 16 || all.size() < 16) return 1;
-  return median(std::move(inside)) / median(std::move(all));
+  return ratio_of_noise(std::move(inside), std::move(all));
 }
 
 /// What a good part of the parts of a record reach. The first pull on a rig that was slack passes through the rest of

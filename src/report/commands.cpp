@@ -67,6 +67,10 @@ std::vector<std::string> words_of(std::vector<std::string> words, const std::vec
   return words;
 }
 
+std::string diagnose_command(const std::vector<std::string>& arguments, const std::string& path) {
+  return command_line(words_of({"diagnose"}, arguments, {"--profile"}, {"--protocol"}), {path});
+}
+
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;

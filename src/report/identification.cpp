@@ -114,7 +114,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
   }
   if (is_above_floor(result.fits[result.best])) {
     return {"to see where the law fails and which effect explains it",
-            command_line(words_of({"diagnose"}, options.arguments, {"--profile"}, {"--protocol"}), {result.path})};
+            diagnose_command(options.arguments, result.path)};
   }
   if (!options.csv_written) return {"to plot the curve, the residuals and the cycles", same_with(csv)};
   if (!has_option(options.arguments, "--profile")) {

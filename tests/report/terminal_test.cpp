@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "made_up.hpp"
+#include "report/commands.hpp"
 
 namespace tribofit {
 namespace {
@@ -24,6 +25,17 @@ TerminalOptions with_radius() {
 
 std::string rendered(const Identification& result) {
   return render_terminal(result, with_radius());
+}
+
+TEST(Commands, AnOptionStaysWithItsValueWhereACommandIsFolded) {
+  const std::string folded =
+      folded_command("identify diagnose --radius 15mm --effect viscous --effect drift a.csv", 50);
+  EXPECT_EQ(folded, "  identify diagnose --radius 15mm \\\n      --effect viscous --effect drift a.csv");
+}
+
+TEST(Commands, ADiagnosisTakesTheOptionsThatItHas) {
+  EXPECT_EQ(diagnose_command({"--radius", "15mm", "--protocol", "both", "--profile", "--load", "50N"}, "my runs/"),
+            "identify diagnose --radius 15mm --load 50N 'my runs/'");
 }
 
 TEST(Terminal, ShowsConditionsWithTheirSource) {

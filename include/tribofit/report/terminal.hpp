@@ -60,4 +60,7 @@ std::string render_fingerprint(const Fingerprint& fingerprint, const TerminalOpt
 /// `argument` as a POSIX shell needs it to read the same word back.
 std::string shell_quoted(const std::string& argument);
 
+/// `identify diagnose` of a trace or a folder with those options of `identify` that it has, too.
+std::string diagnose_command(const std::vector<std::string>& arguments, const std::string& path);
+
 }  // namespace tribofit
