@@ -11,6 +11,7 @@
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "limits.hpp"
+#include "rival_laws.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -313,7 +314,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
-  Ladder ladder = reported_of(context, base_laws(records, given, options.from_the_start), all, options, progress);
+  const CompetingLaws laws = base_laws(records, given, options.from_the_start);
+  Ladder ladder = reported_of(context, laws, all, options, progress);
   diagnosis.law = ladder.law;
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;
@@ -328,6 +330,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
   diagnosis.ladder = rungs_of(ladder, all, out.fits);
+  diagnosis.rival_laws =
+      rival_laws(context, laws.all(), ladder.steps.back().coarse, out.fits.back(), instruments, fit);
   decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   progress.say("a closed form of the rest", 0.95);

@@ -4,9 +4,9 @@
 #include <iterator>
 #include <utility>
 
-#include "fit/starts.hpp"
 #include "ladder_steps.hpp"
 #include "limits.hpp"
+#include "rival_laws.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
@@ -132,30 +132,12 @@ Ladder* next_to_climb(const DiagnosisContext& context, std::vector<Ladder>& ladd
   return next;
 }
 
-/// Another law with the effects of a trial but one (npos: with all of them), at low resolution.
-Trial try_other_law(const DiagnosisContext& context, const Law& law, const Trial& known, std::size_t without) {
-  std::vector<Effect> effects(known.model.effects().begin(), known.model.effects().end());
-  if (without < effects.size()) effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(without));
-  if (!std::all_of(effects.begin(), effects.end(), [&](const Effect& e) { return obstacle_on(law, e).empty(); }))
-    return {};
-  const FrictionModel model(law, std::move(effects), known.model.records());
-  const Observations& observations = context.coarse.observations;
-  std::vector<double> start = start_from_data(model, observations, bounds_of(model, observations));
-  for (std::size_t k = model.base_count(); k < start.size(); ++k) {
-    for (std::size_t i = known.model.base_count(); i < known.p.size(); ++i) {
-      const bool same = model.parameters()[k].full_name() == known.model.parameters()[i].full_name();
-      if (same) start[k] = known.p[i];
-    }
-  }
-  return try_model(context, context.coarse, model, std::move(start));
-}
-
 /// A law does without one of the effects of a ladder what that ladder's law does with it, or better as it stands.
 bool does_as_well(const DiagnosisContext& context, const Law& law, const Ladder& ladder) {
   const Trial& top = ladder.steps.back().coarse;
   if (!top.usable) return false;
   if (ladder.steps.size() == 1)
-    return is_better(context, context.coarse, top, try_other_law(context, law, top, std::string::npos));
+    return is_better(context, context.coarse, top, try_other_law(context, law, top));
   // Slow noise is no excuse here: it would let a law pass that leaves much of what the effect explains.
   const double least = std::max(limits::kDistinguishable * noise_of(context.coarse, top),
                                 limits::kSizeOfParameter * context.noise_squares());

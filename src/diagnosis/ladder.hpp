@@ -37,6 +37,12 @@ struct Ladder {
 struct CompetingLaws {
   std::vector<Law> first;
   std::vector<Law> others = {};  ///< climbed from where, with an effect less, they do as well as the best of the first
+
+  std::vector<Law> all() const {
+    std::vector<Law> laws = first;
+    laws.insert(laws.end(), others.begin(), others.end());
+    return laws;
+  }
 };
 
 /// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.

@@ -52,12 +52,12 @@ class Sentences {
     switch (d_.verdict) {
       case Verdict::sufficient:
         return fmt::format(
-            "The {} is enough: its held-out error is {}, {}. These data show no further effect{}.", law_text(d_),
-            level(last()), floor_clause(),
+            "The {} is enough: its held-out error is {}, {}.{} These data show no further effect{}.", law_text(d_),
+            level(last()), floor_clause(), rivals(),
             keys_of(EffectStatus::untestable).empty() ? "" : "; the effects that they cannot show are listed below");
       case Verdict::effect_found:
-        return fmt::format("{} With {} {}.", found_sentence(result_), found_effects(d_).size() > 1 ? "them" : "it",
-                           fall());
+        return fmt::format("{} With {} {}.{}", found_sentence(result_), found_effects(d_).size() > 1 ? "them" : "it",
+                           fall(), rivals());
       case Verdict::unexplained:
         return unexplained();
       case Verdict::unconfirmed:
@@ -114,6 +114,15 @@ class Sentences {
                          floor_clause());
     }
     return fmt::format("the held-out error stays at {}, {}{}", first, floor_clause(), evidence_before_fit());
+  }
+
+  /// " The exponential and fractional laws do as well on these data."
+  std::string rivals() const {
+    if (d_.rival_laws.empty()) return "";
+    std::vector<std::string> names;
+    for (const Law& law : d_.rival_laws) names.emplace_back(to_string(law));
+    const bool one = names.size() == 1;
+    return fmt::format(" The {} {} as well on these data.", enumerated(names), one ? "law does" : "laws do");
   }
 
   /// What shows effects that were found before any fit, where the held-out error does not.

@@ -191,6 +191,27 @@ TEST(BaseLaw, TheLawsOfTheListCompete) {
   }
 }
 
+/// The true law is the one reported, or named beside it; where friction falls by many times its noise it is alone.
+TEST(BaseLaw, LawsThatTheDataDoNotDistinguishAreNamed) {
+  constexpr int kRecords = 20;
+  int kept = 0, alone = 0, several = 0;
+  for (std::uint64_t seed = 1; seed <= kRecords; ++seed) {
+    const auto told = [&](double drop) {
+      const auto mu = [drop](double v) { return 0.3 + drop * std::exp(-0.05 * v); };
+      return diagnose(std::vector<TraceInput>{speed_steps(mu, seed)}).diagnosis;
+    };
+    const Diagnosis faint = told(0.0015), clear = told(0.2);
+    const auto& rivals = faint.rival_laws;
+    const bool named = std::find(rivals.begin(), rivals.end(), Law(ExponentialLaw{})) != rivals.end();
+    kept += named || faint.law == Law(ExponentialLaw{}) ? 1 : 0;
+    several += rivals.empty() ? 0 : 1;
+    alone += clear.rival_laws.empty() && clear.law == Law(ExponentialLaw{}) ? 1 : 0;
+  }
+  EXPECT_GE(kept, kRecords - 3);  // one in twenty is clearly worse by chance
+  EXPECT_GE(several, kRecords - 3);
+  EXPECT_EQ(alone, kRecords);
+}
+
 /// The textbook Stribeck curve whose viscous part is the larger: without a break-away to hold it the law alone takes
 /// the place of the rise, and must be let go again.
 TEST(BaseLaw, AStrongViscousPartIsFoundBesideTheStribeckFall) {

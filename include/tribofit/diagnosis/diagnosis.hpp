@@ -111,6 +111,9 @@ struct Confirmation {
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};
+  /// Laws that these data do not distinguish from it: with the effects of the last rung they predict held-out cycles as
+  /// well (p >= 0.05). None beside Coulomb friction, which is a special case of all.
+  std::vector<Law> rival_laws = {};
   std::vector<std::string> from_the_start = {};  ///< effects beside the law on every rung, as the command line has them
   std::vector<Share> where;                      ///< of the base law, largest first
   std::vector<Share> remaining;                  ///< of the last rung, largest first
