@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "hidden_pairs.hpp"
 #include "ladder_steps.hpp"
 #include "limits.hpp"
 #include "rival_laws.hpp"
@@ -18,6 +19,46 @@ std::vector<CandidateResult> judge_beside(const DiagnosisContext& context, const
   return judge_all(context, step.trial, step.coarse, candidates, least);
 }
 
+/// A rung for what was judged beside the last one.
+void add_step(const DiagnosisContext& context, Ladder& ladder, const CandidateResult& leader,
+              std::vector<std::size_t> group) {
+  LadderStep step;
+  step.added = leader.candidate;
+  step.by_level = leader.by_level;
+  step.trial = leader.trial;
+  step.equivalent = std::move(group);
+  step.judged = std::move(ladder.last);
+  look_beside(context, step);
+  ladder.steps.push_back(std::move(step));
+  ladder.finished = false;
+}
+
+bool is_worth_a_rung(const Ladder& ladder, const CandidateResult& leader) {
+  return leader.by_level || leader.fall >= limits::kHopelessPart * largest_fall(ladder.steps.back());
+}
+
+/// Adds two effects that hide each other, if there are two such.
+void extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
+                    const Limits& least, int most_effects) {
+  if (static_cast<int>(ladder.steps.size()) >= most_effects) return;
+  const Trial& top = ladder.top();
+  std::optional<HiddenPair> pair = find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, candidates, least);
+  if (!pair) return;
+  const double fall = top.held_out_squares - pair->first.trial.held_out_squares;
+  if (fall < limits::kHopelessPart * largest_fall(ladder.steps.back())) return;
+  // What was judged beside the other one is what decided: it stands for the candidate from here on.
+  for (CandidateResult& judged : ladder.last) {
+    if (judged.candidate == pair->first.candidate) judged.p_value = pair->first.p_value;
+  }
+  add_step(context, ladder, pair->alone, {});
+  // Beside the first one the second shows, with what these data do not distinguish from it.
+  ladder.last = judge_beside(context, ladder.steps.back(), candidates, least);
+  const Choice choice = choose(context, ladder.last, candidates);
+  const CandidateResult second = choice.leader ? ladder.last[*choice.leader] : pair->second;
+  if (!choice.leader) ladder.last.push_back(second);
+  add_step(context, ladder, second, choice.group);
+}
+
 /// Adds the effect that leads, if one passes.
 void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
             const Limits& least, int most_effects) {
@@ -25,21 +66,12 @@ void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   ladder.last = judge_beside(context, ladder.steps.back(), candidates, least);
   if (static_cast<int>(ladder.steps.size()) > most_effects) return;
   const Choice choice = choose(context, ladder.last, candidates);
-  if (!choice.leader) return;
-  const CandidateResult& leader = ladder.last[*choice.leader];
-  if (!leader.by_level && leader.fall < limits::kHopelessPart * largest_fall(ladder.steps.back())) {
-    ladder.withdrawn.push_back(leader.candidate);
-    return;
+  if (choice.leader && is_worth_a_rung(ladder, ladder.last[*choice.leader])) {
+    const CandidateResult leader = ladder.last[*choice.leader];
+    return add_step(context, ladder, leader, choice.group);
   }
-  LadderStep step;
-  step.added = leader.candidate;
-  step.by_level = leader.by_level;
-  step.trial = leader.trial;
-  step.equivalent = choice.group;
-  step.judged = std::move(ladder.last);
-  look_beside(context, step);
-  ladder.steps.push_back(std::move(step));
-  ladder.finished = false;
+  if (choice.leader) ladder.withdrawn.push_back(ladder.last[*choice.leader].candidate);
+  extend_by_pair(context, ladder, candidates, least, most_effects);
 }
 
 /// What is done once, when nothing more passes.

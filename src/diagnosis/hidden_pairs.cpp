@@ -1,0 +1,112 @@
+#include "hidden_pairs.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "limits.hpp"
+#include "tribofit/statistics/parallel.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// Two candidates, each fitted beside the model so far.
+struct Two {
+  CandidateResult a, b;
+};
+
+/// A candidate beside the model so far at another resolution than it was judged at.
+CandidateResult fitted_at(const DiagnosisContext& context, const Level& level, const Trial& top,
+                          const CandidateResult& judged, const std::vector<Candidate>& candidates,
+                          const Limits& least) {
+  Trial trial = try_model(context, level, judged.trial.model, judged.trial.p);
+  CandidateResult out = compare(context, level, top, std::move(trial), candidates[judged.candidate], 1, least);
+  out.candidate = judged.candidate;
+  return out;
+}
+
+/// Candidates that explain more than independent noise would, the best first, at low resolution; no more than are worth
+/// trying in pairs.
+std::vector<CandidateResult> promising(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                                       const std::vector<CandidateResult>& judged,
+                                       const std::vector<Candidate>& candidates, const Limits& least) {
+  std::vector<const CandidateResult*> all;
+  for (const CandidateResult& one : judged) {
+    const bool clear = one.fall > limits::kDistinguishable * noise_of(context.fine, top);
+    const bool line = candidates[one.candidate].info.needs_full_resolution;
+    if (one.trial.usable && one.plausible && !line && clear && one.size > least.least_size) all.push_back(&one);
+  }
+  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->fall > b->fall; });
+  all.resize(std::min(all.size(), limits::kMostInPairs));
+  std::vector<CandidateResult> out(all.size());
+  run_tasks(all.size(), context.threads, [&](std::size_t k) {
+    out[k] = fitted_at(context, context.coarse, coarse_top, *all[k], candidates, least);
+  });
+  return out;
+}
+
+/// The candidate beside what is there, and in how many places it was looked for.
+std::pair<Trial, double> added_to(const DiagnosisContext& context, const Level& level, const Trial& there,
+                                  const Candidate& candidate) {
+  constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
+  const std::vector<double> residual = residual_of(context, there);
+  const SearchStart search = search_start_of(context, level, there, candidate, residual, kAnyFall, kAnyFall);
+  if (search.starts.empty()) return {};
+  const FrictionModel model = with_effect(there.model, candidate.effect);
+  return {try_model(context, level, model, nearest(level, model, there.whitening, search.starts)), search.places};
+}
+
+/// Both of a pair, each judged beside the other. What is found of either without the other may be far off (the moment
+/// of a step), so each is looked for anew beside the other, and the better of the two is taken.
+HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const Two& alone,
+                      const std::vector<Candidate>& candidates, double pairs, const Limits& least) {
+  const Candidate &first = candidates[alone.a.candidate], &second = candidates[alone.b.candidate];
+  auto [both, places] = added_to(context, level, alone.a.trial, second);
+  auto [turned, other_places] = added_to(context, level, alone.b.trial, first);
+  if (turned.usable && (!both.usable || turned.held_out_squares < both.held_out_squares)) both = std::move(turned);
+  HiddenPair out;
+  if (!both.usable) return out;
+  const double tests = pairs * std::max(places, other_places) * static_cast<double>(candidates.size());
+  out.first = compare(context, level, alone.b.trial, both, first, tests, least);
+  out.second = compare(context, level, alone.a.trial, both, second, tests, least);
+  out.alone = alone.a;
+  out.first.candidate = alone.a.candidate;
+  out.second.candidate = alone.b.candidate;
+  return out;
+}
+
+}  // namespace
+
+std::optional<HiddenPair> find_hidden_pair(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                                           const std::vector<CandidateResult>& judged,
+                                           const std::vector<Candidate>& candidates, const Limits& least) {
+  const std::vector<CandidateResult> alone = promising(context, top, coarse_top, judged, candidates, least);
+  std::vector<Two> pairs;
+  for (std::size_t a = 0; a < alone.size(); ++a) {
+    for (std::size_t b = a + 1; b < alone.size(); ++b) {
+      const Candidate &first = candidates[alone[a].candidate], &second = candidates[alone[b].candidate];
+      const bool same = first.info.key == second.info.key;
+      if (!same && alone[a].trial.model.acts_with(second.effect)) pairs.push_back({alone[a], alone[b]});
+    }
+  }
+  const auto tried = static_cast<double>(pairs.size());
+  std::vector<HiddenPair> found(pairs.size());
+  run_tasks(pairs.size(), context.threads, [&](std::size_t k) {
+    found[k] = judge_pair(context, context.coarse, pairs[k], candidates, tried, least);
+  });
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!found[k].first.passes || !found[k].second.passes) continue;
+    const double squares = found[k].first.trial.held_out_squares;
+    if (!best || squares < found[*best].first.trial.held_out_squares) best = k;
+  }
+  if (!best) return {};
+  const Two fine = {fitted_at(context, context.fine, top, pairs[*best].a, candidates, least),
+                    fitted_at(context, context.fine, top, pairs[*best].b, candidates, least)};
+  HiddenPair pair = judge_pair(context, context.fine, fine, candidates, tried, least);
+  if (!pair.first.passes || !pair.second.passes) return {};
+  return pair;
+}
+
+}  // namespace tribofit::diagnosis
