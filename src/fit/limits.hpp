@@ -27,7 +27,7 @@ inline constexpr double kPartBesideParabola = 1.0 / 3;
 /// Periods in a slip from which a steady line and a ring are looked for. A line with less than half of one moves slips
 /// as a whole, as 1/f noise does: with fewer one is named in empty records with such noise. A ring with fewer than six
 /// is not distinguished from the shape of the law.
-inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 6;
+inline constexpr double kFewestPeriodsOfLine = 0.5, kFewestPeriodsOfRing = 3.5;
 
 /// Part of the rate of the values, and of that of samples that are folded, up to which a line is looked for: nearer to
 /// a half it is not distinguishable from its alias. Part of a slip in which a ring is looked for, and its fewest
