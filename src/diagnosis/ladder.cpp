@@ -59,6 +59,23 @@ void extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const std::
   add_step(context, ladder, second, choice.group);
 }
 
+/// What a rung explains may be that its search ended in a lower minimum: the model without it is then fitted anew from
+/// there, and takes the place of the one it was compared with.
+bool improve_top(const DiagnosisContext& context, Ladder& ladder, const Trial& leader, const Candidate& added) {
+  LadderStep& last = ladder.steps.back();
+  const std::vector<std::string> keys = leader.model.effect_keys();
+  const auto effect = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), added.info.key) - keys.begin());
+  Trial without = try_without(context, context.fine, leader, effect);
+  const double least = limits::kLowerMinimum * (last.trial.held_out_squares - leader.held_out_squares);
+  const bool lower = without.usable && without.held_out_squares < last.trial.held_out_squares - std::max(0.0, least) &&
+                     without.squares < last.trial.squares;
+  if (!lower) return false;
+  last.trial = std::move(without);
+  look_beside(context, last);
+  ladder.finished = false;
+  return true;
+}
+
 /// Adds the effect that leads, if one passes.
 void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
             const Limits& least, int most_effects) {
@@ -68,6 +85,7 @@ void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   const Choice choice = choose(context, ladder.last, candidates);
   if (choice.leader && is_worth_a_rung(ladder, ladder.last[*choice.leader])) {
     const CandidateResult leader = ladder.last[*choice.leader];
+    if (improve_top(context, ladder, leader.trial, candidates[leader.candidate])) return;
     return add_step(context, ladder, leader, choice.group);
   }
   if (choice.leader) ladder.withdrawn.push_back(ladder.last[*choice.leader].candidate);

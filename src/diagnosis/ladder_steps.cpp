@@ -98,7 +98,7 @@ double largest_fall(const LadderStep& step) {
 
 void prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
            const Limits& least) {
-  for (std::size_t s = 1; s + 1 < ladder.steps.size();) {
+  for (std::size_t s = 1; s < ladder.steps.size();) {
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
     Trial without = try_without(context, context.fine, full, index_of(full.model, candidate.info.key));
