@@ -330,8 +330,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
   diagnosis.ladder = rungs_of(ladder, all, out.fits);
-  diagnosis.rival_laws =
-      rival_laws(context, laws.all(), ladder.steps.back().coarse, out.fits.back(), instruments, fit);
+  diagnosis.rival_laws = rival_laws(context, laws.all(), ladder.steps.back().coarse, out.fits.back(), instruments, fit);
   decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   progress.say("a closed form of the rest", 0.95);

@@ -26,22 +26,23 @@ CandidateResult fitted_at(const DiagnosisContext& context, const Level& level, c
   return out;
 }
 
-/// Candidates that explain more than independent noise would, the best first, at low resolution; no more than are worth
-/// trying in pairs.
+/// Candidates that explain more than independent noise would, those that explain most first, at low resolution; no more
+/// than are worth trying in pairs.
 std::vector<CandidateResult> promising(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<CandidateResult>& judged,
+                                       const std::vector<CandidateResult>& judged, double least_size,
                                        const std::vector<Candidate>& candidates, const Limits& least) {
   std::vector<const CandidateResult*> all;
   for (const CandidateResult& one : judged) {
-    const bool clear = one.fall > limits::kDistinguishable * noise_of(context.fine, top);
+    const bool clear = one.fall > limits::kDistinguishable * noise_of(context.fine, top) && one.size > least_size;
     const bool line = candidates[one.candidate].info.needs_full_resolution;
-    if (one.trial.usable && one.plausible && !line && clear && one.size > least.least_size) all.push_back(&one);
+    if (one.trial.usable && one.plausible && !line && clear) all.push_back(&one);
   }
-  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->fall > b->fall; });
+  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->size > b->size; });
   all.resize(std::min(all.size(), limits::kMostInPairs));
   std::vector<CandidateResult> out(all.size());
   run_tasks(all.size(), context.threads, [&](std::size_t k) {
     out[k] = fitted_at(context, context.coarse, coarse_top, *all[k], candidates, least);
+    out[k].p_value = all[k]->p_value;
   });
   return out;
 }
@@ -57,6 +58,30 @@ std::pair<Trial, double> added_to(const DiagnosisContext& context, const Level& 
   return {try_model(context, level, model, nearest(level, model, there.whitening, search.starts)), search.places};
 }
 
+/// What is left of a trial when one of its effects is taken out and nothing is fitted anew.
+Trial stripped_of(const Trial& full, const std::string& key) {
+  std::vector<Effect> effects;
+  Trial out;
+  out.whitening = full.whitening;
+  out.p.assign(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
+  for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
+    if (full.model.effect_keys()[k] == key) continue;
+    effects.push_back(full.model.effects()[k]);
+    const auto begin = full.p.begin() + static_cast<std::ptrdiff_t>(full.model.offset(k));
+    out.p.insert(out.p.end(), begin, begin + static_cast<std::ptrdiff_t>(full.model.count(k)));
+  }
+  out.model = FrictionModel(full.model.law(), effects, full.model.records());
+  return out;
+}
+
+/// Looks for an effect of a trial anew beside all the others as they were found beside it; the better of the two.
+Trial search_again(const DiagnosisContext& context, const Level& level, Trial full, const Candidate& candidate) {
+  if (!full.usable) return full;
+  Trial again = added_to(context, level, stripped_of(full, candidate.info.key), candidate).first;
+  const bool better = again.usable && again.held_out_squares < full.held_out_squares;
+  return better ? std::move(again) : std::move(full);
+}
+
 /// Both of a pair, each judged beside the other. What is found of either without the other may be far off (the moment
 /// of a step), so each is looked for anew beside the other, and the better of the two is taken.
 HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const Two& alone,
@@ -65,6 +90,7 @@ HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const
   auto [both, places] = added_to(context, level, alone.a.trial, second);
   auto [turned, other_places] = added_to(context, level, alone.b.trial, first);
   if (turned.usable && (!both.usable || turned.held_out_squares < both.held_out_squares)) both = std::move(turned);
+  both = search_again(context, level, search_again(context, level, std::move(both), first), second);
   HiddenPair out;
   if (!both.usable) return out;
   const double tests = pairs * std::max(places, other_places) * static_cast<double>(candidates.size());
@@ -79,22 +105,23 @@ HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const
 }  // namespace
 
 std::optional<HiddenPair> find_hidden_pair(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                           const std::vector<CandidateResult>& judged,
+                                           const std::vector<CandidateResult>& judged, double least_size,
                                            const std::vector<Candidate>& candidates, const Limits& least) {
-  const std::vector<CandidateResult> alone = promising(context, top, coarse_top, judged, candidates, least);
+  const std::vector<CandidateResult> alone =
+      promising(context, top, coarse_top, judged, std::max(least_size, least.least_size), candidates, least);
   std::vector<Two> pairs;
   for (std::size_t a = 0; a < alone.size(); ++a) {
     for (std::size_t b = a + 1; b < alone.size(); ++b) {
       const Candidate &first = candidates[alone[a].candidate], &second = candidates[alone[b].candidate];
       const bool same = first.info.key == second.info.key;
-      if (!same && alone[a].trial.model.acts_with(second.effect)) pairs.push_back({alone[a], alone[b]});
+      const bool hides = std::max(alone[a].p_value, alone[b].p_value) >= least.p_value;
+      if (!same && hides && alone[a].trial.model.acts_with(second.effect)) pairs.push_back({alone[a], alone[b]});
     }
   }
   const auto tried = static_cast<double>(pairs.size());
   std::vector<HiddenPair> found(pairs.size());
-  run_tasks(pairs.size(), context.threads, [&](std::size_t k) {
-    found[k] = judge_pair(context, context.coarse, pairs[k], candidates, tried, least);
-  });
+  run_tasks(pairs.size(), context.threads,
+            [&](std::size_t k) { found[k] = judge_pair(context, context.coarse, pairs[k], candidates, tried, least); });
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (!found[k].first.passes || !found[k].second.passes) continue;

@@ -15,9 +15,10 @@ struct HiddenPair {
   CandidateResult alone;          ///< the first beside the model so far
 };
 
-/// top, coarse_top: the model so far at both resolutions; judged: every candidate beside it, none of which passes (or is worth a rung).
+/// top, coarse_top: the model so far at both resolutions; judged: every candidate beside it; least_size: of those that
+/// are tried.
 std::optional<HiddenPair> find_hidden_pair(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                           const std::vector<CandidateResult>& judged,
+                                           const std::vector<CandidateResult>& judged, double least_size,
                                            const std::vector<Candidate>& candidates, const Limits& least);
 
 }  // namespace tribofit::diagnosis

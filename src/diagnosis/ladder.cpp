@@ -37,15 +37,19 @@ bool is_worth_a_rung(const Ladder& ladder, const CandidateResult& leader) {
   return leader.by_level || leader.fall >= limits::kHopelessPart * largest_fall(ladder.steps.back());
 }
 
-/// Adds two effects that hide each other, if there are two such.
-void extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
-                    const Limits& least, int most_effects) {
-  if (static_cast<int>(ladder.steps.size()) >= most_effects) return;
+/// Adds two effects that hide each other, if there are two such that explain more than the one that leads (if any).
+bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const CandidateResult* leader,
+                    const std::vector<Candidate>& candidates, const Limits& least, int most_effects) {
+  if (static_cast<int>(ladder.steps.size()) >= most_effects) return false;
   const Trial& top = ladder.top();
-  std::optional<HiddenPair> pair = find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, candidates, least);
-  if (!pair) return;
-  const double fall = top.held_out_squares - pair->first.trial.held_out_squares;
-  if (fall < limits::kHopelessPart * largest_fall(ladder.steps.back())) return;
+  const double least_size = leader != nullptr ? limits::kRivalPart * leader->size : 0;
+  const std::optional<HiddenPair> pair =
+      find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, least_size, candidates, least);
+  if (!pair) return false;
+  const Trial& both = pair->first.trial;
+  if (top.held_out_squares - both.held_out_squares < limits::kHopelessPart * largest_fall(ladder.steps.back()))
+    return false;
+  if (leader != nullptr && !are_distinguishable(context, pair->first, *leader)) return false;
   // What was judged beside the other one is what decided: it stands for the candidate from here on.
   for (CandidateResult& judged : ladder.last) {
     if (judged.candidate == pair->first.candidate) judged.p_value = pair->first.p_value;
@@ -54,9 +58,19 @@ void extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const std::
   // Beside the first one the second shows, with what these data do not distinguish from it.
   ladder.last = judge_beside(context, ladder.steps.back(), candidates, least);
   const Choice choice = choose(context, ladder.last, candidates);
-  const CandidateResult second = choice.leader ? ladder.last[*choice.leader] : pair->second;
-  if (!choice.leader) ladder.last.push_back(second);
-  add_step(context, ladder, second, choice.group);
+  CandidateResult second = pair->second;
+  std::vector<std::size_t> group;
+  if (choice.leader) {
+    const CandidateResult& shown = ladder.last[*choice.leader];
+    if (shown.candidate == second.candidate) group = choice.group;
+    if (shown.trial.held_out_squares <= second.trial.held_out_squares) {
+      second = shown;
+      group = choice.group;
+    }
+  }
+  ladder.last.push_back(second);
+  add_step(context, ladder, second, std::move(group));
+  return true;
 }
 
 /// What a rung explains may be that its search ended in a lower minimum: the model without it is then fitted anew from
@@ -83,13 +97,15 @@ void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   ladder.last = judge_beside(context, ladder.steps.back(), candidates, least);
   if (static_cast<int>(ladder.steps.size()) > most_effects) return;
   const Choice choice = choose(context, ladder.last, candidates);
-  if (choice.leader && is_worth_a_rung(ladder, ladder.last[*choice.leader])) {
-    const CandidateResult leader = ladder.last[*choice.leader];
-    if (improve_top(context, ladder, leader.trial, candidates[leader.candidate])) return;
-    return add_step(context, ladder, leader, choice.group);
+  std::optional<CandidateResult> leader;
+  if (choice.leader) leader = ladder.last[*choice.leader];
+  if (leader && !is_worth_a_rung(ladder, *leader)) {
+    ladder.withdrawn.push_back(leader->candidate);
+    leader.reset();
   }
-  if (choice.leader) ladder.withdrawn.push_back(ladder.last[*choice.leader].candidate);
-  extend_by_pair(context, ladder, candidates, least, most_effects);
+  if (leader && improve_top(context, ladder, leader->trial, candidates[leader->candidate])) return;
+  if (extend_by_pair(context, ladder, leader ? &*leader : nullptr, candidates, least, most_effects)) return;
+  if (leader) add_step(context, ladder, *leader, choice.group);
 }
 
 /// What is done once, when nothing more passes.
@@ -186,8 +202,7 @@ Ladder* next_to_climb(const DiagnosisContext& context, std::vector<Ladder>& ladd
 bool does_as_well(const DiagnosisContext& context, const Law& law, const Ladder& ladder) {
   const Trial& top = ladder.steps.back().coarse;
   if (!top.usable) return false;
-  if (ladder.steps.size() == 1)
-    return is_better(context, context.coarse, top, try_other_law(context, law, top));
+  if (ladder.steps.size() == 1) return is_better(context, context.coarse, top, try_other_law(context, law, top));
   // Slow noise is no excuse here: it would let a law pass that leaves much of what the effect explains.
   const double least = std::max(limits::kDistinguishable * noise_of(context.coarse, top),
                                 limits::kSizeOfParameter * context.noise_squares());

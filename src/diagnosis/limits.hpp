@@ -78,11 +78,11 @@ inline constexpr double kFarNoise = 0.05;       ///< and of the squares of the n
 /// Of the fastest slip: where a law that nothing holds at rest may fall; a factor of three is what a search bridges.
 inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
 inline constexpr std::size_t kMostInPairs = 5;  ///< candidates tried two at a time: ten pairs
-inline constexpr std::size_t kMostStarts = 2;  ///< the linear step ranks starts well, but not always the first two
+inline constexpr std::size_t kMostStarts = 2;   ///< the linear step ranks starts well, but not always the first two
 
 // The ladder.
-/// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less than
-/// half, so that the rest is judged beside the right one. Strictly lower each time, so that it ends.
+/// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less
+/// than half, so that the rest is judged beside the right one. Strictly lower each time, so that it ends.
 inline constexpr double kLowerMinimum = 0.3;
 inline constexpr double kWithdrawnPart = 0.7;     ///< of what a free function explains: less, and the name is wrong
 inline constexpr double kWithdrawnLittle = 0.05;  ///< of it left in the end: others have explained it after all

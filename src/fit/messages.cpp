@@ -31,10 +31,10 @@ void add_correlations(Fit& fit) {
 /// Errors are those of a law that holds.
 void add_condition(Fit& fit) {
   if (!is_conditional(fit)) return;
-  fit.messages.push_back(fmt::format(
-      "errors and intervals assume that the law is right, {}: the held-out error is {} the noise floor",
-      is_clearly_above_floor(fit) ? "but it is not" : "and it may not be",
-      is_far_above_floor(fit) ? "far above" : fmt::format("{:.1f} times", over_floor(fit))));
+  fit.messages.push_back(
+      fmt::format("errors and intervals assume that the law is right, {}: the held-out error is {} the noise floor",
+                  is_clearly_above_floor(fit) ? "but it is not" : "and it may not be",
+                  is_far_above_floor(fit) ? "far above" : fmt::format("{:.1f} times", over_floor(fit))));
 }
 
 void add_undetermined(const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {

@@ -112,10 +112,10 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
   };
   return object("verdict", to_string(d.verdict), "law", to_string(d.law), "rival_laws",
                 list_of(d.rival_laws, [](const Law& law) { return to_string(law); }), "from_the_start",
-                d.from_the_start, "where", shares_json(d.where), "effects", list_of(d.effects, finding), "ladder", list_of(d.ladder, rung),
-                "floor_rmse", d.floor_rmse, "remaining", shares_json(d.remaining), "next_experiment", d.next_experiment,
-                "formula", text_or_null(d.formula), "confirmations", list_of(d.confirmations, confirmation), "messages",
-                d.messages);
+                d.from_the_start, "where", shares_json(d.where), "effects", list_of(d.effects, finding), "ladder",
+                list_of(d.ladder, rung), "floor_rmse", d.floor_rmse, "remaining", shares_json(d.remaining),
+                "next_experiment", d.next_experiment, "formula", text_or_null(d.formula), "confirmations",
+                list_of(d.confirmations, confirmation), "messages", d.messages);
 }
 
 Json health_json(const Motion& motion) {
