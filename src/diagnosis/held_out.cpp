@@ -33,10 +33,15 @@ Normal normal_of(const Linearised& model, const std::vector<Eigen::Index>& index
   for (std::size_t c = 0; c < model.rows.size(); ++c) {
     if (!kept.empty() && !kept[c]) continue;
     const Eigen::MatrixXd& rows = model.rows[c];
-    const Eigen::MatrixXd jacobian = rows(Eigen::all, index);
-    out.curvature += jacobian.transpose() * jacobian;
-    out.gradient += jacobian.transpose() * rows.col(rows.cols() - 1);
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double* column = rows.col(index[i]).data();
+      for (std::size_t j = 0; j <= i; ++j) {
+        out.curvature(Eigen::Index(i), Eigen::Index(j)) += dot(column, rows.col(index[j]).data(), rows.rows());
+      }
+      out.gradient(Eigen::Index(i)) += dot(column, rows.col(rows.cols() - 1).data(), rows.rows());
+    }
   }
+  out.curvature.triangularView<Eigen::StrictlyUpper>() = out.curvature.transpose();
   return out;
 }
 
