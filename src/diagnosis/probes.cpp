@@ -121,8 +121,7 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   const double noise = (after - trial.stick.left) / level.values;
   double design = 1;
   const SlowNoise slow = slow_noise_of(wide);
-  for (std::size_t k = own; k < width; ++k) {
-    const DesignEffect of_column = design_effect(wide, k, noise, slow);
+  for (const DesignEffect& of_column : design_effects(wide, own, width - own, noise, slow)) {
     design = std::max({design, of_column.of_cycles, of_column.of_slow});
   }
   const double freedom = few_frequencies(static_cast<double>(wide.rows.size()));
