@@ -373,14 +373,14 @@ std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coars
   return out;
 }
 
-std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes, double shared) {
   std::vector<Probe> out;
   for (const Probe& probe : probes) {
     const bool chance = probe.p_value * static_cast<double>(probes.size()) >= limits::kChance;
     // What a break-away level does to its own stick time is taken out to first order only: enough to say where an error
     // sits, not to carry a verdict.
     if (probe.variable == ResidualVariable::stick_time) continue;
-    if (!chance && probe.fall > 0 && probe.size > limits::kLeastStructure) out.push_back(probe);
+    if (!chance && probe.fall > 0 && probe.size > std::max(limits::kLeastStructure, shared)) out.push_back(probe);
   }
   std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;

@@ -87,10 +87,13 @@ bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p,
     const double root_weight = observations_.root_weight[range.begin + i];
     rows[i] = root_weight * (observations_.friction[range.begin + i] - arrays.mu[i]);
   }
-  if (range.from_stick) rows.push_back(range.break_away_friction - break_away_level(model_, p, slip));
+  if (range.from_stick) {
+    rows.push_back(range.break_away_root_weight * (range.break_away_friction - break_away_level(model_, p, slip)));
+  }
   if (options_.loss != Loss::squares) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i] = robust_residual(rows[i], options_, i < n ? observations_.root_weight[range.begin + i] : 1.0);
+      const double root_weight = i < n ? observations_.root_weight[range.begin + i] : range.break_away_root_weight;
+      rows[i] = robust_residual(rows[i], options_, root_weight);
     }
   }
   add_stick_residuals(range, p, rows);
@@ -156,6 +159,7 @@ bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector
       for (std::size_t i = range.begin; i < range.end; ++i) {
         more.row(static_cast<Eigen::Index>(i - range.begin)) *= observations_.root_weight[i];
       }
+      if (range.from_stick) more.row(more.rows() - 1) *= range.break_away_root_weight;
       more.conservativeResize(block.rows(), Eigen::NoChange);
       more.bottomRows(stick_rows(range)).setZero();
       Block wider(block.rows(), block.cols() + more.cols());
@@ -173,7 +177,7 @@ Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation
   for (std::size_t i = range.begin; i < range.end; ++i) {
     out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
   }
-  if (range.from_stick) out(out.size() - 1) = range.direction;  // of |friction|
+  if (range.from_stick) out(out.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
   return out;
 }
 
