@@ -77,16 +77,19 @@ std::size_t count_cycles(std::span<const Record> records) {
 
 /// Sensor noise of all records, without a line that runs through it, and scatter of break-away.
 Floor floor_of(std::span<const Record> records) {
-  double noise = 0, scatter = 0;
+  double noise = 0, scatter = 0, sampling = 0;
   for (const Record& record : records) {
     const Floor floor = estimate_floor(*record.motion, *record.segmentation);
-    const double own = record.motion->is_points() ? floor.noise : noise_without_line(record, floor.noise);
+    const bool has_line = !record.motion->is_points() && floor.sampling == 0;
+    const double own = has_line ? noise_without_line(record, floor.noise) : floor.noise;
     noise += std::pow(own, 2) / static_cast<double>(records.size());
     scatter += std::pow(floor.scatter, 2) / static_cast<double>(records.size());
+    sampling += std::pow(floor.sampling, 2) / static_cast<double>(records.size());
   }
   Floor out;
   out.noise = std::sqrt(noise);
   out.scatter = std::sqrt(scatter);
+  out.sampling = std::sqrt(sampling);
   return out;
 }
 
@@ -116,8 +119,10 @@ Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, c
                    const DiagnosisOptions& options, ProgressReporter& progress) {
   std::vector<Candidate> from_the_start;
   for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});
+  Limits least;
+  least.least_size = std::max(least.least_size, context.shared);
   std::vector<Ladder> ladders =
-      climb(context, laws, from_the_start, all, Limits(), options.most_effects,
+      climb(context, laws, from_the_start, all, least, options.most_effects,
             [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
   return std::move(ladders[reported_ladder(context, ladders)]);
 }
@@ -307,8 +312,11 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   const Channels channels = all_channels(records);
   const Floor floor = floor_of(records);
   const Observations fine = observe_all(records, channels, fine_values(cycles), floor.noise);
-  const Observations coarse = observe_all(records, channels, coarse_values(records, cycles), floor.noise);
+  // Means over a good part of a slip are off by more than what sampling leaves.
+  const std::size_t coarse_count = floor.sampling > 0 ? fine_values(cycles) : coarse_values(records, cycles);
+  const Observations coarse = observe_all(records, channels, coarse_count, floor.noise);
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
+  context.shared = floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0;
   context.threads = options.threads;
   context.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
@@ -326,7 +334,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   out.fits = fit_rungs(context, instruments, fit, ladder);
   diagnosis.floor_rmse =
       share_floor(are_points(records) ? noise_of_points(context.noise, out.fits) : context.noise, out.fits);
-  const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes);
+  diagnosis.floor_is_sampling = floor.sampling > 0;
+  const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes, context.shared);
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
   diagnosis.ladder = rungs_of(ladder, all, out.fits);

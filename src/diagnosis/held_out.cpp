@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/distributions.hpp"
@@ -33,10 +34,15 @@ Normal normal_of(const Linearised& model, const std::vector<Eigen::Index>& index
   for (std::size_t c = 0; c < model.rows.size(); ++c) {
     if (!kept.empty() && !kept[c]) continue;
     const Eigen::MatrixXd& rows = model.rows[c];
-    const Eigen::MatrixXd jacobian = rows(Eigen::all, index);
-    out.curvature += jacobian.transpose() * jacobian;
-    out.gradient += jacobian.transpose() * rows.col(rows.cols() - 1);
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double* column = rows.col(index[i]).data();
+      for (std::size_t j = 0; j <= i; ++j) {
+        out.curvature(Eigen::Index(i), Eigen::Index(j)) += dot(column, rows.col(index[j]).data(), rows.rows());
+      }
+      out.gradient(Eigen::Index(i)) += dot(column, rows.col(rows.cols() - 1).data(), rows.rows());
+    }
   }
+  out.curvature.triangularView<Eigen::StrictlyUpper>() = out.curvature.transpose();
   return out;
 }
 
@@ -87,14 +93,20 @@ Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<boo
   return spread_out(step_of(part, basis), index, model.free.size());
 }
 
-Eigen::VectorXd bounded_step(Linearised model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+Eigen::VectorXd bounded_step(const Linearised& model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  std::vector<Eigen::Index> index = free_indices(model);
+  std::vector<Eigen::Index> every(static_cast<std::size_t>(lower.size()));
+  std::iota(every.begin(), every.end(), Eigen::Index{0});
+  Normal all = normal_of(model, every, {});
   Eigen::VectorXd step = Eigen::VectorXd::Zero(lower.size());
-  for (Eigen::Index round = 0; round <= lower.size(); ++round) {
-    const Eigen::VectorXd free_step = gauss_newton_step(model);
+  while (!index.empty()) {
+    Normal free(static_cast<Eigen::Index>(index.size()));
+    free.curvature = all.curvature(index, index);
+    free.gradient = all.gradient(index);
+    const Eigen::VectorXd free_step = spread_out(step_of(free, whitener(free.curvature)), index, every.size());
     Eigen::Index worst = -1;
     double most = 0;
-    for (Eigen::Index k = 0; k < lower.size(); ++k) {
-      if (!model.free[static_cast<std::size_t>(k)]) continue;
+    for (const Eigen::Index k : index) {
       step(k) = std::clamp(free_step(k), lower(k), upper(k));
       const double beyond = std::abs(free_step(k) - step(k)) / std::max(1e-300, upper(k) - lower(k));
       if (beyond > most) {
@@ -103,8 +115,8 @@ Eigen::VectorXd bounded_step(Linearised model, const Eigen::VectorXd& lower, con
       }
     }
     if (worst < 0) break;
-    model.free[static_cast<std::size_t>(worst)] = false;
-    for (Eigen::MatrixXd& rows : model.rows) rows.col(rows.cols() - 1) += rows.col(worst) * step(worst);
+    std::erase(index, worst);
+    all.gradient += all.curvature.col(worst) * step(worst);
   }
   return step;
 }
@@ -147,6 +159,10 @@ Eigen::VectorXd level_rows(const Linearised& model, std::size_t cycle) {
   return model.rows[cycle].leftCols(model.level.size()) * model.level;
 }
 
+std::span<const double> numbers_of(const Eigen::RowVectorXd& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
 }  // namespace
 
 SlowNoise slow_noise_of(const Linearised& model) {
@@ -160,25 +176,38 @@ SlowNoise slow_noise_of(const Linearised& model) {
   return slow_noise(levels, model.known_flicker);
 }
 
-DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow) {
-  if (!model.free[k] || !(noise > 0)) return {};
+std::vector<DesignEffect> design_effects(const Linearised& model, std::size_t first, std::size_t count, double noise,
+                                         const SlowNoise& slow) {
+  std::vector<DesignEffect> out(count);
+  if (!(noise > 0)) return out;
   const auto index = free_indices(model);
-  const auto at = std::find(index.begin(), index.end(), static_cast<Eigen::Index>(k)) - index.begin();
-  const Normal all = normal_of(model, index, {});
-  const Eigen::MatrixXd basis = whitener(all.curvature);
-  const Eigen::RowVectorXd direction = basis.row(at) * basis.transpose();  // row of the inverse curvature
-  const double independent = noise * direction(at);
-  if (!(independent > 0)) return {};
-  std::vector<double> influences, of_level;
-  for (std::size_t c = 0; c < model.rows.size(); ++c) {
-    const Eigen::MatrixXd jacobian = model.rows[c](Eigen::all, index);
-    const Eigen::RowVectorXd pull = direction * jacobian.transpose();
-    influences.push_back(static_cast<double>(model.rows.size()) *
-                         pull.dot(model.rows[c].col(model.rows[c].cols() - 1)));
-    if (!slow.covariance.empty()) of_level.push_back(pull.dot(level_rows(model, c)));
+  const auto n = static_cast<Eigen::Index>(index.size()), cycles = static_cast<Eigen::Index>(model.rows.size());
+  const Eigen::MatrixXd basis = whitener(normal_of(model, index, {}).curvature);
+  // What each cycle pulls at each parameter: by what it leaves, and by a change of its level.
+  Eigen::MatrixXd gradient(n, cycles), of_level(n, slow.covariance.empty() ? 0 : cycles);
+  for (Eigen::Index c = 0; c < cycles; ++c) {
+    const Eigen::MatrixXd& rows = model.rows[static_cast<std::size_t>(c)];
+    const Eigen::VectorXd raised =
+        of_level.cols() > 0 ? level_rows(model, static_cast<std::size_t>(c)) : Eigen::VectorXd();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double* column = rows.col(index[static_cast<std::size_t>(i)]).data();
+      gradient(i, c) = dot(column, rows.col(rows.cols() - 1).data(), rows.rows());
+      if (of_level.cols() > 0) of_level(i, c) = dot(column, raised.data(), rows.rows());
+    }
   }
-  const double error = standard_error_of_mean(influences).std_error;
-  return {std::max(1.0, error * error / independent), 1 + slow.variance_of_sum(of_level) / independent};
+  for (std::size_t k = first; k < first + count; ++k) {
+    if (!model.free[k]) continue;
+    const auto at = std::find(index.begin(), index.end(), static_cast<Eigen::Index>(k)) - index.begin();
+    const Eigen::RowVectorXd direction = basis.row(at) * basis.transpose();  // row of the inverse curvature
+    const double independent = noise * direction(at);
+    if (!(independent > 0)) continue;
+    const Eigen::RowVectorXd influence = static_cast<double>(cycles) * (direction * gradient);
+    const Eigen::RowVectorXd pull = direction * of_level;
+    const double error = standard_error_of_mean(numbers_of(influence)).std_error;
+    out[k - first] = {std::max(1.0, error * error / independent),
+                      1 + slow.variance_of_sum(numbers_of(pull)) / independent};
+  }
+  return out;
 }
 
 double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom) {

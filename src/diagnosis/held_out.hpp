@@ -52,7 +52,7 @@ Eigen::VectorXd gauss_newton_step(const Linearised& model, const std::vector<boo
 
 /// The same for all cycles within bounds on the step: parameters that would leave them go to their bound and the others
 /// follow.
-Eigen::VectorXd bounded_step(Linearised model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
+Eigen::VectorXd bounded_step(const Linearised& model, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
 /// Whitened squares of each cycle after a step of the parameters.
 std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step);
@@ -68,8 +68,13 @@ struct DesignEffect {
   double of_cycles = 1;  ///< correlation within and between cycles, as the cycles themselves show it. At least 1
   double of_slow = 1;    ///< the same where all correlation is that of slow noise. At least 1
 };
-/// Of parameter k. noise: variance of a residual.
-DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow);
+/// Of `count` parameters from `first` on. noise: variance of a residual.
+std::vector<DesignEffect> design_effects(const Linearised& model, std::size_t first, std::size_t count, double noise,
+                                         const SlowNoise& slow);
+/// Of parameter k.
+inline DesignEffect design_effect(const Linearised& model, std::size_t k, double noise, const SlowNoise& slow) {
+  return design_effects(model, k, 1, noise, slow)[0];
+}
 
 /// p-value of a fall of the squares by `fall` for `parameters` more parameters, when independent residuals of variance
 /// `noise` count for 1/design_effect each and the variance is known with `freedom` degrees of freedom (F test).

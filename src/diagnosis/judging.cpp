@@ -66,13 +66,11 @@ struct Added {
 Added added_by(const Linearised& linear, std::size_t offset, std::size_t count, double noise) {
   Added out;
   const SlowNoise slow = slow_noise_of(linear);
-  for (std::size_t k = offset; k < offset + count; ++k) {
-    if (!linear.free[k]) continue;
-    ++out.free;
-    const DesignEffect own = design_effect(linear, k, noise, slow);
+  for (const DesignEffect& own : design_effects(linear, offset, count, noise, slow)) {
     out.design.of_cycles = std::max(out.design.of_cycles, own.of_cycles);
     out.design.of_slow = std::max(out.design.of_slow, own.of_slow);
   }
+  for (std::size_t k = offset; k < offset + count; ++k) out.free += linear.free[k] ? 1U : 0U;
   out.free = std::max<std::size_t>(1, out.free);
   return out;
 }

@@ -105,11 +105,13 @@ inline constexpr double kChanceBeyondBounds = 0.001;
 inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those that do one in twenty fails by chance
 
 // What remains.
-inline constexpr double kChance = 0.01;             ///< p-value below which structure is not chance
-inline constexpr double kChanceOfShare = 0.05;      ///< for a share that is only shown
-inline constexpr double kShareWorthNaming = 0.05;   ///< of the error above the noise floor; less helps nobody
-inline constexpr double kMostOfTheError = 0.5;      ///< a share that is "most of the error"
-inline constexpr double kLeastStructure = 0.05;     ///< of the squares of the noise: smaller structure does not matter
+inline constexpr double kChance = 0.01;            ///< p-value below which structure is not chance
+inline constexpr double kChanceOfShare = 0.05;     ///< for a share that is only shown
+inline constexpr double kShareWorthNaming = 0.05;  ///< of the error above the noise floor; less helps nobody
+inline constexpr double kMostOfTheError = 0.5;     ///< a share that is "most of the error"
+/// Of the squares of the noise: smaller structure does not matter. What sampling leaves (DiagnosisContext::shared) has
+/// structure itself.
+inline constexpr double kLeastStructure = 0.05;
 inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
 inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
 inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part

@@ -121,8 +121,7 @@ Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level,
   const double noise = (after - trial.stick.left) / level.values;
   double design = 1;
   const SlowNoise slow = slow_noise_of(wide);
-  for (std::size_t k = own; k < width; ++k) {
-    const DesignEffect of_column = design_effect(wide, k, noise, slow);
+  for (const DesignEffect& of_column : design_effects(wide, own, width - own, noise, slow)) {
     design = std::max({design, of_column.of_cycles, of_column.of_slow});
   }
   const double freedom = few_frequencies(static_cast<double>(wide.rows.size()));
@@ -374,14 +373,14 @@ std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coars
   return out;
 }
 
-std::vector<Probe> remaining_structure(const std::vector<Probe>& probes) {
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes, double shared) {
   std::vector<Probe> out;
   for (const Probe& probe : probes) {
     const bool chance = probe.p_value * static_cast<double>(probes.size()) >= limits::kChance;
     // What a break-away level does to its own stick time is taken out to first order only: enough to say where an error
     // sits, not to carry a verdict.
     if (probe.variable == ResidualVariable::stick_time) continue;
-    if (!chance && probe.fall > 0 && probe.size > limits::kLeastStructure) out.push_back(probe);
+    if (!chance && probe.fall > 0 && probe.size > std::max(limits::kLeastStructure, shared)) out.push_back(probe);
   }
   std::stable_sort(out.begin(), out.end(), [](const Probe& a, const Probe& b) { return a.fall > b.fall; });
   return out;

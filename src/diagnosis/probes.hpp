@@ -23,7 +23,8 @@ struct Probe {
 std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual);
 
-/// The probes that chance does not make and that are large enough to matter, largest first.
-std::vector<Probe> remaining_structure(const std::vector<Probe>& probes);
+/// The probes that chance does not make and that are large enough to matter, largest first. shared: as in
+/// DiagnosisContext.
+std::vector<Probe> remaining_structure(const std::vector<Probe>& probes, double shared = 0);
 
 }  // namespace tribofit::diagnosis

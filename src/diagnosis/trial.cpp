@@ -268,18 +268,18 @@ std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial
   return out;
 }
 
-/// Squares at a start and after a linear step from it, less those of a rigid stick; nothing where they are not finite.
+/// Squares at a start and after a linear step from it, less those of a rigid stick (the same at every start); nothing
+/// where they are not finite.
 struct StepSquares {
   double here = 0, there = 0;
 };
 std::optional<StepSquares> squares_of_step(const ModelResiduals& residuals, const std::vector<double>& start,
-                                           const Bounds& bounds) {
+                                           const Bounds& bounds, double rigid) {
   Linearised linear;
   linear.rows = residuals.white_rows(start.data());
   if (!linear.finite()) return std::nullopt;
   linear.free.assign(start.size(), true);
   const StepRange range = step_range(start, bounds);
-  const double rigid = all_sticks(residuals.stick_squares(start.data())).rigid;
   return StepSquares{sum(squares_after(linear, Eigen::VectorXd::Zero(range.lower.size()))) - rigid,
                      sum(squares_after(linear, bounded_step(linear, range.lower, range.upper))) - rigid};
 }
@@ -329,8 +329,10 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
   std::vector<Promise> promises;
   const std::vector<std::vector<double>> bases = bases_of_search(level, base);
+  std::optional<double> rigid;
   const auto try_start = [&](Promise promise) {
-    const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds);
+    if (!rigid) rigid = all_sticks(residuals.stick_squares(promise.start.data())).rigid;
+    const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds, *rigid);
     if (!step) return;
     promise.squares = std::min(step->here, step->there);
     // A linear step promises the same from every phase; the start that is lower now is the nearer one.
@@ -360,7 +362,8 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   found.promised = sum(squares_after(base.linear, stay)) - base.stick.rigid - promises[0].squares;
   if (found.promised < least) {
     // What acts through the level of break-away may look like its scatter, which has been taken out.
-    const auto plain = squares_of_step(residuals_of(level.observations, model, {}), promises[0].start, bounds);
+    const ModelResiduals unwhitened = residuals_of(level.observations, model, {});
+    const auto plain = squares_of_step(unwhitened, promises[0].start, bounds, *rigid);
     if (!plain || base.plain_squares - plain->there < least_plain) return found;
   }
   for (std::size_t k = 0; k < std::min(limits::kMostStarts, promises.size()); ++k) {

@@ -28,7 +28,7 @@ double cost_of_parameters(const Fit& fit) {
 FitQuality quality_of(const Fit& fit) {
   if (!fit.converged || fit.parameters.empty()) return FitQuality::unusable;
   const double ratio = over_floor(fit), cost = cost_of_parameters(fit);
-  if (ratio < 1 / kAtFloor) return FitQuality::floor_too_high;
+  if (ratio < 1 / kAtFloor) return fit.floor.sampling > 0 ? FitQuality::at_floor : FitQuality::floor_too_high;
   // The parameters lower the error of what they were fitted to by as much again.
   if (fit.error.held_out_rmse > kLearntByHeart * cost * cost * fit.error.rmse) return FitQuality::not_transferable;
   if (ratio <= kAtFloor * cost) return FitQuality::at_floor;

@@ -96,8 +96,9 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
     double count = good;
     if (range.from_stick) {
       const double r = range.break_away_friction - break_away_level(model, p.data(), slip);
-      squares += r * r;
-      count += 1;
+      const double weight = range.break_away_root_weight * range.break_away_root_weight;
+      squares += weight * r * r;
+      count += weight;
     }
     out.squares[range.cycle] += squares;
     out.counts[range.cycle] += count;

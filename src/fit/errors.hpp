@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -33,6 +34,16 @@ class FullRecord {
 
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
+
+/// Noise of friction about parabolas, whether it was taken in stick, and what friction between two samples is off a
+/// straight line, over the slips, where noise does not show it.
+struct SensorNoise {
+  double rmse = 0;
+  bool in_stick = false;
+  double between = 0;
+  double any() const { return std::max(rmse, between); }
+};
+SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation);
 
 /// Of a record, for its observations: a fit finds it there (Observations::flicker_noise).
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);

@@ -31,12 +31,15 @@ Floor mean_floor(std::span<const Record> records) {
   if (records.size() == 1) return floor;
   const auto count = static_cast<double>(records.size());
   double noise = floor.noise * floor.noise, scatter = floor.scatter * floor.scatter;
+  double sampling = floor.sampling * floor.sampling;
   for (std::size_t r = 1; r < records.size(); ++r) {
     const Floor next = estimate_floor(*records[r].motion, *records[r].segmentation);
     noise += next.noise * next.noise;
     scatter += next.scatter * next.scatter;
+    sampling += next.sampling * next.sampling;
   }
   floor.noise = std::sqrt(noise / count);
+  floor.sampling = std::sqrt(sampling / count);
   floor.scatter = std::sqrt(scatter / count);
   return floor;
 }
@@ -158,6 +161,13 @@ void fill_errors_of_records(const FitContext& context, const std::vector<double>
     fit.stick_rmse = stick_creep_rmse(context.model, p, *record.motion, *record.segmentation);
 }
 
+/// What sampling leaves is noise that all cycles share.
+void widen_by_sampling(const Eigen::MatrixXd& inverse, Fit& fit) {
+  const double shared = fit.floor.sampling * std::sqrt(static_cast<double>(fit.cycles));
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k)
+    widen(shared * std::sqrt(inverse(Eigen::Index(k), Eigen::Index(k))), fit.parameters[k]);
+}
+
 /// Why a model cannot be fitted to these data; empty where it can.
 std::string refusal(const FrictionModel& model, const Observations& observations, Protocol protocol) {
   if (observations.cycles < kFewestCycles)
@@ -240,6 +250,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   fill_errors_of_records(context, p, freedom.inside, fit);
   if (!context.by_extremes()) {
     const Eigen::MatrixXd inverse = inverse_over(equations.total, freedom.inside);
+    widen_by_sampling(inverse, fit);
     open_whole_ranges(residuals, context.given, inverse, fit);
     if (options.profile) add_profiles(residuals, context.given, inverse, fit);
   }

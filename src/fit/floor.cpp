@@ -139,7 +139,10 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
     }
     rows.push_back(Eigen::Map<Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
     levels.push_back(cycle.break_away_friction);
-    noise += std::pow(cycle.break_away_friction_std_error, 2);
+    // What all break-aways of a record are early or late by is no scatter; one alone is somewhere between two samples.
+    const double time = cycle.break_away_time_std_error,
+                 shared = std::max(0.0, time * time - motion.step * motion.step / 12);
+    noise += std::pow(cycle.break_away_friction_std_error, 2) - std::pow(cycle.stick_slope, 2) * shared;
   }
   const auto n = static_cast<Eigen::Index>(levels.size());
   if (n < 3) return 0;
@@ -153,6 +156,19 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n - fitted.rank)) -
                           noise / static_cast<double>(n);
   return std::sqrt(std::max(0.0, variance));
+}
+
+/// What friction between two samples is off a straight line, where noise does not show it.
+double sampling_error(const Motion& motion, const Segmentation& segmentation) {
+  const std::vector<double>& mu = motion.friction;
+  double products = 0, count = 0;
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (cycle.slip.size() < 2 * kApart || !segmentation.is_selected(cycle) || is_spoilt(motion, cycle.slip)) continue;
+    const auto curvature = [&](std::size_t i) { return mu[i - 1] - 2 * mu[i] + mu[i + 1]; };
+    for (std::size_t i = cycle.slip.begin + 1; i + kApart + 1 < cycle.slip.end; ++i, ++count)
+      products += curvature(i) * curvature(i + kApart);
+  }
+  return count > 0 ? kOffStraightLine * std::sqrt(std::max(0.0, products / count)) : 0;
 }
 
 }  // namespace
@@ -188,16 +204,23 @@ void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Obse
   if (squares > 0) out.flicker = power * weights / squares;
 }
 
+SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Remainder> parts = about_parabolas(motion, stick_stretches(motion, segmentation));
+  const bool in_stick = parts.size() >= 3;
+  if (!in_stick) parts = about_parabolas(motion, slip_stretches(motion, segmentation));
+  return {pooled_noise(parts), in_stick, sampling_error(motion, segmentation)};
+}
+
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
   if (motion.is_points()) return noise_of_points(motion, segmentation);
   Floor floor;
-  std::vector<Remainder> parts = about_parabolas(motion, stick_stretches(motion, segmentation));
-  floor.source = "stick";
-  if (parts.size() < 3) {
-    parts = about_parabolas(motion, slip_stretches(motion, segmentation));
-    floor.source = "slip";
+  const SensorNoise noise = sensor_noise(motion, segmentation);
+  floor.source = noise.in_stick ? "stick" : "slip";
+  floor.noise = noise.rmse;
+  if (noise.between > noise.rmse) {
+    floor.noise = floor.sampling = noise.between;
+    floor.source = "sampling";
   }
-  floor.noise = pooled_noise(parts);
   floor.scatter = break_away_scatter(motion, segmentation);
   floor.rmse = floor.noise;
   return floor;

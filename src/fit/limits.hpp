@@ -51,6 +51,15 @@ inline constexpr double kLineInNoise = 0.3, kLeftBesideLine = 0.05;
 /// noise passes for it now and then; more: laws are mistaken for one another in 1/f noise.
 inline constexpr double kLeastIndependence = 1e-6, kSigmasOfSlowNoise = 3;
 
+/// Part of a second difference of friction by which what is between two samples is off a straight line: an eighth, of
+/// a parabola. How a record without noise was made, and sampled, is not known better. Samples between two such
+/// differences that noise does not make alike.
+inline constexpr double kOffStraightLine = 1.0 / 8;
+inline constexpr std::size_t kApart = 3;
+
+/// Root of the weight of a break-away at the least, whose time is not known: what has none at all has no residual.
+inline constexpr double kLeastWeight = 1e-6;
+
 /// Variance of a stretch over that of the quiet quarter, beyond which it holds something else than noise.
 inline constexpr double kLoudest = 3;
 

@@ -1,12 +1,11 @@
 #include "model_residuals.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "dual.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/friction/creep.hpp"
@@ -14,10 +13,6 @@
 namespace tribofit {
 
 namespace {
-
-/// Derivatives taken in one pass over a slip.
-constexpr int kStride = 4;
-using Dual = ceres::Jet<double, kStride>;
 
 /// sign(r) sqrt(rho(r^2)) for a residual whose weight has the square root given.
 template <class T>
@@ -55,10 +50,12 @@ ModelResiduals::ModelResiduals(const FrictionModel& model, const Observations& o
 
 /// Weighted differences between v_r and the creep of the model in the stick before a slip.
 template <class T>
-std::vector<T> ModelResiduals::stick_residuals(const Observations::SlipObservation& range, const T* p) const {
+void ModelResiduals::add_stick_residuals(const Observations::SlipObservation& range, const T* p,
+                                         std::vector<T>& rows) const {
   const auto n = static_cast<std::size_t>(stick_rows(range));
-  std::vector<T> rows(n, T(0.0 * p[0]));
-  if (n == 0) return rows;
+  if (n == 0) return;
+  const std::size_t first = rows.size();
+  rows.resize(first + n, T(0.0 * p[0]));
   const Eigen::MatrixXd& weights = weights_[range.record];
   const StickCreep& stick = observations_.sticks[range.stick];
   const Slip slip = observations_.slip(range);
@@ -66,66 +63,79 @@ std::vector<T> ModelResiduals::stick_residuals(const Observations::SlipObservati
     const StickPart& part = stick.parts[first_part_ + k];
     const T left = part.relative_velocity -
                    creep_in_stick(model_, p, slip, StickMoment{part.friction, part.friction_rate, range.disc_speed});
-    for (std::size_t j = 0; j < n; ++j) rows[j] += weights(Eigen::Index(j), Eigen::Index(k)) * left;
+    for (std::size_t j = 0; j < n; ++j) rows[first + j] += weights(Eigen::Index(j), Eigen::Index(k)) * left;
   }
-  return rows;
 }
 
-/// Calls write(row, residual) for every row of a slip; false where the model is not finite.
-template <class T, class Write>
-bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p, double level, Write&& write) const {
-  std::vector<T> at_level;
+template <class T>
+bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p, double level,
+                         Arrays<T>& arrays) const {
   if (level != 0) {
-    at_level.assign(p, p + parameter_count());
-    at_level[0] += level;
-    p = at_level.data();
+    arrays.p.assign(p, p + parameter_count());
+    arrays.p[0] += level;
+    p = arrays.p.data();
   }
   const Slip slip = observations_.slip(range);
-  std::vector<T> velocity(slip.size()), mu(slip.size());
-  std::transform(slip.velocity.begin(), slip.velocity.end(), velocity.begin(), [](double v) { return T(v); });
-  tribofit::evaluate<T>(model_, p, slip, velocity, mu);
-  for (std::size_t i = 0; i < slip.size(); ++i) {
+  const std::size_t n = slip.size();
+  std::vector<T>& rows = arrays.rows;
+  rows.resize(n);
+  arrays.mu.resize(n);
+  arrays.velocity.resize(n);
+  for (std::size_t i = 0; i < n; ++i) arrays.velocity[i] = T(slip.velocity[i]);
+  tribofit::evaluate<T>(model_, p, slip, arrays.velocity, arrays.mu);
+  for (std::size_t i = 0; i < n; ++i) {
     const double root_weight = observations_.root_weight[range.begin + i];
-    const T r = root_weight * (observations_.friction[range.begin + i] - mu[i]);
-    if (!std::isfinite(scalar_part(r))) return false;
-    write(i, robust_residual(r, options_, root_weight));
+    rows[i] = root_weight * (observations_.friction[range.begin + i] - arrays.mu[i]);
   }
   if (range.from_stick) {
-    const T r = range.break_away_friction - break_away_level(model_, p, slip);
-    if (!std::isfinite(scalar_part(r))) return false;
-    write(slip.size(), robust_residual(r, options_, 1.0));
+    rows.push_back(range.break_away_root_weight * (range.break_away_friction - break_away_level(model_, p, slip)));
   }
-  auto row = static_cast<std::size_t>(friction_rows(range));
-  for (const T& r : stick_residuals(range, p)) {
-    if (!std::isfinite(scalar_part(r))) return false;
-    write(row++, r);
+  if (options_.loss != Loss::squares) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double root_weight = i < n ? observations_.root_weight[range.begin + i] : range.break_away_root_weight;
+      rows[i] = robust_residual(rows[i], options_, root_weight);
+    }
+  }
+  add_stick_residuals(range, p, rows);
+  return std::all_of(rows.begin(), rows.end(), [](const T& r) { return std::isfinite(scalar_part(r)); });
+}
+
+template <std::size_t N>
+bool ModelResiduals::differentiate(const Observations::SlipObservation& range, const double* p, double level,
+                                   std::size_t first, std::size_t derivatives, Arrays<Dual<N>>& arrays,
+                                   Block& block) const {
+  const std::size_t last = std::min(derivatives, first + N);
+  std::vector<Dual<N>> dual;
+  for (std::size_t j = 0; j < parameter_count(); ++j) {
+    dual.push_back(j >= first && j < last ? Dual<N>(p[j], j - first) : Dual<N>(p[j]));
+  }
+  if (!run(range, dual.data(), level, arrays)) return false;
+  for (std::size_t i = 0; i < arrays.rows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    block(row, Eigen::Index(derivatives)) = arrays.rows[i].a;
+    for (std::size_t j = first; j < last; ++j) block(row, Eigen::Index(j)) = arrays.rows[i].v[j - first];
   }
   return true;
 }
 
-bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain) const {
+bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivatives, Workspace& workspace, Block& block,
+                          bool plain) const {
   const bool whitens = whitening_ != nullptr && whitening_->any() && !plain;
   const double level = whitens && own_levels_ ? whitening_->level[slips_[k]] : 0;
   const auto& range = observations_.slips[slips_[k]];
-  const std::size_t n = with_jacobian ? parameter_count() : 0;
-  const auto residual = static_cast<Eigen::Index>(n);
+  const auto residual = static_cast<Eigen::Index>(derivatives);
   block.resize(friction_rows(range) + stick_rows(range), residual + 2);
-  if (!with_jacobian) {
-    if (!run<double>(range, p, level, [&](std::size_t row, double r) { block(Eigen::Index(row), 0) = r; }))
-      return false;
+  if (derivatives == 0) {
+    std::vector<double>& rows = workspace.values.rows;
+    if (!run(range, p, level, workspace.values)) return false;
+    std::copy(rows.begin(), rows.end(), block.col(0).begin());
   }
-  std::vector<Dual> dual(n);
-  for (std::size_t first = 0; first < n; first += kStride) {
-    const std::size_t last = std::min(n, first + kStride);
-    for (std::size_t j = 0; j < n; ++j) {
-      dual[j] = j >= first && j < last ? Dual(p[j], static_cast<int>(j - first)) : Dual(p[j]);
-    }
-    const bool finite = run<Dual>(range, dual.data(), level, [&](std::size_t row, const Dual& r) {
-      const auto i = static_cast<Eigen::Index>(row);
-      block(i, residual) = r.a;
-      for (std::size_t j = first; j < last; ++j) block(i, Eigen::Index(j)) = r.v[Eigen::Index(j - first)];
-    });
+  for (std::size_t first = 0; first < derivatives;) {
+    const std::size_t left = derivatives - first, width = left <= 4 || left == 7 || left == 8 ? 4 : 6;
+    const bool finite = width == 4 ? differentiate(range, p, level, first, derivatives, workspace.four, block)
+                                   : differentiate(range, p, level, first, derivatives, workspace.six, block);
     if (!finite) return false;
+    first += width;
   }
   block.col(residual + 1).setZero();  // the scatter of stick is in its own noise
   if (whitens) {
@@ -139,15 +149,17 @@ bool ModelResiduals::fill(std::size_t k, const double* p, bool with_jacobian, Bl
 bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                                 const FurtherColumns& further) const {
   blocks.resize(slips_.size());
+  Workspace workspace;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, with_jacobian, block)) return false;
+    if (!fill(k, p, with_jacobian ? parameter_count() : 0, workspace, block)) return false;
     if (further) {
       Block more = further(slips_[k]);
       const auto& range = observations_.slips[slips_[k]];
       for (std::size_t i = range.begin; i < range.end; ++i) {
         more.row(static_cast<Eigen::Index>(i - range.begin)) *= observations_.root_weight[i];
       }
+      if (range.from_stick) more.row(more.rows() - 1) *= range.break_away_root_weight;
       more.conservativeResize(block.rows(), Eigen::NoChange);
       more.bottomRows(stick_rows(range)).setZero();
       Block wider(block.rows(), block.cols() + more.cols());
@@ -165,7 +177,7 @@ Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation
   for (std::size_t i = range.begin; i < range.end; ++i) {
     out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
   }
-  if (range.from_stick) out(out.size() - 1) = range.direction;  // of |friction|
+  if (range.from_stick) out(out.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
   return out;
 }
 
@@ -262,9 +274,10 @@ std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const F
 
 std::vector<double> ModelResiduals::squares(const double* p) const {
   std::vector<double> out;
+  Workspace workspace;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, false, block, true)) return {};
+    if (!fill(k, p, 0, workspace, block, true)) return {};
     out.push_back(block.col(0).head(friction_rows(observations_.slips[slips_[k]])).squaredNorm());
   }
   return out;
@@ -278,7 +291,9 @@ std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const do
     const Eigen::VectorXd v = stick_velocities(observations_.sticks[range.stick], first_part_);
     out[k].rigid = (weights_[range.record] * v).squaredNorm();
     out[k].rows = static_cast<double>(stick_rows(range));
-    for (const double r : stick_residuals(range, p)) out[k].left += r * r;
+    std::vector<double> left;
+    add_stick_residuals(range, p, left);
+    for (const double r : left) out[k].left += r * r;
   }
   return out;
 }

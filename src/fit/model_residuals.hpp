@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dual.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/fit/solver.hpp"
 
@@ -123,9 +124,29 @@ class ModelResiduals final : public Residuals {
   Eigen::Index stick_rows(const Observations::SlipObservation& range) const {
     return range.stick == Observations::npos || weights_.empty() ? 0 : weights_[range.record].rows();
   }
+  /// What is written anew for every slip, kept from one to the next.
   template <class T>
-  std::vector<T> stick_residuals(const Observations::SlipObservation& range, const T* p) const;
-  bool fill(std::size_t k, const double* p, bool with_jacobian, Block& block, bool plain = false) const;
+  struct Arrays {
+    std::vector<T> p, velocity, mu, rows;
+  };
+  struct Workspace {
+    Arrays<double> values;
+    Arrays<Dual<4>> four;
+    Arrays<Dual<6>> six;
+  };
+  /// Adds the residuals of stick to `rows`.
+  template <class T>
+  void add_stick_residuals(const Observations::SlipObservation& range, const T* p, std::vector<T>& rows) const;
+  /// Every row of a slip, each with a robust loss on, into arrays.rows; false where the model is not finite.
+  template <class T>
+  bool run(const Observations::SlipObservation& range, const T* p, double level, Arrays<T>& arrays) const;
+  /// Derivatives by the parameters [first, first + N), and the residuals, into the block.
+  template <std::size_t N>
+  bool differentiate(const Observations::SlipObservation& range, const double* p, double level, std::size_t first,
+                     std::size_t derivatives, Arrays<Dual<N>>& arrays, Block& block) const;
+  /// Derivatives by the first so many parameters, r, g of one slip.
+  bool fill(std::size_t k, const double* p, std::size_t derivatives, Workspace& workspace, Block& block,
+            bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
   /// What noise that raises all of a slip alike does to its rows of friction.
@@ -134,8 +155,6 @@ class ModelResiduals final : public Residuals {
   void whiten_level(const Observations::SlipObservation& range, Block& block) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
   std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
-  template <class T, class Write>
-  bool run(const Observations::SlipObservation& range, const T* p, double level, Write&& write) const;
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
   const Observations& observations_;

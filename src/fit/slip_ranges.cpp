@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "errors.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -92,9 +93,10 @@ void keep(const std::vector<bool>& is_selected, std::vector<Observations::SlipOb
   slips.resize(kept);
 }
 
-/// One part of a slip, or all of it, with what is known of the stick before it where it begins there.
+/// One part of a slip, or all of it, with what is known of the stick before it where it begins there. noise: of
+/// friction.
 Observations::SlipObservation slip_range(const Motion& motion, const Segmentation& segmentation, const Cycle& cycle,
-                                         const SampleRange& samples, bool from_stick) {
+                                         const SampleRange& samples, bool from_stick, const SensorNoise& noise) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Observations::SlipObservation range;
   range.samples = samples;
@@ -113,6 +115,12 @@ Observations::SlipObservation slip_range(const Motion& motion, const Segmentatio
   range.stick_time = cycle.stick_time;
   range.stick_slope = cycle.stick_slope;
   range.break_away_friction = cycle.break_away_friction;
+  // An onset that shows is known to a sample, though the rate of the growth may not be.
+  const double time = cycle.break_away_time_std_error;
+  const double late =
+      std::abs(cycle.stick_slope) * (cycle.is_sharp ? time : std::min(time, motion.step / std::sqrt(12)));
+  if ((cycle.is_sharp || noise.between > noise.rmse) && late > noise.any())
+    range.break_away_root_weight = std::max(kLeastWeight, noise.any() / late);
   return range;
 }
 
@@ -122,7 +130,7 @@ std::vector<Observations::SlipObservation> each_point(const Motion& motion, cons
   std::vector<Observations::SlipObservation> points;
   for (const Cycle& cycle : segmentation.cycles) {
     for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i)
-      points.push_back(slip_range(motion, segmentation, cycle, {i, i + 1}, false));
+      points.push_back(slip_range(motion, segmentation, cycle, {i, i + 1}, false, {}));
   }
   boost::random::mt19937_64 engine(1);
   for (std::size_t k = points.size(); k > 1; --k) std::swap(points[k - 1], points[engine() % k]);
@@ -138,6 +146,7 @@ std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, con
   std::vector<bool> is_selected;
   std::size_t slipping = 0;
   for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
+  const SensorNoise noise = sensor_noise(motion, segmentation);
   const bool pieces = segmentation.kind == MotionKind::always_slipping;
   const std::size_t piece = std::max<std::size_t>(kShortestSlip, slipping / kPiecesWithoutStick + 1);
   for (const Cycle& cycle : segmentation.cycles) {
@@ -149,7 +158,7 @@ std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, con
       SampleRange samples{slip.begin + k * slip.size() / parts, slip.begin + (k + 1) * slip.size() / parts};
       if (!pieces && cycle.slip_complete) trim_rest(motion, samples);
       if (samples.size() == 0) continue;
-      ranges.push_back(slip_range(motion, segmentation, cycle, samples, from_stick && k == 0));
+      ranges.push_back(slip_range(motion, segmentation, cycle, samples, from_stick && k == 0, noise));
       const bool selected = pieces ? segmentation.is_selected(samples) : segmentation.is_selected(cycle);
       is_selected.push_back(selected && good_samples(motion, samples) >= kShortestSlip);
     }

@@ -114,7 +114,6 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 }  // namespace
 
 ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
-  const auto residual = static_cast<Eigen::Index>(parameter_count());
   Whitening out;
   out.g.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
@@ -123,15 +122,16 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
   std::vector<Products> slips;
+  Workspace workspace;
   Block block;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, true, block, true)) return out;
+    if (!fill(k, p, 1, workspace, block, true)) return out;
     const auto& range = observations_.slips[slips_[k]];
     const Eigen::Index rows = friction_rows(range);
     Eigen::VectorXd& g = out.g[slips_[k]];
     g = block.col(0).head(rows);
     if (!(g.squaredNorm() > 0)) continue;
-    const Eigen::VectorXd u = level_column(range), r = block.col(residual).head(rows);
+    const Eigen::VectorXd u = level_column(range), r = block.col(1).head(rows);
     slips.push_back({slips_[k], static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r),
                      u.dot(r), r.squaredNorm()});
   }

@@ -28,6 +28,8 @@ inline constexpr double kFlatness = 0.10;
 /// of the record are long: what bends them is creep.
 inline constexpr double kClearlyFlat = 0.05, kNarrower = 0.25, kNarrowestBand = 1e-3, kBandNoise = 6;
 inline constexpr double kKeepsLength = 0.75, kLongSticks = 1.0 / 3;
+/// From one shoulder of a stretch to the other, over the band: 0.6 where v_r passes through rest, in a reversal.
+inline constexpr double kPasses = 0.25;
 /// Blocks of a plateau: a middle and its two shoulders need as many.
 inline constexpr std::size_t kFewestBlocks = 4;
 /// A plateau has settled, and agrees with what is stated, within this part of its level.
@@ -287,7 +289,7 @@ inline constexpr double kStepPart = 0.1;
 
 // ---- steps of a converter
 
-/// Values among which steps and noise are looked for, and levels of a channel that has some: more (12 bits) are finer than noise.
+/// Values in which steps and noise are looked for, and levels of a channel that has some: 12 bits are finer than noise.
 inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
 /// Part of the distances between levels that are whole numbers of the smallest, and how nearly.
 inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05;
@@ -304,9 +306,10 @@ inline constexpr double kTooCoarse = 0.015;
 inline constexpr double kJumpNoise = 12, kJumpOver = 1.6;
 /// How nearly changes are alike where the motion is smooth.
 inline constexpr double kJumpSmooth = 0.3;
-/// Jumps in all and per plateau: a blow on the rig now and then is no lost sample.
+/// Jumps in all and per plateau (a blow on the rig now and then is no lost sample), and per plateau from rest, or to
+/// it: a stiff rig breaks away within a sample.
 inline constexpr std::size_t kFewestJumps = 5;
-inline constexpr double kJumpsPerPlateau = 0.1;
+inline constexpr double kJumpsPerPlateau = 0.1, kUsualJump = 0.5;
 
 // ---- derivatives of the pull of a spring
 
@@ -368,7 +371,7 @@ inline constexpr double kSlipOfSamples = 0.3;
 /// Samples of one value in a row that a channel with noise and fine steps cannot hold; of zeros, a loose plug's value,
 /// fewer will do.
 inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3;
-/// Samples of a fault over which the motion is not known: a straight line over fewer is as good.
+/// Samples of a fault over which the motion is not known.
 inline constexpr std::size_t kShortestStretch = 16;
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
@@ -378,10 +381,8 @@ inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
 inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
 inline constexpr double kReachIt = 0.25;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
-/// the first needs quiet, the second (where a block sticks and slips, so that nothing else holds it) does not.
-inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6;
-/// Noise at the limit over that elsewhere, below which it is the limit that holds the channel still.
-inline constexpr double kQuiet = 0.7;
+/// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
+inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6, kQuiet = 0.7;
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHole = 32, kClipMargin = 8;
@@ -389,8 +390,7 @@ inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHol
 /// a row: friction that is held is so for a good part of a stick.
 inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
 inline constexpr double kCrowdedSmoothed = 8;
-/// Changes from sample to sample that an amplifier cannot exceed: over a converter's steps, how nearly they are alike,
-/// and how many are so in a row. A steepest slope does not last.
+/// Changes in a sample that an amplifier cannot exceed: over a converter's steps, how alike, and how many in a row.
 inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
 inline constexpr std::size_t kShortestSlew = 8;
 /// Standstill at an end of a stick-slip record: rest for so many periods at less than this part of the plateau.

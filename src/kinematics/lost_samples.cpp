@@ -13,11 +13,14 @@ bool are_lost(const LostSamples& lost, std::size_t plateaus) {
          static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
 }
 
-LostSamples find_lost_samples(const Trace& trace, double noise) {
+LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise) {
   LostSamples lost;
   const std::vector<double>& v = trace.velocity;
   const double step = trace.interval(), least = kJumpNoise * noise;
-  std::size_t looked_at = 0;
+  const auto at_rest = [&](std::size_t i) {
+    return std::abs(v[i] - (disc.varying.empty() ? 0 : disc.varying[i]) - search.plateaus.level) <= least;
+  };
+  std::size_t looked_at = 0, from_rest = 0, to_rest = 0;
   const auto smooth = [](double a, double b) {
     return std::abs(a - b) < kJumpSmooth * std::max(std::abs(a), std::abs(b));
   };
@@ -30,8 +33,11 @@ LostSamples find_lost_samples(const Trace& trace, double noise) {
     for (const double change : beside) most = std::max(most, std::abs(change));
     const bool moves_on = most > least && smooth(beside[0], beside[1]) && smooth(beside[2], beside[3]);
     looked_at += moves_on ? 1U : 0U;
-    if (std::abs(here) > kJumpOver * std::max(most, 0.5 * least)) ++lost.jumps;
+    if (!(std::abs(here) > kJumpOver * std::max(most, 0.5 * least))) continue;
+    ++(at_rest(i) ? from_rest : at_rest(i + 1) ? to_rest : lost.jumps);
   }
+  const double usual = kUsualJump * static_cast<double>(search.plateaus.runs.size());
+  for (const std::size_t jumps : {from_rest, to_rest}) lost.jumps += static_cast<double>(jumps) > usual ? 0 : jumps;
   if (looked_at > 0) lost.part = std::min(1.0, static_cast<double>(lost.jumps) / static_cast<double>(looked_at));
   return lost;
 }

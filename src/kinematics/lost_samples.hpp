@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "plateau_search.hpp"
 #include "tribofit/ingest/trace.hpp"
 
 namespace tribofit::kinematics {
@@ -16,7 +17,8 @@ struct LostSamples {
 /// Too many for blows on the rig. plateaus: of stick.
 bool are_lost(const LostSamples& lost, std::size_t plateaus);
 
-/// noise: of the velocity [m/s]. Cost: one pass.
-LostSamples find_lost_samples(const Trace& trace, double noise);
+/// noise: of the velocity [m/s]. Jumps from rest, or to it, are the rig's own where most sticks have one. Cost: one
+/// pass.
+LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise);
 
 }  // namespace tribofit::kinematics

@@ -22,7 +22,7 @@ void MotionStages::undo_distortions() {
   if (range_ends_.velocity_slew > 0) return;       // nothing of this brings back what an amplifier did not follow
   find_zero();
   undo_zero();
-  if (search_.sticks) jumps_ = find_lost_samples(trace_, std::max(search_.noise, steps_.velocity));
+  if (search_.sticks) jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity));
   // What was lost of slips is missing in the way of the block.
   if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();

@@ -28,14 +28,23 @@ double half_sample_mode(std::span<const double> sorted) {
   return std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
 }
 
-// How far the middle of a plateau stands out from its shoulders.
-double curvature_of(std::span<const double> run) {
+/// How far the middle of a plateau stands out from its shoulders, and one shoulder from the other.
+struct Shape {
+  double curvature = 0, tilt = 0;
+};
+
+Shape shape_of(std::span<const double> run) {
   const std::size_t n = run.size(), eighth = std::max<std::size_t>(1, n / 8);
-  const auto middle = run.subspan(n / 2 - std::min(n / 2, eighth), 2 * eighth);
-  const auto left = run.subspan(eighth / 2, 2 * eighth);
-  const auto right = run.subspan(n - eighth / 2 - 2 * eighth, 2 * eighth);
-  return std::abs(mean_of(middle) - 0.5 * (mean_of(left) + mean_of(right)));
+  const double middle = mean_of(run.subspan(n / 2 - std::min(n / 2, eighth), 2 * eighth));
+  const double left = mean_of(run.subspan(eighth / 2, 2 * eighth));
+  const double right = mean_of(run.subspan(n - eighth / 2 - 2 * eighth, 2 * eighth));
+  return {std::abs(middle - 0.5 * (left + right)), std::abs(right - left)};
 }
+
+/// What a plateau may be, over the band.
+struct Flatness {
+  double curvature = HUGE_VAL, tilt = HUGE_VAL;
+};
 
 /// Stretches within a band about the mode that are flat (unless any will do), how long the usual one is, and how far
 /// its middle stands out, over the band.
@@ -45,7 +54,7 @@ struct FlatRuns {
   std::size_t level = 0, within = 0;  ///< blocks that are flat, of those within the band
 };
 
-FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_band, double flatness) {
+FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_band, const Flatness& most) {
   FlatRuns flat;
   std::vector<double> curvatures, lengths;
   for (std::size_t i = 0; i < velocity.size();) {
@@ -59,8 +68,9 @@ FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_ba
     if (run.size() < kFewestBlocks) continue;
     lengths.push_back(static_cast<double>(run.size()));
     flat.within += run.size();
-    const double curvature = curvature_of(velocity.subspan(run.begin, run.size())) / (2 * half_band);
-    if (curvature >= flatness) continue;
+    const Shape shape = shape_of(velocity.subspan(run.begin, run.size()));
+    const double curvature = shape.curvature / (2 * half_band);
+    if (curvature >= most.curvature || shape.tilt >= 2 * half_band * most.tilt) continue;
     run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
     flat.runs.push_back(run);
     flat.level += run.size();
@@ -82,14 +92,15 @@ double noise_within(std::span<const double> velocity, const std::vector<StickPla
 }
 
 /// In a band that is wide for a short stick the beginning of the slip belongs to the run: a narrower one leaves it out.
-/// A stick then stays as long as it is; a turning point gets shorter with the root of the band.
-std::vector<StickPlateau> runs_about(std::span<const double> velocity, double mode, double half_band) {
-  FlatRuns wide = flat_runs(velocity, mode, half_band, kFlatness);
+/// A stick then stays as long as it is; a turning point gets shorter with the root of the band, and a reversal, where
+/// the velocity passes through it, with the band.
+std::vector<StickPlateau> runs_about(std::span<const double> velocity, double mode, double half_band, double tilt) {
+  FlatRuns wide = flat_runs(velocity, mode, half_band, {kFlatness, tilt});
   const bool are_long = static_cast<double>(wide.within) > kLongSticks * static_cast<double>(velocity.size());
   if (are_long || (2 * wide.level > wide.within && wide.curvature < kClearlyFlat)) return std::move(wide.runs);
   double length = wide.length;
   for (double band = kNarrower * half_band; band > kNarrowestBand * half_band; band *= kNarrower) {
-    FlatRuns narrow = flat_runs(velocity, mode, band, HUGE_VAL);
+    FlatRuns narrow = flat_runs(velocity, mode, band, {});
     if (band < kBandNoise * noise_within(velocity, narrow.runs)) break;
     if (narrow.length > kKeepsLength * length && 2 * narrow.runs.size() > wide.runs.size()) {
       return std::move(narrow.runs);
@@ -115,7 +126,7 @@ double weighted_level(const std::vector<StickPlateau>& runs) {
 
 }  // namespace
 
-Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range) {
+Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range, bool reverses) {
   Plateaus plateaus;
   if (velocity.size() < kFewestBlocks) return plateaus;
   std::vector<double> sorted = thinned(velocity, std::size_t{1} << 15);
@@ -131,7 +142,7 @@ Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRang
   const double mode = half_sample_mode(candidates);
   const std::size_t tail = sorted.size() / 1000;
   plateaus.depth = std::max(sorted[sorted.size() - 1 - tail] - mode, mode - sorted[tail]);
-  plateaus.runs = runs_about(velocity, mode, kPlateauBand * plateaus.depth);
+  plateaus.runs = runs_about(velocity, mode, kPlateauBand * plateaus.depth, reverses ? kPasses : HUGE_VAL);
   plateaus.level = weighted_level(plateaus.runs);
   return plateaus;
 }

@@ -37,8 +37,9 @@ struct LevelRange {
 /// A stretch within 12 % of the largest excursion counts when it is flat: a turning point of a smooth oscillation is
 /// a parabola whose middle stands out from its shoulders, a stick is not, whether it is noisy, rings or sags. Where
 /// sticks are short beside the slips the band is narrowed, as far as the noise lets it.
+/// reverses: of a velocity that may reverse, a stretch in which it passes from one side to the other is none.
 /// Cost: n log n for at most 2^15 of the blocks, linear in the rest.
-Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range = {});
+Plateaus find_plateaus(std::span<const double> velocity, std::optional<LevelRange> range = {}, bool reverses = false);
 
 /// Standard deviation of the noise: the spread (not successive differences, which coloured noise would fool) about
 /// parabolas through windows in the given stretches of samples, one value a window.

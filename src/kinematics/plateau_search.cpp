@@ -149,7 +149,7 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step,
   }
   if (!block) {
     const double limit = kSlipsOverFastest * largest_of(relative);  // a plateau of v_r is at zero
-    s.plateaus = find_plateaus(relative, LevelRange{-limit, limit});
+    s.plateaus = find_plateaus(relative, LevelRange{-limit, limit}, true);
   } else if (!disc.varying.empty()) {
     s.plateaus = find_plateaus(relative, LevelRange{-kMovesWithDisc * disc.largest, kMovesWithDisc * disc.largest});
   } else if (disc.known) {

@@ -14,14 +14,26 @@
 
 namespace tribofit::kinematics {
 
+namespace {
+
+/// Values that are further apart than `same`, in ascending order.
+std::vector<double> levels_of(std::vector<double> values, double same) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
+               values.end());
+  return values;
+}
+
+}  // namespace
+
 double find_resolution(std::span<const double> channel) {
-  std::vector<double> levels = thinned(channel, kValuesForSteps);
-  std::sort(levels.begin(), levels.end());
-  if (levels.size() < kFewestLevels) return 0;
-  // Two spellings of one level differ in the last digits.
-  const double same = 1e-9 * (levels.back() - levels.front());
-  levels.erase(std::unique(levels.begin(), levels.end(), [&](double a, double b) { return b - a <= same; }),
-               levels.end());
+  const std::vector<double> values = thinned(channel, kValuesForSteps);
+  if (values.size() < kFewestLevels) return 0;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double same = 1e-9 * (*high - *low);  // two spellings of one level differ in the last digits
+  // Where some of the values have too many levels, all have: most channels need no more to be sorted.
+  if (levels_of(thinned(values, 2 * kMostLevels), same).size() > kMostLevels) return 0;
+  const std::vector<double> levels = levels_of(values, same);
   if (levels.size() < kFewestLevels || levels.size() > kMostLevels) return 0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < levels.size(); ++i) steps.push_back(levels[i] - levels[i - 1]);

@@ -95,6 +95,7 @@ class Sentences {
       case FloorComparison::unknown:
         return "and no noise floor is known";
       case FloorComparison::below:
+        if (d_.floor_is_sampling) return fmt::format("less than what the sampling leaves unknown ({})", floor);
         return fmt::format("less than the noise floor of {}, so the noise floor is overestimated here", floor);
       case FloorComparison::at:
         return fmt::format("at the noise floor ({})", floor);

@@ -189,22 +189,25 @@ bool contact_creeps(const std::vector<Rise>& rises, const std::vector<Window>& w
 /// Break-away in samples from the begin of a window.
 struct Located {
   double t0 = 0, error = 0;
+  bool is_sharp = false;  // hardly a sample shows the growth
 };
 
 Located settle_break_away(const Window& w, const CommonGrowth& common, bool creeps) {
   const double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
-  if (creeps) return {w.crossing, std::min(error, common.time)};
+  if (creeps) return {w.crossing, std::min(error, common.time), false};
   const Sums s = sums_of(w, common.fit.growth, w.t0);
   if (w.t0 < w.crossing - kShowsGrowth && s.h > 0) {
     const Eigen::Vector3d lever = s.mixed / s.h;
     const double own = common.variance / s.h + std::max(0.0, lever.dot(common.covariance * lever));
-    return {w.t0, std::min(error, std::sqrt(own + kBestBreakAway))};
+    const double seen = w.crossing - w.t0;
+    const double best = std::max(kBestBreakAway, kBetweenSamples / std::max(1.0, seen * seen));
+    return {w.t0, std::min(error, std::sqrt(own + best)), seen < kFewShowGrowth};
   }
   // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
   std::size_t i = w.v.size() - 1;
   while (i > 0 && w.v[i] > kLeavesStick * common.level) --i;
   const auto t0 = static_cast<double>(i);
-  return {t0, std::max(1.0, w.crossing - t0)};
+  return {t0, std::max(1.0, w.crossing - t0), true};
 }
 
 }  // namespace
@@ -227,7 +230,7 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
     const double index = std::max(0.0, static_cast<double>(windows[k].begin) + at.t0);
     const std::size_t whole = std::min(static_cast<std::size_t>(index), motion.size() - 1);
     const double time = motion.time[whole] + (index - static_cast<double>(whole)) * motion.step;
-    result.push_back({std::max(time, motion.time[rises[k].onset.stick_begin]), motion.step * at.error});
+    result.push_back({std::max(time, motion.time[rises[k].onset.stick_begin]), motion.step * at.error, at.is_sharp});
   }
   return result;
 }

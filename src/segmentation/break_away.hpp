@@ -18,8 +18,9 @@ struct Onset {
 
 /// A break-away between samples.
 struct BreakAway {
-  double time = 0;       ///< [s]
-  double std_error = 0;  ///< [s]
+  double time = 0;        ///< [s]
+  double std_error = 0;   ///< [s]
+  bool is_sharp = false;  ///< hardly a sample shows the growth
 };
 
 /// Times at which the contact breaks away.

@@ -105,7 +105,13 @@ class PhaseFinder {
     for (std::size_t k = 0; k < found.size(); ++k) {
       Cycle& c = cycles_[with_stick_[k]];
       const std::size_t first = std::max(c.stick.begin, first_after(motion_.time, found[k].time, c.stick.end));
-      c.stick.end = c.slip.begin = std::min(first, c.slip.end - 1);
+      c.stick.end = std::min(first, c.slip.end - 1);
+      c.is_sharp = found[k].is_sharp;
+      const double either = std::min(segmentation::kBeforeOrAfter * found[k].std_error, motion_.step);
+      const double surely_after = found[k].time + either;
+      c.slip.begin = c.is_sharp
+                         ? std::clamp(first_after(motion_.time, surely_after, c.slip.end), c.stick.end, c.slip.end - 1)
+                         : c.stick.end;
       if (c.stick.size() >= segmentation::kShortestStick) {
         c.break_away_time = found[k].time;
         c.break_away_time_std_error = found[k].std_error;
@@ -209,7 +215,7 @@ void measure(const Motion& motion, std::vector<Cycle>& cycles) {
       c.plateau_velocity = mean_of(stick);
       const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
       c.break_away_friction = at_break.value;
-      c.break_away_friction_std_error = at_break.std_error;
+      c.break_away_friction_std_error = std::hypot(at_break.std_error, at_break.slope * c.break_away_time_std_error);
       c.stick_slope = at_break.slope;
       if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
         c.stick_time = c.break_away_time - cycles[k - 1].restick_time;

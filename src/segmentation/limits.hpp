@@ -79,6 +79,10 @@ inline constexpr double kGradual = 0.3;
 /// Samples before the level from which a break-away shows; of the level, where the velocity leaves the stick where none
 /// does; and variance of the best [samples, squared]: a twelfth of a sample.
 inline constexpr double kShowsGrowth = 0.5, kLeavesStick = 0.25, kBestBreakAway = 1.0 / 144;
+/// Variance of one of which a single sample shows the growth [samples, squared]: it is anywhere between two. Of more
+/// samples it is within as much smaller a part. Where so many do not, one may be before it or after: within so many
+/// standard errors, and one sample.
+inline constexpr double kBetweenSamples = 1.0 / 12, kFewShowGrowth = 4, kBeforeOrAfter = 2;
 
 // ---- re-stick
 

@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 // LAPACK, which Ceres brings: Eigen's own solver for matrices without symmetry takes ten seconds to compile.
@@ -83,10 +85,60 @@ MatrixXd solve_lower_factor(const MatrixXd& matrix, const MatrixXd& right) {
   return Eigen::LLT<MatrixXd>(matrix).matrixL().solve(right);
 }
 
-MatrixXd triangular_factor(const MatrixXd& matrix) {
-  const Eigen::Index kept = std::min(matrix.rows(), matrix.cols());
-  MatrixXd out = MatrixXd::Zero(matrix.cols(), matrix.cols());
-  out.topRows(kept) = Eigen::HouseholderQR<MatrixXd>(matrix).matrixQR().topRows(kept).triangularView<Eigen::Upper>();
+namespace {
+
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+Pair pair_at(const double* x) {
+  Pair out;
+  std::memcpy(&out, x, sizeof out);
+  return out;
+}
+
+void subtract(double factor, const double* x, double* y, Eigen::Index n) {
+  Eigen::Index i = 0;
+  for (; i + 2 <= n; i += 2) {
+    const Pair out = pair_at(y + i) - Pair{factor, factor} * pair_at(x + i);
+    std::memcpy(y + i, &out, sizeof out);
+  }
+  if (i < n) y[i] -= factor * x[i];
+}
+
+}  // namespace
+
+double dot(const double* x, const double* y, Eigen::Index n) {
+  Pair even = {}, odd = {};
+  Eigen::Index i = 0;
+  for (; i + 4 <= n; i += 4) {
+    even += pair_at(x + i) * pair_at(y + i);
+    odd += pair_at(x + i + 2) * pair_at(y + i + 2);
+  }
+  even += odd;
+  double sum = even[0] + even[1];
+  for (; i < n; ++i) sum += x[i] * y[i];
+  return sum;
+}
+
+MatrixXd triangular_factor(MatrixXd& matrix) {
+  const Eigen::Index rows = matrix.rows(), columns = matrix.cols(), kept = std::min(rows, columns);
+  for (Eigen::Index k = 0; k < kept; ++k) {
+    double* v = &matrix(k, k);
+    const Eigen::Index n = rows - k;
+    const double below = dot(v + 1, v + 1, n - 1), head = v[0];
+    if (!(below > std::numeric_limits<double>::min())) continue;
+    const double length = std::copysign(std::sqrt(head * head + below), head);
+    v[0] = head + length;
+    const double factor = 1 / (length * v[0]);  // 2/v'v
+    for (Eigen::Index j = k + 1; j < columns; ++j) {
+      double* column = &matrix(k, j);
+      subtract(factor * dot(v, column, n), v, column, n);
+    }
+    v[0] = -length;
+  }
+  MatrixXd out = MatrixXd::Zero(columns, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i <= std::min(j, kept - 1); ++i) out(i, j) = matrix(i, j);
+  }
   return out;
 }
 

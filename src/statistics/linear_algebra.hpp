@@ -59,7 +59,11 @@ Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& matrix);
 /// L^-1 b for a symmetric positive definite A = L L'.
 Eigen::MatrixXd solve_lower_factor(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
-/// R of the QR of a matrix, n x n, with zero rows below where it has fewer rows than columns: R'R = A'A.
-Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& matrix);
+/// Sum of x y over n numbers. Short ones are common here, for which Eigen takes much longer to begin.
+double dot(const double* x, const double* y, Eigen::Index n);
+
+/// R of the QR of a matrix, n x n, with zero rows below where it has fewer rows than columns: R'R = A'A. The matrix is
+/// overwritten. Made for few columns, where Householder's reflections column by column take a third of Eigen's time.
+Eigen::MatrixXd triangular_factor(Eigen::MatrixXd& matrix);
 
 }  // namespace tribofit

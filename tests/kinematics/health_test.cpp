@@ -235,6 +235,53 @@ TEST(Health, ASmallDropOfFrictionIsNoClipping) {
   }
 }
 
+/// v_r of a block that is driven to and fro, at rest for `pause` of the amplitude about each reversal; friction is
+/// higher one way.
+Trace reciprocating(double amplitude, double frequency, double phase, double pause, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  Trace trace;
+  trace.velocity_kind = VelocityKind::relative;
+  const std::size_t n = 16000;
+  const double rate = 1000 * frequency;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) / rate, s = std::sin(2 * std::numbers::pi * frequency * t + phase);
+    const double v = amplitude * std::copysign(std::max(0.0, std::abs(s) - pause), s);
+    const double slides = std::copysign(0.3 + 0.2 * std::exp(-52 * std::abs(v)), v) * (v < 0 ? 1.1 : 1);
+    const double mu = v != 0 || pause == 0 ? slides : 0.5 * s / pause;
+    trace.time.push_back(t);
+    trace.velocity.push_back(v + 1e-3 * amplitude * normal(engine));
+    trace.friction.push_back(mu + 0.003 * normal(engine));
+  }
+  trace.steps = {{0, n, "", {}}};
+  return trace;
+}
+
+TEST(Health, AReversalIsNoRest) {
+  unsigned seed = 0;
+  for (double amplitude : {0.005, 0.08}) {
+    for (double frequency : {0.1, 1.0, 5.0}) {
+      for (double phase : {0.0, 0.7, std::numbers::pi / 2, 4.0}) {
+        const Motion motion = compute_motion(reciprocating(amplitude, frequency, phase, 0, ++seed));
+        EXPECT_FALSE(motion.sticks) << seed;
+        for (const HealthItem& i : motion.health) EXPECT_NE(i.status, Status::problem) << i.check << ": " << i.message;
+      }
+    }
+  }
+}
+
+TEST(Health, ARestAtEachReversalIsOne) {
+  unsigned seed = 0;
+  for (double pause : {0.15, 0.2, 0.4}) {
+    for (double phase : {0.0, 0.7, std::numbers::pi / 2}) {
+      const Motion motion = compute_motion(reciprocating(0.03, 1, phase, pause, ++seed));
+      EXPECT_TRUE(motion.sticks) << seed;
+      EXPECT_LT(std::abs(motion.plateau_velocity), 1e-4) << seed;
+      for (const HealthItem& i : motion.health) EXPECT_NE(i.status, Status::problem) << i.check << ": " << i.message;
+    }
+  }
+}
+
 /// A held block over twelve speeds of a disc, a thousand samples each: friction of Coulomb and viscous parts.
 Trace speed_steps(std::mt19937_64& engine) {
   std::vector<double> speeds;

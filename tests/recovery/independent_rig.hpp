@@ -19,7 +19,8 @@ namespace independent {
 struct Rig {
   double mass = 0.85, stiffness = 14e3, damping_ratio = 0.02;
   double load = 50, radius = 0.015, speed = 4 * 2 * std::numbers::pi / 60;  ///< [N], [m], [rad/s]
-  double swing = 0;  ///< the disc goes forth and back at this frequency [Hz]; 0: constant speed
+  double swing = 0;             ///< the disc goes forth and back at this frequency [Hz]; 0: constant speed
+  bool reads_relative = false;  ///< v_r is recorded, and not what the disc does
 
   bool fractional = false;  ///< the law: falls as 1/(1 + decay v), else as exp(-decay v)
   double mu_s = 0.51, mu_k = 0.34, decay = 50;
@@ -76,9 +77,11 @@ class Simulation {
       const double t = static_cast<double>(i) / rig_.rate;
       trace.time.push_back(t);
       trace.friction.push_back(friction[static_cast<std::size_t>(at - shift)] + rig_.friction_noise * normal());
-      trace.velocity.push_back(velocity[static_cast<std::size_t>(at)] + rig_.velocity_noise * normal());
-      if (rig_.swing > 0) trace.disc_speed.push_back(disc_speed(t) / rig_.radius);
+      const double v = velocity[static_cast<std::size_t>(at)];
+      trace.velocity.push_back((rig_.reads_relative ? disc_speed(t) - v : v) + rig_.velocity_noise * normal());
+      if (rig_.swing > 0 && !rig_.reads_relative) trace.disc_speed.push_back(disc_speed(t) / rig_.radius);
     }
+    if (rig_.reads_relative) trace.velocity_kind = tribofit::VelocityKind::relative;
     trace.conditions.radius = {rig_.radius, "command line"};
     trace.conditions.load = {rig_.load, "command line"};
     if (rig_.swing == 0) trace.conditions.speed = {rig_.speed, "command line"};

@@ -67,10 +67,36 @@ TEST_P(EmptyRecord, IsSufficient) {
   expect_law_recovered(diagnosed, rig);
 }
 
+/// A pad on a stiff holder that is driven to and fro: it breaks away between two samples at each reversal.
+Rig reciprocating(double amplitude, double frequency, std::uint64_t seed) {
+  Rig rig = {.mass = 0.2, .stiffness = 2e6, .damping_ratio = 1.5};
+  rig.swing = frequency, rig.speed = amplitude / rig.radius, rig.reads_relative = true;
+  rig.mu_s = 0.5, rig.mu_k = 0.3, rig.decay = 52, rig.scatter = 0.002;
+  rig.duration = 12 / std::min(1.0, frequency), rig.rate = 2000 * std::max(1.0, frequency / 2), rig.seed = seed;
+  return rig;
+}
+
+/// A simulation as people make it first: nothing but the law and the rig.
+Rig noiseless(double scatter, double rate, bool fractional) {
+  Rig rig;
+  rig.friction_noise = rig.velocity_noise = 0;
+  rig.scatter = scatter, rig.rate = rate, rig.fractional = fractional;
+  rig.decay = fractional ? 80 : 50;
+  return rig;
+}
+
 INSTANTIATE_TEST_SUITE_P(Independent, EmptyRecord,
                          testing::Values(Empty{"exponential", {.seed = 11}},
                                          Empty{"fractional", {.fractional = true, .decay = 80, .seed = 12}},
-                                         Empty{"both_directions", {.swing = 0.15, .duration = 24, .seed = 13}}),
+                                         Empty{"both_directions", {.swing = 0.15, .duration = 24, .seed = 13}},
+                                         Empty{"reciprocating", reciprocating(0.02, 1, 14)},
+                                         Empty{"slowly_reciprocating", reciprocating(0.02, 0.5, 15)},
+                                         Empty{"quickly_reciprocating", reciprocating(0.05, 2, 16)},
+                                         Empty{"noiseless", noiseless(0.006, 10000, false)},
+                                         Empty{"noiseless_coarse", noiseless(0.006, 5000, true)},
+                                         Empty{"noiseless_fine", noiseless(0.006, 20000, true)},
+                                         Empty{"periodic", noiseless(0, 10000, true)},
+                                         Empty{"periodic_coarse", noiseless(0, 5000, false)}),
                          [](const auto& empty) { return empty.param.name; });
 
 struct Loaded {
@@ -124,5 +150,14 @@ INSTANTIATE_TEST_SUITE_P(
       std::replace(name.begin(), name.end(), '-', '_');
       return name;
     });
+
+Rig with_ratio(Rig rig, double ratio) {
+  rig.ratio = ratio;
+  return rig;
+}
+
+INSTANTIATE_TEST_SUITE_P(Reciprocating, LoadedRecord,
+                         testing::Values(Loaded{"asymmetry", 1.15, with_ratio(reciprocating(0.02, 1, 31), 1.15)}),
+                         [](const auto& hidden) { return std::string(hidden.param.key); });
 
 }  // namespace

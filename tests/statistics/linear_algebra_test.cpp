@@ -96,6 +96,9 @@ TEST(LinearAlgebra, FactorsOfAProduct) {
   MatrixXd design = hilbert(5, 3), wide = hilbert(2, 4);
   const MatrixXd product = design.transpose() * design, wide_product = wide.transpose() * wide;
   const MatrixXd r = triangular_factor(design), wide_r = triangular_factor(wide);
+  MatrixXd same_sign = hilbert(30, 7);
+  const MatrixXd qr = same_sign.householderQr().matrixQR().topRows(7).triangularView<Eigen::Upper>();
+  EXPECT_LT((triangular_factor(same_sign) - qr).norm(), 1e-14);
   EXPECT_LT((r.transpose() * r - product).norm(), 1e-14);
   EXPECT_LT((wide_r.transpose() * wide_r - wide_product).norm(), 1e-14);
   EXPECT_EQ(r(1, 0), 0);

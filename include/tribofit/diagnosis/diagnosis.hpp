@@ -120,6 +120,7 @@ struct Diagnosis {
   std::vector<EffectFinding> effects;            ///< every effect of the catalogue, in its order, then the user's own
   std::vector<Rung> ladder;                      ///< base law first
   double floor_rmse = 0;                         ///< [1 or N]
+  bool floor_is_sampling = false;                ///< sensor noise is less than what is not known between two samples
   std::vector<Confirmation> confirmations;
   std::string next_experiment;  ///< one or two sentences
   std::string formula;          ///< a closed form of what remains, as --formula takes it; empty: none

@@ -46,12 +46,13 @@ struct Observations {
   /// Where its beginning was not recorded, stick_time is the median of the others (NaN where none was); and it is
   /// without what its own break-away level made of it.
   struct SlipObservation : SlipFacts {
-    std::size_t begin = 0, end = 0;  ///< values of this slip
-    SampleRange samples;             ///< the same in samples of the Motion
-    std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
-    std::size_t segment = 0;         ///< index in Segmentation::cycles
-    double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
-    double slow_variance = 0;        ///< of its level, by the 1/f noise that its record shows [1 or N squared]
+    std::size_t begin = 0, end = 0;     ///< values of this slip
+    SampleRange samples;                ///< the same in samples of the Motion
+    std::size_t cycle = 0;              ///< unit of evidence it belongs to, from 0, in order of time
+    std::size_t segment = 0;            ///< index in Segmentation::cycles
+    double break_away_friction = 0;     ///< |mu| at break-away; NaN when there is none
+    double break_away_root_weight = 1;  ///< of its residual beside that of a sample: less where its time is not known
+    double slow_variance = 0;           ///< of its level, by the 1/f noise that its record shows [1 or N squared]
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
     std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none

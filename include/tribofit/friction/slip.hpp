@@ -74,13 +74,14 @@ struct Slip : SlipFacts {
   /// Speed |v_r| of a sample. Sensor noise near rest can turn the reading round although the slip has one direction;
   /// such a sample is at rest.
   template <class T>
-  T speed(const T& v) const {
+  [[gnu::always_inline]] T speed(const T& v) const {
     const T forward = direction * v;
     return scalar_part(forward) > 0 ? forward : T(0.0 * forward);
   }
 
+  /// Inlined everywhere: what a caller does not look at is then not read.
   template <class T>
-  SlidingState<T> at(std::size_t i, const T& v) const {
+  [[gnu::always_inline]] SlidingState<T> at(std::size_t i, const T& v) const {
     const auto value = [i](std::span<const double> channel, double otherwise) {
       return channel.empty() ? otherwise : channel[i];
     };

@@ -22,13 +22,15 @@ struct Cycle {
   SampleRange stick;  ///< samples of the stick; empty where the record begins in slip or the motion only reverses
   SampleRange
       slip;  ///< samples of the slip: first sample after break_away_time to the last before restick_time. A sample
-             ///< within half an interval of restick_time, where friction jumps, belongs to neither phase.
+             ///< within half an interval of restick_time, where friction jumps, belongs to neither phase, nor one that
+             ///< may be before break-away or after where the slip begins between two samples.
   bool stick_complete = false;  ///< the stick's beginning (a re-stick) is in the record
   bool slip_complete = false;   ///< the slip ends in stick within the record
   int direction = 1;            ///< sign of v_r in the slip
 
   double break_away_time = 0;            ///< sub-sample [s]
   double break_away_time_std_error = 0;  ///< [s]
+  bool is_sharp = false;                 ///< hardly a sample shows how v_r leaves the stick
   double restick_time = 0;               ///< sub-sample [s]
   double stick_time = 0;                 ///< [s]
   double slip_time = 0;                  ///< [s]
