@@ -19,17 +19,16 @@ bool falls_or_levels_off(const DiagnosisContext& context, const Trial& trial) {
 CompetingLaws base_laws(std::span<const Record> records, std::vector<Law> given, std::span<const Effect> effects) {
   CompetingLaws out;
   const bool is_given = given.size() == 1;
-  for (const Law& law : law_catalogue()) {
-    const bool known = std::find(given.begin(), given.end(), law) != given.end();
-    if (!is_given && !known && !constant_in_slip(law)) out.others.push_back(law);
-  }
   const bool sticks = std::any_of(records.begin(), records.end(), [](const Record& record) {
     return record.segmentation->kind != MotionKind::always_slipping;
   });
-  const bool present = std::any_of(given.begin(), given.end(), constant_in_slip);
   const bool possible = std::all_of(effects.begin(), effects.end(),
                                     [](const Effect& effect) { return obstacle_on(CoulombLaw{}, effect).empty(); });
-  if (given.size() > 1 && !sticks && !present && possible) given.push_back(CoulombLaw{});
+  for (const Law& law : law_catalogue()) {
+    const bool known = std::find(given.begin(), given.end(), law) != given.end();
+    if (is_given || known || (constant_in_slip(law) && !possible)) continue;
+    (constant_in_slip(law) && !sticks ? given : out.others).push_back(law);
+  }
   out.first = std::move(given);
   return out;
 }

@@ -88,6 +88,8 @@ TEST(BaseLaws, CoulombIsTriedWhereNothingSticksAndAChoiceIsGiven) {
   const std::vector<Law> two = {Law(ExponentialLaw{}), Law(FractionalLaw{})};
   made.segmentation.kind = MotionKind::stick_slip;
   EXPECT_EQ(base_laws(std::span(&record, 1), two).first, two);
+  const std::vector<Law> others = base_laws(std::span(&record, 1), two).others;
+  EXPECT_EQ(std::count(others.begin(), others.end(), Law(CoulombLaw{})), 1);
   made.segmentation.kind = MotionKind::always_slipping;
   EXPECT_EQ(base_laws(std::span(&record, 1), two).first.back(), Law(CoulombLaw{}));
   EXPECT_EQ(base_laws(std::span(&record, 1), {Law(ExponentialLaw{})}).others.size(), 0U);  // the user has chosen

@@ -151,6 +151,25 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+/// Friction that drops at once is the hardest to sample; a law that falls steeply does as well, but not another level.
+TEST(Noiseless, CoulombFrictionIsRecovered) {
+  for (const double rate : {5000.0, 20000.0}) {
+    for (const double scatter : {0.0, 0.004}) {
+      Rig rig = noiseless(scatter, rate, false);
+      rig.decay = 1e7;
+      const DiagnosedTraces diagnosed = diagnosis_of(rig);
+      const Diagnosis& diagnosis = diagnosed.diagnosis;
+      EXPECT_EQ(diagnosis.verdict, Verdict::sufficient) << rate << ", " << scatter << ": " << ladder(diagnosis);
+      const auto& rivals = diagnosis.rival_laws;
+      EXPECT_TRUE(diagnosis.law == Law(CoulombLaw{}) ||
+                  std::find(rivals.begin(), rivals.end(), Law(CoulombLaw{})) != rivals.end());
+      const std::vector<FitParameter>& p = diagnosed.rungs.back().parameters;
+      EXPECT_NEAR(p.at(0).value, rig.mu_s, 1e-4 + 3 * scatter / std::sqrt(50.0)) << rate;
+      EXPECT_NEAR(p.at(1).value, rig.mu_k, 1e-4) << rate;
+    }
+  }
+}
+
 Rig with_ratio(Rig rig, double ratio) {
   rig.ratio = ratio;
   return rig;
