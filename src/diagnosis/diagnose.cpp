@@ -238,6 +238,7 @@ void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Dia
   }
   // Few cycles that wander say little of a noise floor, and as little of an error, unless it is many times as large.
   const bool beyond_chance =
+      over_floor(fits.back()) > far &&
       error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse;
   if (!beyond_chance && !is_clearly_above_floor(fits.back())) return;
   diagnosis.verdict = Verdict::unexplained;

@@ -26,25 +26,53 @@ CandidateResult fitted_at(const DiagnosisContext& context, const Level& level, c
   return out;
 }
 
-/// Candidates that explain more than independent noise would, those that explain most first, at low resolution; no more
-/// than are worth trying in pairs.
-std::vector<CandidateResult> promising(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<CandidateResult>& judged, double least_size,
-                                       const std::vector<Candidate>& candidates, const Limits& least) {
+struct Pool {
+  std::vector<CandidateResult> all;  ///< at low resolution, those that explain most first
+  std::size_t promising = 0;         ///< the first so many explain more than independent noise would, each by itself
+};
+
+/// Candidates to try in pairs: the most promising, and whatever could be fitted, since one may show only beside
+/// another.
+Pool pool_of(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+             const std::vector<CandidateResult>& judged, double least_size, const std::vector<Candidate>& candidates,
+             const Limits& least) {
   std::vector<const CandidateResult*> all;
   for (const CandidateResult& one : judged) {
-    const bool clear = one.fall > limits::kDistinguishable * noise_of(context.fine, top) && one.size > least_size;
     const bool line = candidates[one.candidate].info.needs_full_resolution;
-    if (one.trial.usable && one.plausible && !line && clear) all.push_back(&one);
+    if (one.trial.usable && one.plausible && !line) all.push_back(&one);
   }
-  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->size > b->size; });
-  all.resize(std::min(all.size(), limits::kMostInPairs));
-  std::vector<CandidateResult> out(all.size());
-  run_tasks(all.size(), context.threads, [&](std::size_t k) {
-    out[k] = fitted_at(context, context.coarse, coarse_top, *all[k], candidates, least);
-    out[k].p_value = all[k]->p_value;
+  const auto promises = [&](const CandidateResult* one) {
+    return one->fall > limits::kDistinguishable * noise_of(context.fine, top) && one->size > least_size;
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const auto* a, const auto* b) {
+    return promises(a) != promises(b) ? promises(a) : a->size > b->size;
   });
-  return out;
+  Pool pool;
+  const auto clear = std::count_if(all.begin(), all.end(), promises);
+  pool.promising = std::min(static_cast<std::size_t>(clear), limits::kMostInPairs);
+  if (clear == 0) return pool;
+  pool.all.resize(all.size());
+  run_tasks(all.size(), context.threads, [&](std::size_t k) {
+    pool.all[k] = fitted_at(context, context.coarse, coarse_top, *all[k], candidates, least);
+    pool.all[k].p_value = all[k]->p_value;
+  });
+  return pool;
+}
+
+/// The most promising two at a time, and the very best with all.
+std::vector<Two> pairs_of(const Pool& pool, const std::vector<Candidate>& candidates, const Limits& least) {
+  std::vector<Two> pairs;
+  for (std::size_t a = 0; a < pool.promising; ++a) {
+    const std::size_t last = a < limits::kMostWithAll ? pool.all.size() : pool.promising;
+    for (std::size_t b = a + 1; b < last; ++b) {
+      const CandidateResult &one = pool.all[a], &other = pool.all[b];
+      const Candidate &first = candidates[one.candidate], &second = candidates[other.candidate];
+      const bool hides = std::max(one.p_value, other.p_value) >= least.p_value;
+      if (hides && first.info.key != second.info.key && one.trial.model.acts_with(second.effect))
+        pairs.push_back({one, other});
+    }
+  }
+  return pairs;
 }
 
 /// The candidate beside what is there, and in how many places it was looked for.
@@ -107,17 +135,9 @@ HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const
 std::optional<HiddenPair> find_hidden_pair(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
                                            const std::vector<CandidateResult>& judged, double least_size,
                                            const std::vector<Candidate>& candidates, const Limits& least) {
-  const std::vector<CandidateResult> alone =
-      promising(context, top, coarse_top, judged, std::max(least_size, least.least_size), candidates, least);
-  std::vector<Two> pairs;
-  for (std::size_t a = 0; a < alone.size(); ++a) {
-    for (std::size_t b = a + 1; b < alone.size(); ++b) {
-      const Candidate &first = candidates[alone[a].candidate], &second = candidates[alone[b].candidate];
-      const bool same = first.info.key == second.info.key;
-      const bool hides = std::max(alone[a].p_value, alone[b].p_value) >= least.p_value;
-      if (!same && hides && alone[a].trial.model.acts_with(second.effect)) pairs.push_back({alone[a], alone[b]});
-    }
-  }
+  const Pool pool =
+      pool_of(context, top, coarse_top, judged, std::max(least_size, least.least_size), candidates, least);
+  const std::vector<Two> pairs = pairs_of(pool, candidates, least);
   const auto tried = static_cast<double>(pairs.size());
   std::vector<HiddenPair> found(pairs.size());
   run_tasks(pairs.size(), context.threads,

@@ -91,8 +91,8 @@ void look_beside(const DiagnosisContext& context, LadderStep& step) {
   step.probes = probe_all(context, step.coarse, step.trial, residual_of(context, step.trial));
 }
 
-/// Free functions are fitted at low resolution, where other scatter may have been taken out: what they explain counts as
-/// that part of what the trial leaves.
+/// Free functions are fitted at low resolution, where other scatter may have been taken out: what they explain counts
+/// as that part of what the trial leaves.
 double largest_fall(const LadderStep& step) {
   const std::vector<Probe> structure = remaining_structure(step.probes);
   if (structure.empty()) return 0;

@@ -77,7 +77,9 @@ inline constexpr double kFarPart = 0.08;        ///< of the best fall behind the
 inline constexpr double kFarNoise = 0.05;       ///< and of the squares of the noise
 /// Of the fastest slip: where a law that nothing holds at rest may fall; a factor of three is what a search bridges.
 inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
-inline constexpr std::size_t kMostInPairs = 5;  ///< candidates tried two at a time: ten pairs
+/// Candidates tried two at a time, ten pairs, and those that are tried with all others: slow effects of which one shows
+/// only beside another (drift beside a runout of few turns).
+inline constexpr std::size_t kMostInPairs = 5, kMostWithAll = 1;
 inline constexpr std::size_t kMostStarts = 2;   ///< the linear step ranks starts well, but not always the first two
 
 // The ladder.
