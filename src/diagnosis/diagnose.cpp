@@ -228,7 +228,9 @@ void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Dia
   const bool possible = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
                                     [](const EffectFinding& f) { return f.status == EffectStatus::possible; });
   if (possible) diagnosis.verdict = Verdict::unexplained;
-  const double far = added ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
+  // Slow noise that the floor does not hold in full is no structure either.
+  const bool slow = wanders(top, fits.back());
+  const double far = added || slow ? limits::kFarAboveAfterEffects : limits::kFarAboveFloor;
   const double error = fits.back().error.held_out_rmse, left_over = error / diagnosis.floor_rmse;
   if (structured || possible) return;
   if (is_most_left(fits, diagnosis.floor_rmse)) {
@@ -244,8 +246,8 @@ void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Dia
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.messages.push_back(fmt::format(
       "what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: {}", left_over,
-      wanders(top, fits.back()) ? "most of it wanders slowly over time, as slow noise does"
-                                : "it changes from cycle to cycle, or with something that was not recorded"));
+      slow ? "most of it wanders slowly over time, as slow noise does"
+           : "it changes from cycle to cycle, or with something that was not recorded"));
 }
 
 /// Values of a slip in which candidates are fitted.

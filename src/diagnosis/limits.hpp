@@ -80,7 +80,7 @@ inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
 /// Candidates tried two at a time, ten pairs, and those that are tried with all others: slow effects of which one shows
 /// only beside another (drift beside a runout of few turns).
 inline constexpr std::size_t kMostInPairs = 5, kMostWithAll = 1;
-inline constexpr std::size_t kMostStarts = 2;   ///< the linear step ranks starts well, but not always the first two
+inline constexpr std::size_t kMostStarts = 2;  ///< the linear step ranks starts well, but not always the first two
 
 // The ladder.
 /// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less
@@ -114,8 +114,9 @@ inline constexpr double kMostOfTheError = 0.5;     ///< a share that is "most of
 /// Of the squares of the noise: smaller structure does not matter. What sampling leaves (DiagnosisContext::shared) has
 /// structure itself.
 inline constexpr double kLeastStructure = 0.05;
-inline constexpr double kFarAboveFloor = 1.5;       ///< times the noise floor, from which an error is unexplained
-inline constexpr double kFarAboveAfterEffects = 2;  ///< the same once effects were added: their scatter is in it
+inline constexpr double kFarAboveFloor = 1.5;  ///< times the noise floor, from which an error is unexplained
+/// The same once effects were added, whose scatter is in it, or where most of it wanders as slow noise does.
+inline constexpr double kFarAboveAfterEffects = 2;
 inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part
 inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is not chance
 inline constexpr double kSlowestLine = 15;   ///< slip times of a period: a line as slow is structure over time
