@@ -33,8 +33,11 @@ void add_step(const DiagnosisContext& context, Ladder& ladder, const CandidateRe
   ladder.finished = false;
 }
 
-bool is_worth_a_rung(const Ladder& ladder, const CandidateResult& leader) {
-  return leader.by_level || leader.fall >= limits::kHopelessPart * largest_fall(ladder.steps.back());
+/// A fall is enough of what a free function explains. Those are fitted at low resolution, where other scatter may have
+/// been taken out: what they explain counts as that part of what the trial leaves.
+bool is_worth_a_rung(const LadderStep& step, double fall) {
+  const double here = step.trial.held_out_squares, there = step.coarse.held_out_squares;
+  return fall >= limits::kHopelessPart * largest_fall(step) * (here > 0 && there > 0 ? std::min(1.0, here / there) : 1);
 }
 
 /// Adds two effects that hide each other, if there are two such that explain more than the one that leads (if any).
@@ -46,9 +49,8 @@ bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const Candi
   const std::optional<HiddenPair> pair =
       find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, least_size, candidates, least);
   if (!pair) return false;
-  const Trial& both = pair->first.trial;
-  if (top.held_out_squares - both.held_out_squares < limits::kHopelessPart * largest_fall(ladder.steps.back()))
-    return false;
+  const double fall = top.held_out_squares - pair->first.trial.held_out_squares;
+  if (!is_worth_a_rung(ladder.steps.back(), fall)) return false;
   if (leader != nullptr && !are_distinguishable(context, pair->first, *leader)) return false;
   // What was judged beside the other one is what decided: it stands for the candidate from here on.
   for (CandidateResult& judged : ladder.last) {
@@ -99,7 +101,7 @@ void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   const Choice choice = choose(context, ladder.last, candidates);
   std::optional<CandidateResult> leader;
   if (choice.leader) leader = ladder.last[*choice.leader];
-  if (leader && !is_worth_a_rung(ladder, *leader)) {
+  if (leader && !leader->by_level && !is_worth_a_rung(ladder.steps.back(), leader->fall)) {
     ladder.withdrawn.push_back(leader->candidate);
     leader.reset();
   }

@@ -91,13 +91,9 @@ void look_beside(const DiagnosisContext& context, LadderStep& step) {
   step.probes = probe_all(context, step.coarse, step.trial, residual_of(context, step.trial));
 }
 
-/// Free functions are fitted at low resolution, where other scatter may have been taken out: what they explain counts
-/// as that part of what the trial leaves.
 double largest_fall(const LadderStep& step) {
   const std::vector<Probe> structure = remaining_structure(step.probes);
-  if (structure.empty()) return 0;
-  const double here = step.trial.held_out_squares, there = step.coarse.held_out_squares;
-  return structure.front().fall * (here > 0 && there > 0 ? here / there : 1);
+  return structure.empty() ? 0 : structure.front().fall;
 }
 
 void prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
