@@ -102,12 +102,14 @@ struct Confirmation {
 /// (Bonferroni): of the fall of the squares (F test whose noise is that between cycles), of the held-out losses cycle
 /// by cycle (paired, with a long-run variance; not for spectral lines), and for what goes with the stick time of the
 /// levels of break-away. It is the one that is reported. No p-value is smaller than slow noise makes it: what the level
-/// of friction does from cycle to cycle beside the model is taken for 1/f noise or an autoregression (slow_noise()),
-/// is no less than the 1/f noise that the record shows where no law has to be right (flicker_power()), and counts in
-/// the F test as it would move the effect. The best one is added, with those that do as well as its group, until none
-/// is left; effects that became redundant are dropped. Both base laws climb a ladder of their own; another law of the
-/// list joins them where it does as well with an effect less. The better or shorter ladder is reported. Free functions
-/// of each variable say where the error is, before and after.
+/// of friction does from cycle to cycle beside the model is taken for 1/f noise or an autoregression (slow_noise()), is
+/// no less than the 1/f noise that the record shows where no law has to be right (flicker_power()), and counts in the F
+/// test as it would move the effect. The best one is added, with those that do as well as its group, until none is
+/// left. Where none passes, or one that explains little, candidates are tried two at a time, since each of two slow
+/// effects leaves the other as what looks like slow noise: both must pass, each beside the other, and their p-values
+/// are multiplied by the number of pairs as well. Effects that became redundant are dropped. Both base laws climb a
+/// ladder of their own; another law of the list joins them where it does as well with an effect less. The better or
+/// shorter ladder is reported. Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};
