@@ -1,7 +1,6 @@
 #include "hidden_pairs.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "limits.hpp"
@@ -75,37 +74,10 @@ std::vector<Two> pairs_of(const Pool& pool, const std::vector<Candidate>& candid
   return pairs;
 }
 
-/// The candidate beside what is there, and in how many places it was looked for.
-std::pair<Trial, double> added_to(const DiagnosisContext& context, const Level& level, const Trial& there,
-                                  const Candidate& candidate) {
-  constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
-  const std::vector<double> residual = residual_of(context, there);
-  const SearchStart search = search_start_of(context, level, there, candidate, residual, kAnyFall, kAnyFall);
-  if (search.starts.empty()) return {};
-  const FrictionModel model = with_effect(there.model, candidate.effect);
-  return {try_model(context, level, model, nearest(level, model, there.whitening, search.starts)), search.places};
-}
-
-/// What is left of a trial when one of its effects is taken out and nothing is fitted anew.
-Trial stripped_of(const Trial& full, const std::string& key) {
-  std::vector<Effect> effects;
-  Trial out;
-  out.whitening = full.whitening;
-  out.p.assign(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
-  for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
-    if (full.model.effect_keys()[k] == key) continue;
-    effects.push_back(full.model.effects()[k]);
-    const auto begin = full.p.begin() + static_cast<std::ptrdiff_t>(full.model.offset(k));
-    out.p.insert(out.p.end(), begin, begin + static_cast<std::ptrdiff_t>(full.model.count(k)));
-  }
-  out.model = FrictionModel(full.model.law(), effects, full.model.records());
-  return out;
-}
-
 /// Looks for an effect of a trial anew beside all the others as they were found beside it; the better of the two.
 Trial search_again(const DiagnosisContext& context, const Level& level, Trial full, const Candidate& candidate) {
   if (!full.usable) return full;
-  Trial again = added_to(context, level, stripped_of(full, candidate.info.key), candidate).first;
+  Trial again = try_with(context, level, without_effect(full, candidate.info.key), candidate).trial;
   const bool better = again.usable && again.held_out_squares < full.held_out_squares;
   return better ? std::move(again) : std::move(full);
 }
@@ -115,8 +87,8 @@ Trial search_again(const DiagnosisContext& context, const Level& level, Trial fu
 HiddenPair judge_pair(const DiagnosisContext& context, const Level& level, const Two& alone,
                       const std::vector<Candidate>& candidates, double pairs, const Limits& least) {
   const Candidate &first = candidates[alone.a.candidate], &second = candidates[alone.b.candidate];
-  auto [both, places] = added_to(context, level, alone.a.trial, second);
-  auto [turned, other_places] = added_to(context, level, alone.b.trial, first);
+  auto [both, places] = try_with(context, level, alone.a.trial, second);
+  auto [turned, other_places] = try_with(context, level, alone.b.trial, first);
   if (turned.usable && (!both.usable || turned.held_out_squares < both.held_out_squares)) both = std::move(turned);
   both = search_again(context, level, search_again(context, level, std::move(both), first), second);
   HiddenPair out;

@@ -79,9 +79,7 @@ bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const Candi
 /// there, and takes the place of the one it was compared with.
 bool improve_top(const DiagnosisContext& context, Ladder& ladder, const Trial& leader, const Candidate& added) {
   LadderStep& last = ladder.steps.back();
-  const std::vector<std::string> keys = leader.model.effect_keys();
-  const auto effect = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), added.info.key) - keys.begin());
-  Trial without = try_without(context, context.fine, leader, effect);
+  Trial without = try_without(context, context.fine, leader, added.info.key);
   const double least = limits::kLowerMinimum * (last.trial.held_out_squares - leader.held_out_squares);
   const bool lower = without.usable && without.held_out_squares < last.trial.held_out_squares - std::max(0.0, least) &&
                      without.squares < last.trial.squares;
@@ -139,7 +137,7 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
   ladder.law = law;
   LadderStep base;
   base.trial = try_base(context, context.fine, FrictionModel(law, {}, context.records.size()));
-  for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect);
+  for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect).trial;
   look_beside(context, base);
   ladder.finished = !base.trial.usable;
   ladder.steps.push_back(std::move(base));

@@ -8,12 +8,12 @@
 
 namespace tribofit::diagnosis {
 
-namespace {
-
-std::size_t index_of(const FrictionModel& model, const std::string& key) {
-  const std::vector<std::string> keys = model.effect_keys();
-  return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key) {
+  Trial rest = without_effect(full, key);
+  return try_model(context, level, rest.model, std::move(rest.p));
 }
+
+namespace {
 
 /// The model of `without` with the effect of a judged candidate, at the values found when it was judged.
 Trial try_instead(const DiagnosisContext& context, const Trial& without, const Candidate& candidate,
@@ -37,7 +37,7 @@ void put_in_order(const DiagnosisContext& context, Ladder& ladder, const std::ve
     std::size_t least = last;
     Trial below;
     for (std::size_t k = 1; k <= last && last > 1; ++k) {
-      Trial without = try_without(context, context.fine, top, index_of(top.model, key(ladder.steps[k])));
+      Trial without = try_without(context, context.fine, top, key(ladder.steps[k]));
       if (!without.usable || (below.usable && without.held_out_squares >= below.held_out_squares)) continue;
       below = std::move(without);
       least = k;
@@ -101,7 +101,7 @@ void prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Ca
   for (std::size_t s = 1; s < ladder.steps.size();) {
     const Candidate& candidate = candidates[*ladder.steps[s].added];
     const Trial& full = ladder.top();
-    Trial without = try_without(context, context.fine, full, index_of(full.model, candidate.info.key));
+    Trial without = try_without(context, context.fine, full, candidate.info.key);
     const CandidateResult needed = compare(context, context.fine, without, full, candidate, 1, least);
     if (!without.usable || needed.passes) {
       ++s;
@@ -120,8 +120,7 @@ bool reconsider(const DiagnosisContext& context, Ladder& ladder, const std::vect
     const Trial& full = ladder.top();
     std::vector<const CandidateResult*> rivals = rivals_of(step, full, candidates);
     if (rivals.empty()) continue;
-    const Trial without =
-        try_without(context, context.fine, full, index_of(full.model, candidates[*step.added].info.key));
+    const Trial without = try_without(context, context.fine, full, candidates[*step.added].info.key);
     if (!without.usable) continue;
     std::erase_if(rivals,
                   [&](const CandidateResult* r) { return !without.model.acts_with(candidates[r->candidate].effect); });

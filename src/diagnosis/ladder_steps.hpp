@@ -2,9 +2,14 @@
 
 #include <vector>
 
+#include <string_view>
+
 #include "ladder.hpp"
 
 namespace tribofit::diagnosis {
+
+/// The trial's model without one of its effects, fitted.
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key);
 
 /// Fills in what is asked of every step.
 void look_beside(const DiagnosisContext& context, LadderStep& step);

@@ -372,24 +372,28 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   return found;
 }
 
-Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
+Searched try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
   constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
-  const SearchStart search_start =
+  const SearchStart search =
       search_start_of(context, level, base, effect, residual_of(context, base), kAnyFall, kAnyFall);
   const FrictionModel model = with_effect(base.model, effect.effect);
-  if (search_start.starts.empty()) return try_base(context, level, model);
-  return try_model(context, level, model, nearest(level, model, base.whitening, search_start.starts));
+  if (search.starts.empty()) return {try_base(context, level, model), search.places};
+  return {try_model(context, level, model, nearest(level, model, base.whitening, search.starts)), search.places};
 }
 
-Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::size_t effect) {
+Trial without_effect(const Trial& full, std::string_view key) {
+  const std::vector<std::string> keys = full.model.effect_keys();
   std::vector<Effect> effects;
-  std::vector<double> start(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
-  for (std::size_t k = 0; k < full.model.effects().size(); ++k) {
-    if (k == effect) continue;
+  Trial out;
+  out.whitening = full.whitening;
+  out.p.assign(full.p.begin(), full.p.begin() + static_cast<std::ptrdiff_t>(full.model.base_count()));
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys[k] == key) continue;
     effects.push_back(full.model.effects()[k]);
-    for (std::size_t i = 0; i < full.model.count(k); ++i) start.push_back(full.p[full.model.offset(k) + i]);
+    for (std::size_t i = 0; i < full.model.count(k); ++i) out.p.push_back(full.p[full.model.offset(k) + i]);
   }
-  return try_model(context, level, FrictionModel(full.model.law(), effects, full.model.records()), std::move(start));
+  out.model = FrictionModel(full.model.law(), effects, full.model.records());
+  return out;
 }
 
 }  // namespace tribofit::diagnosis

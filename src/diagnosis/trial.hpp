@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "candidates.hpp"
@@ -103,10 +104,15 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
 
-/// The trial's model with one effect more, fitted from the best of its starts.
-Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect);
+struct Searched {
+  Trial trial;
+  double places = 1;  ///< independent places that were looked at
+};
 
-/// The trial's model without one of its effects.
-Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::size_t effect);
+/// The trial's model with one effect more, fitted from the best of its starts.
+Searched try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect);
+
+/// Model, parameters and whitening of a trial without one of its effects; nothing is fitted anew.
+Trial without_effect(const Trial& full, std::string_view key);
 
 }  // namespace tribofit::diagnosis

@@ -81,8 +81,8 @@ struct Made {
     step.added = added;
     for (const std::size_t k : judged) {
       const Trial& beside = ladder.top();
-      CandidateResult result =
-          compare(context, context.fine, beside, try_with(context, context.fine, beside, all[k]), all[k], 1, Limits());
+      CandidateResult result = compare(context, context.fine, beside,
+                                       try_with(context, context.fine, beside, all[k]).trial, all[k], 1, Limits());
       result.candidate = k;
       step.judged.push_back(std::move(result));
       if (k == added) step.trial = step.judged.back().trial;
