@@ -124,7 +124,7 @@ struct CommonGrowth {
   double time = 0;   // in which the velocity grows e-fold [samples]
   PooledFit fit;
   double variance = 0;                                       // of a sample, enlarged where noise is coloured
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (log A, log lambda, B)
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();  // of (log A, log lambda, B, gain)
 };
 
 // Rises that are whole, evenly picked.
@@ -137,42 +137,78 @@ std::vector<Window> pool_of(const std::vector<Window>& windows) {
   return pool.empty() ? windows : pool;
 }
 
+/// A fit with more in it takes the place of one with less where it explains more than noise would, coloured as it may
+/// be, and leaves no more than a part of its squares.
+void prefer(PooledFit& fit, Noise& colour, PooledFit&& fuller, const std::vector<Window>& pool, double leaves) {
+  const double per_sample = fuller.rss / static_cast<double>(fuller.samples);
+  if (!(fit.rss - fuller.rss > kJumpExplains * colour.inflation * per_sample && fuller.rss < leaves * fit.rss)) return;
+  fit = std::move(fuller);
+  colour = noise_of(pool, fit.growth);
+}
+
 CommonGrowth fit_common_growth(const std::vector<Window>& windows, double level, double time) {
   CommonGrowth common;
   common.level = level;
   common.time = time;
-  const Growth start{level / 4.4, 1 / common.time, 0};  // v reaches the end of the fit at x = 2
+  const Growth start{level / 4.4, 1 / common.time};  // v reaches the end of the fit at x = 2
   std::vector<Window> pool = pool_of(windows);
-  std::vector<Window> with_jump_pool = pool;
   PooledFit& fit = common.fit;
-  fit = fit_growth(pool, start, false);
-  const Growth jump_start{fit.growth.a, fit.growth.lambda, kFirstJump * level};
-  const PooledFit jump = fit_growth(with_jump_pool, jump_start, true);
+  fit = fit_growth(pool, start, {});
   Noise colour = noise_of(pool, fit.growth);
-  // A jump must earn its place against the noise, coloured as it may be.
-  if (jump.rss < fit.rss &&
-      fit.rss - jump.rss > kJumpExplains * colour.inflation * jump.rss / static_cast<double>(jump.samples) &&
-      jump.rss < kJumpLeaves * fit.rss) {
-    fit = jump;
-    colour = noise_of(with_jump_pool, fit.growth);
+  std::vector<Window> jump_pool = pool_of(windows);
+  PooledFit jump = fit_growth(jump_pool, {fit.growth.a, fit.growth.lambda, kFirstJump * level}, {.jump = true});
+  prefer(fit, colour, std::move(jump), jump_pool, kJumpLeaves);
+  if (std::ranges::any_of(windows, [](const Window& w) { return w.excess != 0; })) {
+    std::vector<Window> gain_pool = pool_of(windows);
+    PooledFit gain = fit_growth(gain_pool, fit.growth, {.jump = fit.growth.b > 0, .gain = true});
+    prefer(fit, colour, std::move(gain), gain_pool, 1);
   }
   // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
   // factor of three on the rates, a jump of the size of the window.
   common.variance = std::max(colour.effective(), kRoundingOfLevel * level * level);
-  const Eigen::Vector3d plausible(1.0, 1.0, 1 / (level * level));
-  const Eigen::Matrix3d information = fit.information / common.variance + Eigen::Matrix3d(plausible.asDiagonal());
+  const Eigen::Vector4d plausible(1.0, 1.0, 1 / (level * level), 1.0);
+  const Eigen::Matrix4d information = fit.information / common.variance + Eigen::Matrix4d(plausible.asDiagonal());
   common.covariance = information.inverse();
-  if (fit.growth.b == 0) common.covariance.row(2).setZero(), common.covariance.col(2).setZero();
+  const auto is_known = [&common](int k) { common.covariance.row(k).setZero(), common.covariance.col(k).setZero(); };
+  if (fit.growth.b == 0) is_known(2);
+  if (fit.growth.gain == 0) is_known(3);
   return common;
 }
 
 // Each rise with its own break-away.
 void locate_each(std::vector<Window>& windows, const CommonGrowth& common) {
-  const Growth& growth = common.fit.growth;
   for (Window& w : windows) {
-    const double reaches = std::log1p(common.level / (w.pull * growth.a + growth.b)) / growth.lambda;
-    w.t0 = fit_time(w, growth, w.crossing - reaches);
+    const Growth growth = growth_in(w, common.fit.growth);
+    const double reaches = std::log1p(common.level / (growth.a + growth.b)) / growth.lambda;
+    w.t0 = fit_time(w, common.fit.growth, w.crossing - reaches);
   }
+}
+
+double time_of(const Motion& m, const Window& w, double t0) {
+  const double index = std::max(0.0, static_cast<double>(w.begin) + t0);
+  const std::size_t whole = std::min(static_cast<std::size_t>(index), m.size() - 1);
+  return m.time[whole] + (index - static_cast<double>(whole)) * m.step;
+}
+
+/// A block that friction held with more force leaves faster. Whether the break-aways differ in it.
+bool set_excess(const Motion& m, const std::vector<Rise>& rises, std::vector<Window>& windows) {
+  if (m.friction.empty()) return false;
+  std::vector<double> levels, known;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const Onset& onset = rises[k].onset;
+    const StickFriction at_break =
+        friction_at(m, {onset.stick_begin, onset.slip}, time_of(m, windows[k], windows[k].t0), onset.direction);
+    levels.push_back(std::isfinite(at_break.std_error) ? at_break.value : std::nan(""));
+    if (std::isfinite(levels.back())) known.push_back(levels.back());
+  }
+  if (known.size() < kFewestLevels) return false;
+  const double usual = median(std::move(known));
+  if (!(usual > 0)) return false;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const double excess = levels[k] / usual - 1;
+    windows[k].excess = std::isfinite(excess) ? std::clamp(excess, -kMostExcess, kMostExcess) : 0;
+  }
+  return true;
 }
 
 // A contact that creeps has no sharp onset: what leads up to the slip belongs to the stick.
@@ -197,7 +233,7 @@ Located settle_break_away(const Window& w, const CommonGrowth& common, bool cree
   if (creeps) return {w.crossing, std::min(error, common.time), false};
   const Sums s = sums_of(w, common.fit.growth, w.t0);
   if (w.t0 < w.crossing - kShowsGrowth && s.h > 0) {
-    const Eigen::Vector3d lever = s.mixed / s.h;
+    const Eigen::Vector4d lever = s.mixed / s.h;
     const double own = common.variance / s.h + std::max(0.0, lever.dot(common.covariance * lever));
     const double seen = w.crossing - w.t0;
     const double best = std::max(kBestBreakAway, kBetweenSamples / std::max(1.0, seen * seen));
@@ -222,15 +258,17 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
   const double growth = growth_time(motion, rises, level);
   std::vector<Window> windows = windows_of(motion, rises, level, growth);
-  const CommonGrowth common = fit_common_growth(windows, level, growth);
+  CommonGrowth common = fit_common_growth(windows, level, growth);
   locate_each(windows, common);
+  if (set_excess(motion, rises, windows)) {
+    common = fit_common_growth(windows, level, growth);
+    locate_each(windows, common);
+  }
   const bool creeps = contact_creeps(rises, windows);
   for (std::size_t k = 0; k < rises.size(); ++k) {
     const Located at = settle_break_away(windows[k], common, creeps);
-    const double index = std::max(0.0, static_cast<double>(windows[k].begin) + at.t0);
-    const std::size_t whole = std::min(static_cast<std::size_t>(index), motion.size() - 1);
-    const double time = motion.time[whole] + (index - static_cast<double>(whole)) * motion.step;
-    result.push_back({std::max(time, motion.time[rises[k].onset.stick_begin]), motion.step * at.error, at.is_sharp});
+    result.push_back({std::max(time_of(motion, windows[k], at.t0), motion.time[rises[k].onset.stick_begin]),
+                      motion.step * at.error, at.is_sharp});
   }
   return result;
 }

@@ -26,8 +26,10 @@ struct BreakAway {
 /// Times at which the contact breaks away.
 ///
 /// From break-away on, m dv/dt = k (omega r) t + |dmu/dv| N v, so that v = A (exp(x) - 1 - x) with x = lambda (t - t0)
-/// (a law that jumps at break-away adds B (exp(x) - 1)). The early growth is the same in every slip of a record:
-/// A, B and lambda are fitted to all of them together, t0 to each. The fit ends where v is a few per cent of the peak,
+/// (a law that jumps at break-away adds B (exp(x) - 1)). The early growth is the same in every slip of a record but for
+/// what is known of each: A goes with the speed of the disc, and lambda = |dmu/dv| N/m with friction at break-away
+/// where that scatters (the slope of a law goes with its height), A then with lambda^-2. A, B, lambda and its gain on
+/// that friction are fitted to all slips together, t0 to each. The fit ends where v is a few per cent of the peak,
 /// before the curvature of the law is felt. Where the contact creeps into the slip over a good part of the slip's own
 /// duration, there is no such onset: the time is then where v leaves the level of the stick by a few per cent of the
 /// peak. Cost: linear in the samples near break-away.

@@ -12,13 +12,29 @@
 namespace tribofit::segmentation {
 namespace {
 
+/// lambda of a window over that of the others.
+double faster_in(const Window& window, const Growth& growth) {
+  return std::clamp(1 + growth.gain * window.excess, 1 / kMostFaster, kMostFaster);
+}
+
+}  // namespace
+
+Growth growth_in(const Window& window, const Growth& growth) {
+  const double faster = faster_in(window, growth);
+  return {window.pull * growth.a / (faster * faster), growth.lambda * faster, growth.b, growth.gain};
+}
+
+namespace {
+
 // The exponential runs by recurrence.
 template <bool with_shared>
-Sums sums_at(const Window& w, const Growth& growth, double t0) {
+Sums sums_at(const Window& w, const Growth& common, double t0) {
+  const Growth growth = growth_in(w, common);
+  const double by_gain = w.excess / faster_in(w, common);
   Sums s;
   const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(t0)));
   s.rss = w.squares[std::min(first, w.v.size())];
-  const double factor = std::exp(growth.lambda), a = w.pull * growth.a;
+  const double factor = std::exp(growth.lambda), a = growth.a;
   double e = std::exp(growth.lambda * (static_cast<double>(first) - t0));
   for (std::size_t i = first; i < w.v.size(); ++i, e *= factor) {
     const double x = growth.lambda * (static_cast<double>(i) - t0);
@@ -30,7 +46,7 @@ Sums sums_at(const Window& w, const Growth& growth, double t0) {
     s.h += d * d;
     s.g += d * r;
     if constexpr (with_shared) {
-      const Eigen::Vector3d j(a * shape, x * slope, e - 1);
+      const Eigen::Vector4d j(a * shape, x * slope, e - 1, by_gain * (x * slope - 2 * a * shape));
       s.mixed += d * j;
       s.shared += j * j.transpose();
       s.gradient += j * r;
@@ -65,13 +81,13 @@ namespace {
 
 /// What the windows say of the growth that they share, each with its own break-away taken out.
 struct SharedGrowth {
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
   std::vector<Sums> windows;
 };
 
 SharedGrowth shared_growth(const std::vector<Window>& windows, const Growth& growth, const std::vector<double>& times,
-                           bool with_jump) {
+                           FreeGrowth free) {
   SharedGrowth out;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     out.windows.push_back(sums_at<true>(windows[i], growth, times[i]));
@@ -82,10 +98,12 @@ SharedGrowth shared_growth(const std::vector<Window>& windows, const Growth& gro
     out.hessian -= s.mixed * s.mixed.transpose() / s.h;
     out.gradient -= s.mixed * (s.g / s.h);
   }
-  if (!with_jump) {
-    out.hessian.row(2).setZero(), out.hessian.col(2).setZero();
-    out.hessian(2, 2) = 1, out.gradient(2) = 0;
-  }
+  const auto hold = [&out](int k) {
+    out.hessian.row(k).setZero(), out.hessian.col(k).setZero();
+    out.hessian(k, k) = 1, out.gradient(k) = 0;
+  };
+  if (!free.jump) hold(2);
+  if (!free.gain) hold(3);
   return out;
 }
 
@@ -104,13 +122,14 @@ double squares_left(const std::vector<Window>& windows, const Growth& growth, co
 
 /// The next trial by Levenberg and Marquardt.
 Trial damped_step(const std::vector<Window>& windows, const SharedGrowth& shared, Trial trial, double damping,
-                  bool with_jump) {
-  Eigen::Matrix3d damped = shared.hessian;
+                  FreeGrowth free) {
+  Eigen::Matrix4d damped = shared.hessian;
   damped.diagonal() *= 1 + damping;
-  const Eigen::Vector3d step = solve_symmetric(damped, shared.gradient);
+  const Eigen::Vector4d step = solve_symmetric(damped, shared.gradient);
   trial.growth.a *= std::exp(std::clamp(step(0), -1.0, 1.0));
   trial.growth.lambda *= std::exp(std::clamp(step(1), -0.5, 0.5));
-  trial.growth.b = with_jump ? std::max(0.0, trial.growth.b + step(2)) : 0;
+  trial.growth.b = free.jump ? std::max(0.0, trial.growth.b + step(2)) : 0;
+  if (free.gain) trial.growth.gain += step(3);
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const Sums& s = shared.windows[i];
     if (s.h > 0) trial.times[i] += (s.g - s.mixed.dot(step)) / s.h;
@@ -120,7 +139,7 @@ Trial damped_step(const std::vector<Window>& windows, const SharedGrowth& shared
   return trial;
 }
 
-PooledFit fit_all(std::vector<Window>& windows, Growth growth, bool with_jump) {
+PooledFit fit_all(std::vector<Window>& windows, Growth growth, FreeGrowth free) {
   PooledFit fit;
   Trial best{growth, {}, 0};
   for (const Window& w : windows) {
@@ -131,11 +150,11 @@ PooledFit fit_all(std::vector<Window>& windows, Growth growth, bool with_jump) {
   best.rss = squares_left(windows, growth, best.times);
   double damping = 1e-3;
   for (int iteration = 0; iteration < 30; ++iteration) {
-    const SharedGrowth shared = shared_growth(windows, best.growth, best.times, with_jump);
+    const SharedGrowth shared = shared_growth(windows, best.growth, best.times, free);
     fit.information = shared.hessian;
     double gain = 0;
     for (int attempt = 0; attempt < 8 && gain == 0; ++attempt) {
-      Trial next = damped_step(windows, shared, best, damping, with_jump);
+      Trial next = damped_step(windows, shared, best, damping, free);
       const bool is_better = next.rss < best.rss;
       damping = is_better ? std::max(1e-6, damping * 0.2) : std::min(1e6, 8 * (damping + 1e-4));
       if (!is_better) continue;
@@ -167,20 +186,21 @@ bool take_out_foreign(std::vector<Window>& windows, const Growth& growth) {
 
 }  // namespace
 
-PooledFit fit_growth(std::vector<Window>& windows, Growth growth, bool with_jump) {
-  const PooledFit fit = fit_all(windows, growth, with_jump);
+PooledFit fit_growth(std::vector<Window>& windows, Growth growth, FreeGrowth free) {
+  const PooledFit fit = fit_all(windows, growth, free);
   // Those moved the growth and the times of the others: from the start again.
-  return take_out_foreign(windows, fit.growth) ? fit_all(windows, growth, with_jump) : fit;
+  return take_out_foreign(windows, fit.growth) ? fit_all(windows, growth, free) : fit;
 }
 
 Noise noise_of(const std::vector<Window>& windows, const Growth& growth) {
   Remainder all;
   for (const Window& w : windows) {
     Remainder left;
+    const Growth own = growth_in(w, growth);
     for (std::size_t i = 0; i < w.v.size(); ++i) {
       const double t = static_cast<double>(i) - w.t0;
-      const double x = t > 0 ? growth.lambda * t : 0;
-      left.add(w.v[i] - w.pull * growth.a * (std::expm1(x) - x) - growth.b * std::expm1(x));
+      const double x = t > 0 ? own.lambda * t : 0;
+      left.add(w.v[i] - own.a * (std::expm1(x) - x) - own.b * std::expm1(x));
     }
     all += left;
   }

@@ -74,6 +74,10 @@ inline constexpr double kSlowestPull = 0.05;
 inline constexpr double kJumpExplains = 40, kJumpLeaves = 0.9, kFirstJump = 0.1;
 /// Rounding of the level, squared.
 inline constexpr double kRoundingOfLevel = 1e-12;
+/// Break-aways with a known friction from which its spread is one; most that friction at one is taken to be above the
+/// others, as a part of it; and most by which log lambda differs: beyond them something else happened.
+inline constexpr std::size_t kFewestLevels = 8;
+inline constexpr double kMostExcess = 0.5, kMostFaster = 2;
 /// Growth over the slip, from which a contact creeps: it has no sharp onset.
 inline constexpr double kGradual = 0.3;
 /// Samples before the level from which a break-away shows; of the level, where the velocity leaves the stick where none

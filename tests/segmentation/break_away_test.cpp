@@ -68,9 +68,10 @@ TEST_P(BreakAway, TimeAndFrictionAgainstTruth) {
 
 INSTANTIATE_TEST_SUITE_P(Twins, BreakAway,
                          testing::Values(Case{0, 0, 52.14, false}, Case{0, 0.004, 52.14, false},
-                                         Case{0.9, 0, 52.14, false}, Case{0.9, 0.004, 52.14, false},
-                                         Case{0, 0.004, 32.37, false}, Case{0.9, 0.004, 32.37, false},
-                                         Case{0, 0.004, 52.14, true}, Case{0.9, 0.004, 52.14, true}));
+                                         Case{0, 0.02, 52.14, false}, Case{0.9, 0, 52.14, false},
+                                         Case{0.9, 0.004, 52.14, false}, Case{0, 0.004, 32.37, false},
+                                         Case{0.9, 0.004, 32.37, false}, Case{0, 0.004, 52.14, true},
+                                         Case{0.9, 0.004, 52.14, true}));
 
 TEST(BreakAwayTime, AStepOfTheDiscAtOneSpoilsNoOther) {
   for (unsigned seed : {1U, 2U, 3U}) {
