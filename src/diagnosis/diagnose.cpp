@@ -127,6 +127,20 @@ Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, c
   return std::move(ladders[reported_ladder(context, ladders)]);
 }
 
+/// A fit of a model as `identify` makes it, from where the ladder found it. A search that ends on a bound may have gone
+/// to the wrong valley: it is made from the starts of `identify` as well, and the lower of the two holds.
+Fit fit_as_identify(const FrictionModel& model, std::span<const Record> records, const Instruments& instruments,
+                    const FitOptions& cold, std::vector<double> found) {
+  const Observations own = observations_for(model, records);
+  if (model.effects().empty()) return fit_model(model, records, own, instruments, cold);
+  FitOptions warm = cold;
+  warm.start = std::move(found);
+  Fit fit = fit_model(model, records, own, instruments, warm);
+  if (std::ranges::none_of(fit.parameters, &FitParameter::at_bound)) return fit;
+  Fit again = fit_model(model, records, own, instruments, cold);
+  return !again.parameters.empty() && again.error.rmse <= fit.error.rmse ? again : fit;
+}
+
 /// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
 /// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that held-out errors at full
 /// resolution do not bear out, ends the ladder below it.
@@ -135,14 +149,12 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   std::vector<Fit> fits(ladder.steps.size());
   run_tasks(ladder.steps.size(), context.threads, [&](std::size_t k) {
     const Trial& trial = ladder.steps[k].trial;
-    FitOptions warm = options;
-    const bool bare = trial.model.effects().empty();  // identify needs no start for a bare law
-    if (!bare) warm.start = trial.p;
     if (k == 0 || k + 1 == ladder.steps.size()) {
-      const Observations own = observations_for(trial.model, context.records);
-      fits[k] = fit_model(trial.model, context.records, own, instruments, warm);
+      fits[k] = fit_as_identify(trial.model, context.records, instruments, options, trial.p);
       return;
     }
+    FitOptions warm = options;
+    warm.start = trial.p;
     fits[k] = fit_model(trial.model, context.records, context.fine.observations, instruments, warm);
   });
   const auto failed = std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& rung) {
@@ -151,9 +163,7 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   });
   if (failed != fits.end() && failed - fits.begin() > 1) {  // the new last rung
     Fit& last = *(failed - 1);
-    FitOptions warm = options;
-    warm.start = last.values();
-    last = fit_model(last.model, context.records, observations_for(last.model, context.records), instruments, warm);
+    last = fit_as_identify(last.model, context.records, instruments, options, last.values());
   }
   ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
   fits.erase(failed, fits.end());
