@@ -12,17 +12,18 @@ namespace tribofit::diagnosis {
 namespace {
 
 /// Where the evidence of an effect is.
-enum class Evidence { within_cycle, on_plateau, at_break_away, in_time, elsewhere };
+enum class Evidence { within_cycle, in_stick, on_plateau, at_break_away, in_time, elsewhere };
 
 Evidence evidence_of(SketchView view) {
   switch (view) {
     case SketchView::loop:
     case SketchView::curve:
     case SketchView::directions:
-    case SketchView::creep:
     case SketchView::since_break_away:
     case SketchView::acceleration:
       return Evidence::within_cycle;
+    case SketchView::creep:
+      return Evidence::in_stick;
     case SketchView::plateau:
       return Evidence::on_plateau;
     case SketchView::stick_time:
@@ -46,10 +47,10 @@ bool imitates(std::string_view check, Evidence evidence) {
   if (evidence == Evidence::elsewhere) return false;
   if (check == kDropOuts) return evidence == Evidence::in_time;
   if (check == kClipping || check == kBandwidth) return evidence != Evidence::in_time;
-  // What explains a plateau that is not at omega r is not imitated by it.
+  // What explains a plateau that is not at omega r, as creep does, is not imitated by it.
   if (check == kPlateauSpeed) return evidence == Evidence::within_cycle;
   const bool distorts = check == kResolution || check == kChannelDelay;
-  return distorts && (evidence == Evidence::within_cycle || evidence == Evidence::on_plateau);
+  return distorts && evidence != Evidence::at_break_away && evidence != Evidence::in_time;
 }
 
 /// Checks that report a problem, each once; not one that was corrected.

@@ -196,15 +196,14 @@ inline constexpr double kBalanced = 0.06, kAmbiguous = 0.5;
 /// which hold less than half as many samples as v_r falls in, from kKinkFromShort on.
 inline constexpr double kKinkFrom = 0.2, kKinkFromSlow = 0.45, kKinkFromShort = 0.06, kKinkDown = 0.02, kKinkSlip = 0.5;
 inline constexpr double kKinkUnexplained = 2e-3;
-/// The rest that is looked at, over the fall: twice as much where the stick is long. A filter shows in it; that there
-/// is none shows in less.
+/// The rest that is looked at, over the fall: twice as much where the stick is long. Less shows that there is none.
 inline constexpr double kKinkRest = 1.5, kKinkRestShort = 0.5;
 /// Slope of v_r when it comes to rest, over its mean one in the look: a spring brakes it most at the end, a mean over
 /// more than the look makes a parabola of it.
 inline constexpr double kKinkSteep = 0.6;
-/// Squares that a decay from where the look begins leaves over those a filter leaves: fewer, and re-stick was before.
+/// Squares that a decay from where the look begins leaves over those of a filter: fewer, and re-stick was before.
 inline constexpr double kKinkInside = 30;
-/// Samples over which it falls: fewer show no kink, of more every other will do. Slips looked at.
+/// Samples in which it falls: fewer show no kink, of more every other will do. Slips.
 inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
 /// Time constants tried [samples], each so many times the one before.
 inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35;
@@ -216,8 +215,9 @@ inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;
 /// Squares that a kink leaves over those a filter leaves, and what the filter may leave over the reading: a contact
 /// that rings there is no filter.
 inline constexpr double kKinkExplained = 2.5, kKinkLeft = 0.08;
-/// How far v_r may go beyond rest, over the reading and over the noise: a filter does not, a contact that yields does.
-inline constexpr double kKinkBeyond = 0.1, kKinkNoise = 4;
+/// How far v_r may go beyond rest, over the reading and over the noise, and rise in the middle of a stick, over the
+/// reading: a filter does not (1e-4), a contact that yields or spins does (0.1 to 0.8).
+inline constexpr double kKinkBeyond = 0.1, kKinkNoise = 4, kKinkCreeps = 0.05;
 
 /// Samples by which a restored velocity may be early or late for what its filter does to a sample.
 inline constexpr double kHeldInput = 0.75;

@@ -117,6 +117,23 @@ std::vector<Restick> resticks(std::span<const double> v, double rest, double fas
   return all;
 }
 
+/// How much v_r rises from before the middle of a stick to after it, the median over sticks [m/s]: behind a filter a
+/// block at rest stays at rest, a contact that spins creeps as friction grows.
+double rise_in_stick(std::span<const double> v, double rest, double fastest) {
+  std::vector<double> rises;
+  for (std::size_t i = 0; i < v.size();) {
+    while (i < v.size() && std::abs(v[i] - rest) >= kKinkSlip * fastest) ++i;
+    const std::size_t begin = i;
+    while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
+    const std::size_t eighth = (i - begin) / 8;
+    if (begin == 0 || i == v.size() || eighth == 0) continue;
+    double rise = 0;
+    for (std::size_t k = begin + 2 * eighth; k < begin + 3 * eighth; ++k) rise += v[k + 3 * eighth] - v[k];
+    rises.push_back((v[i] > rest ? rise : -rise) / static_cast<double>(eighth));
+  }
+  return rises.empty() ? 0 : median(std::move(rises));
+}
+
 /// Cuts of a search for a time constant between its neighbours in the list of those tried: to a thousandth.
 constexpr int kCuts = 16;
 
@@ -232,7 +249,9 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
   const double decay = left_by_decay(some);
   const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
-  found.is_filter = tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
+  found.creeps = rise_in_stick(velocity, rest, fastest) > kKinkCreeps * std::max(found.at_restick, kKinkSeen) * fastest;
+  found.is_filter = !found.creeps && tau > 0 && found.at_restick > kKinkSeen &&
+                    sharp.squares > kKinkExplained * best.squares &&
                     best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) &&
                     beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
   found.is_first_order = found.is_filter && !filter.is_mean && is_inside;

@@ -15,6 +15,7 @@ struct LowPass {
   std::size_t slips = 0;         ///< that were looked at; 0: too few samples to see a kink
   bool is_filter = false;        ///< it explains what no kink does, and more than alpha's error
   bool is_first_order = false;   ///< a first order explains it best, not a mean
+  bool creeps = false;           ///< v_r grows in stick: then it trails off as the contact does
   std::vector<double> resticks;  ///< where v_r came to rest [samples], once in every slip
   double corner() const;         ///< [Hz]
 };

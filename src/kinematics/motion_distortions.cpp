@@ -115,8 +115,9 @@ void MotionStages::undo_clock_drift() {
 }
 
 void MotionStages::find_friction_filter() {
-  // Behind a filter of the velocity that is not undone re-stick is somewhere else.
-  const bool is_known = !low_pass_.is_filter || motion_.velocity_low_pass.any();
+  // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps it is
+  // gradual.
+  const bool is_known = !low_pass_.creeps && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step);
   motion_.friction_low_pass = found.tau;
