@@ -145,6 +145,18 @@ TEST(StickEvidence, NamesASpinThatHardlyShowsInSlip) {
   }
 }
 
+/// It trails off at re-stick, as behind an amplifier, and its plateau is off omega r.
+TEST(StickEvidence, AWideSpinIsNoLowPass) {
+  for (const double radius : {2e-3, 4e-3}) {
+    const DiagnosedTraces result = diagnose_hidden("contact-spin", {radius}, 0.5);
+    const EffectFinding spin = finding_of(result, "contact-spin");
+    ASSERT_EQ(spin.status, EffectStatus::found) << radius << ": " << spin.reason;
+    EXPECT_NEAR(spin.parameters[0].value, radius, 0.02 * radius);
+    for (const char* filter : {"velocity-bandwidth", "force-bandwidth", "radius-offset"})
+      EXPECT_NE(finding_of(result, filter).status, EffectStatus::found) << filter;
+  }
+}
+
 TEST(StickEvidence, AWrongRadiusIsNoCreep) {
   const DiagnosedTraces result = diagnose_hidden("radius-offset", {0.97}, 0.9);
   EXPECT_EQ(finding_of(result, "radius-offset").status, EffectStatus::found);
