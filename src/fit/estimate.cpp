@@ -96,13 +96,6 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   return tries[best].p;
 }
 
-/// Two ends of quick searches, which stop at steps of 1e-7: no further apart than ten of those.
-bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr double kSame = 1e-6;
-  return std::equal(a.begin(), a.end(), b.begin(),
-                    [](double x, double y) { return std::abs(x - y) <= kSame * std::max(std::abs(x), std::abs(y)); });
-}
-
 /// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
 /// that scatter taken out.
 Solution joint_estimate(FitContext& context, Fit& fit) {
@@ -162,6 +155,12 @@ Solution estimate_by_extremes(FitContext& context, Fit& fit) {
 }
 
 }  // namespace
+
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double kSame = 1e-6;
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](double x, double y) { return std::abs(x - y) <= kSame * std::max(std::abs(x), std::abs(y)); });
+}
 
 SolverOptions quick_search() {
   SolverOptions quick;

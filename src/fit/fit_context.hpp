@@ -41,6 +41,9 @@ struct FitContext {
 /// A search that is good enough to compare.
 SolverOptions quick_search();
 
+/// Two ends of quick searches, which stop at steps of 1e-7: no further apart than ten of those.
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b);
+
 /// A value within a millionth of its range of a bound sits on it.
 bool on_bound(double value, double lower, double upper);
 

@@ -85,6 +85,15 @@ inline constexpr double kClearOfZero = 3, kMostNoiseOfRig = 0.3, kShortestPeriod
 /// about a gain or a radius.
 inline constexpr double kChanceOfRemark = 1e-3, kPartOfDamping = 0.1, kPartOfStiffness = 0.005;
 
+// ---- records that share parameters
+
+/// Chance that a sharing which holds is refused. Larger: good campaigns are doubted; smaller: a run with another law
+/// passes for one of them, though it shows in its held-out error.
+inline constexpr double kChanceOfRefusal = 0.01;
+/// Part of what a record knows best, from which it says something of a direction of the common values: along others it
+/// sees its own noise of speed.
+inline constexpr double kLeastKnownDirection = 1e-3;
+
 // ---- how good a fit is
 
 /// Held-out error over the noise floor up to which what remains is called noise: noise floors are known to some per

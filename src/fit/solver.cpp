@@ -1,14 +1,13 @@
 #include "tribofit/fit/solver.hpp"
 
 #include <ceres/ceres.h>
-#include <glog/logging.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
+#include "ceres_parts.hpp"
 #include "statistics/linear_algebra.hpp"
 
 namespace tribofit {
@@ -64,28 +63,6 @@ class Cost : public ceres::CostFunction {
   mutable std::vector<double> all_;
 };
 
-/// Ceres reports trouble through glog, on stderr; a fit reports it in its result. While any fit is being solved glog
-/// keeps quiet; then it is as the program had it.
-class QuietLogging {
- public:
-  QuietLogging() {
-    const std::lock_guard lock(guard_);
-    if (solving_++ > 0) return;
-    level_ = FLAGS_minloglevel;
-    FLAGS_minloglevel = google::GLOG_FATAL;
-  }
-  ~QuietLogging() {
-    const std::lock_guard lock(guard_);
-    if (--solving_ == 0) FLAGS_minloglevel = level_;
-  }
-  QuietLogging(const QuietLogging&) = delete;
-  QuietLogging& operator=(const QuietLogging&) = delete;
-
- private:
-  static inline std::mutex guard_;
-  static inline int solving_ = 0, level_ = 0;
-};
-
 /// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must
 /// be shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
 void polish(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
@@ -123,17 +100,6 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
   }
 }
 
-std::string explain(const ceres::Solver::Summary& summary) {
-  switch (summary.termination_type) {
-    case ceres::CONVERGENCE:
-      return "converged";
-    case ceres::NO_CONVERGENCE:
-      return "did not converge within " + std::to_string(summary.iterations.size()) + " iterations";
-    default:
-      return "the solver failed: " + summary.message;
-  }
-}
-
 /// One descent from `start`. ran_away: a parameter ended where no residual feels it (see Cost).
 SolverResult descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
                      std::span<const double> lower, std::span<const double> upper, const SolverOptions& options,
@@ -150,19 +116,8 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
     if (std::isfinite(lower[free[j]])) ceres_problem.SetParameterLowerBound(x.data(), index, lower[free[j]]);
     if (std::isfinite(upper[free[j]])) ceres_problem.SetParameterUpperBound(x.data(), index, upper[free[j]]);
   }
-  ceres::Solver::Options solver;
+  ceres::Solver::Options solver = ceres_options(options);
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  solver.initial_trust_region_radius = options.trust_radius;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.relative_cost;
-  solver.parameter_tolerance = options.relative_step;
-  solver.gradient_tolerance = 0;  // residuals have no common scale; steps and cost decide
-  // Where there are bounds Ceres would try every step by a line search first, which takes the Jacobian once more each
-  // time: half of all evaluations. A step that a bound cuts off and that does not lower the cost is taken back anyway.
-  solver.max_num_line_search_step_size_iterations = 0;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres_problem, &summary);
 

@@ -41,6 +41,19 @@ struct SolverResult {
 SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
                       std::span<const double> upper = {}, const SolverOptions& options = {});
 
+/// Residuals that know a part of all values only, as those of one record do of several that share parameters.
+struct ResidualPart {
+  const Residuals* residuals = nullptr;
+  double root_weight = 1;           ///< by which each residual is multiplied
+  std::vector<std::size_t> values;  ///< the value that each of its parameters takes; no two of them the same
+};
+
+/// Least squares of all parts together, within bounds. Values that one part alone depends on are eliminated part by part
+/// (Schur complement), and of its residuals a part keeps as many rows as it has parameters, and one: cost and memory
+/// are linear in parts.
+SolverResult minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
+                      std::span<const double> upper, const SolverOptions& options = {});
+
 /// Covariance of the parameters if the residuals were independent with one variance: s^2 (J'J)^-1 at p, row by row,
 /// s^2 the residual sum of squares over the degrees of freedom. Samples of a trace are not independent: fits of traces
 /// take their errors from cycles instead (fit.hpp). Directions the data do not determine get what rounding leaves, not
