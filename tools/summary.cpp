@@ -67,7 +67,7 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   // What is asked beyond the summary may not be possible; the summary is.
   const Sharing sharing = sharing_from(s);
   try {
-    if (!sharing.common.empty()) pooled.shared = fit_shared(runs, sharing);
+    if (!sharing.common.empty()) pooled.shared = fit_shared(runs, sharing, &results);
   } catch (const InputError& error) {
     out.refused.push_back({groups.empty() ? ExitStatus::failed : ExitStatus::wrong_usage, error.what()});
   }

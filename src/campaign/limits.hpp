@@ -30,4 +30,15 @@ inline constexpr double kManyErrors = 5;
 /// Least eigenvalue of a correlation matrix that can be inverted: standard errors are known to six digits at best.
 inline constexpr double kLeastEigenvalue = 1e-6;
 
+/// Values that a run keeps of a slip, at the most: those of its own fit (fit_laws.cpp), so that nothing is lost; and at
+/// the least, where a run has so many slips that all of them would be more than the next number.
+inline constexpr std::size_t kMostCondensedOfSlip = 80, kFewestCondensedOfSlip = 16;
+/// Values that a run keeps: 500 slips in full, 2 MB in memory and 1.3 MB on disc; of 200 slips, 0.8 MB and 0.5 MB. Up
+/// to them parameters are those of all samples within a hundredth of their errors; beyond them, where a slip keeps 40
+/// or fewer, they move by up to a fifth.
+inline constexpr std::size_t kMostCondensedValues = 40000;
+/// Values of all runs that are fitted together, 1 GB: a thousand runs of 200 slips. Beyond them the single fits are
+/// combined, which then know their parameters.
+inline constexpr std::size_t kMostValuesTogether = 20'000'000;
+
 }  // namespace tribofit

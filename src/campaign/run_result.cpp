@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "condensed_json.hpp"
 #include "condition_cells.hpp"
 #include "figures_json.hpp"
 #include "ingest/content_hash.hpp"
@@ -20,7 +21,7 @@
 namespace tribofit {
 namespace {
 
-constexpr std::string_view kFigures = "\n  \"figures\": {";
+constexpr std::string_view kFigures = "\n  \"figures\": {", kCondensed = "\n  \"condensed\": {";
 constexpr std::string_view kEnd = "\n}\n", kSeal = ",\n  \"checksum\": \"";
 
 /// A number, NaN for null and for what is not there.
@@ -153,22 +154,38 @@ std::string bytes_of(const std::string& path) {
   }
 }
 
-/// The line with the figures in the text of a result, with the line break before it; empty where it has none.
-std::string_view line_of_figures(std::string_view text) {
-  const std::size_t begin = text.find(kFigures);
+/// The line that begins so in the text of a result, with the line break before it; empty where it has none.
+std::string_view line_with(std::string_view begins, std::string_view text) {
+  const std::size_t begin = text.find(begins);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find('\n', begin + 1) - begin);
 }
 
-/// The object in a sealed file without its figures, which are many numbers that few ask for; or nothing.
+/// The object in a sealed file without the lines of many numbers that few ask for; or nothing.
 std::optional<Json> object_in(const std::string& path) {
   std::string bytes = bytes_of(path);
   if (!is_whole(bytes)) return std::nullopt;
-  const std::string_view figures = line_of_figures(bytes);
-  if (!figures.empty()) bytes.erase(static_cast<std::size_t>(figures.data() - bytes.data()), figures.size());
+  for (const std::string_view begins : {kFigures, kCondensed}) {
+    const std::string_view line = line_with(begins, bytes);
+    if (!line.empty()) bytes.erase(static_cast<std::size_t>(line.data() - bytes.data()), line.size());
+  }
   Json json = Json::parse(bytes, nullptr, false);
   if (!json.is_object()) return std::nullopt;
   return json;
+}
+
+/// What `read` makes of the object on that line of a sealed file; nothing where it has none.
+template <class Read>
+auto read_line(const std::string& path, std::string_view begins, Read&& read) -> std::optional<decltype(read(Json()))> {
+  const std::string bytes = bytes_of(path);
+  const std::string_view line = line_with(begins, bytes);
+  if (line.empty() || !is_whole(bytes)) return std::nullopt;
+  const std::size_t begin = line.find('{'), end = line.rfind('}') + 1;
+  try {
+    return read(Json::parse(line.substr(begin, end - begin)));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
 }
 
 Json campaign_object(const std::string& folder) {
@@ -250,15 +267,11 @@ std::optional<RunResult> ResultReader::read(std::size_t k) const {
 }
 
 std::optional<RunFigures> ResultReader::figures(std::size_t k) const {
-  const std::string bytes = bytes_of(result_path(folder_, runs_.at(k).name));
-  const std::string_view line = line_of_figures(bytes);
-  if (line.empty() || !is_whole(bytes)) return std::nullopt;
-  const std::size_t begin = line.find('{'), end = line.rfind('}') + 1;
-  try {
-    return figures_from(Json::parse(line.substr(begin, end - begin)));
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  }
+  return read_line(result_path(folder_, runs_.at(k).name), kFigures, figures_from);
+}
+
+std::optional<CondensedRun> ResultReader::condensed(std::size_t k) const {
+  return read_line(result_path(folder_, runs_.at(k).name), kCondensed, condensed_from);
 }
 
 MissingRun ResultReader::missing(std::size_t k) const {

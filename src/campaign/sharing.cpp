@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "condition_columns.hpp"
+#include "joint_sharing.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -258,7 +259,7 @@ std::vector<std::vector<std::string>> condition_texts(const Sharing& sharing, st
 
 /// The joint fit of one law; without common parameters where the law has none of them.
 SharedFit fit_law(const ResultFit& like, std::span<const RunResult> runs, const Sharing& sharing,
-                  const std::vector<std::vector<std::string>>& texts) {
+                  const std::vector<std::vector<std::string>>& texts, const ResultReader* results) {
   SharedFit fit;
   fit.law = like.law;
   for (const ResultParameter& p : like.parameters) {
@@ -285,6 +286,17 @@ SharedFit fit_law(const ResultFit& like, std::span<const RunResult> runs, const 
     places.push_back(std::move(place));
   }
   if (fit.common.empty()) return fit;
+  if (results != nullptr) {
+    SharedLaw law{like, {}, {}, {}};
+    for (const Member& member : members) law.runs.push_back(member.run);
+    for (const Place& place : places) {
+      law.parameters.push_back(static_cast<std::size_t>(place.parameter));
+      law.level.push_back(place.level);
+    }
+    const std::string why = fit_jointly(*results, runs, law, fit);
+    if (!why.empty()) fit.notes.push_back("the single fits are combined, not all samples fitted together: " + why);
+  }
+  if (fit.is_joint) return fit;
   for (const SharedFit::Parameter& common : fit.common) note_scatter(common, fit.notes);
   for (std::size_t i = 0; i < members.size(); ++i) fit.runs.push_back(of_run(places, members, i));
   return fit;
@@ -307,14 +319,15 @@ Sharing::Common vary_from(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing) {
+std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing,
+                                  const ResultReader* results) {
   const std::vector<const ResultFit*> laws = fitted_laws(runs);
   if (laws.empty()) throw InputError("no run was fitted, so there is nothing to share", "see why in the summary");
   require_known(sharing, laws);
   const std::vector<std::vector<std::string>> texts = condition_texts(sharing, runs);
   std::vector<SharedFit> out;
   for (const ResultFit* like : laws) {
-    SharedFit fit = fit_law(*like, runs, sharing, texts);
+    SharedFit fit = fit_law(*like, runs, sharing, texts, results);
     if (!fit.common.empty()) out.push_back(std::move(fit));
   }
   return out;

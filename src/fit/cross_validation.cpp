@@ -39,20 +39,6 @@ Eigen::VectorXd step_without(const FitContext& context, const Solution& solution
   return levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
 }
 
-/// Adds a step, within the bounds. True where it is too long for the model to be straight over it.
-bool take_step(const Bounds& bounds, const std::vector<bool>& free, const Eigen::VectorXd& step,
-               std::vector<double>& q) {
-  bool is_long = false;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    const double length = step(static_cast<Eigen::Index>(k));
-    const double range = bounds.upper[k] - bounds.lower[k];
-    is_long |= free[k] && std::abs(length) > 0.2 * std::abs(q[k]) + 1e-3 * range;
-    q[k] += length;
-    if (free[k]) q[k] = std::clamp(q[k], bounds.lower[k], bounds.upper[k]);
-  }
-  return is_long;
-}
-
 /// Sets the squares of the cycles that a fold holds out, at q.
 ///
 /// The squares on every sample at p are known; means over a few samples give their change exactly where the two curves
@@ -80,6 +66,19 @@ void set_squares_of_fold(const FitContext& context, const std::vector<std::size_
 }
 
 }  // namespace
+
+bool take_step(const Bounds& bounds, const std::vector<bool>& free, const Eigen::VectorXd& step,
+               std::vector<double>& q) {
+  bool is_long = false;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double length = step(static_cast<Eigen::Index>(k));
+    const double range = bounds.upper[k] - bounds.lower[k];
+    is_long |= free[k] && std::abs(length) > 0.2 * std::abs(q[k]) + 1e-3 * range;
+    q[k] += length;
+    if (free[k]) q[k] = std::clamp(q[k], bounds.lower[k], bounds.upper[k]);
+  }
+  return is_long;
+}
 
 void cross_validate(const FitContext& context, const Solution& solution, const NormalEquations& equations,
                     const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {

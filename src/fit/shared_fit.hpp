@@ -25,9 +25,9 @@ struct SharingRecord {
 /// A value with its statistical error [SI].
 struct SharedEstimate {
   double value = 0;
-  double std_error = 0;                 ///< infinite where not determined; with what differs between records
-  double lower95 = 0, upper95 = 0;      ///< infinite where not determined
-  double statistical = 0;               ///< from the blocks of the records alone
+  double std_error = 0;             ///< infinite where not determined; with what differs between records
+  double lower95 = 0, upper95 = 0;  ///< infinite where not determined
+  double statistical = 0;           ///< from the blocks of the records alone
   double degrees_of_freedom = 1;
   bool determined = true, at_bound = false;
 };
@@ -54,15 +54,16 @@ struct RecordsFit {
   SharingTest test;
   /// Held-out squares of these parameters against those of every record by itself, over the cycles of all records.
   Comparison held_out;
+  double held_out_change = 0;  ///< by which the mean of the squares is more [1 or N^2]
 };
 
 /// Fits one model to several records at once: all samples, with values that records share and values of their own.
 ///
-/// Each record leaves what its own fit leaves (ModelResiduals: whitened, with break-away scatter and its own noise), and
-/// weighs by the variance that its own fit leaves. The values are found block by block, see minimize(). Errors come from
-/// the influence of each cycle on all values: to one record the others are knowledge from elsewhere, which adds to its
-/// normal equations, so that influences are those of a single fit. What the records contribute is independent between
-/// them. bounds: of the parameters of every record. Cost: linear in values; cubic in common values.
+/// Each record leaves what its own fit leaves (ModelResiduals: whitened, with break-away scatter and its own noise),
+/// and weighs by the variance that its own fit leaves. The values are found block by block, see minimize(). Errors come
+/// from the influence of each cycle on all values: to one record the others are knowledge from elsewhere, which adds to
+/// its normal equations, so that influences are those of a single fit. What the records contribute is independent
+/// between them. bounds: of the parameters of every record. Cost: linear in values; cubic in common values.
 RecordsFit fit_sharing_records(const FrictionModel& model, std::span<const SharingRecord> records, const Bounds& bounds,
                                std::size_t common_count);
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "campaign/condensed_json.hpp"
 #include "campaign/condition_cells.hpp"
 #include "campaign/figures_json.hpp"
 #include "campaign_tables.hpp"
@@ -146,7 +147,8 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
                        conditions_json(run.conditions), "repeat", repeat_json(run), "others", others_json(run.others));
   std::string text = text_of(json);
   if (result != nullptr && result->analysed) {  // many numbers: on one line
-    text.insert(text.size() - 3, ",\n  \"figures\": " + figures_text(figures_of(*result)));
+    text.insert(text.size() - 3, ",\n  \"figures\": " + figures_text(figures_of(*result)) +
+                                     ",\n  \"condensed\": " + condensed_text(condensed(*result)));
   }
   return sealed(text);
 }

@@ -158,9 +158,31 @@ ReportTable trends_table(const Trends& trends) {
   return table;
 }
 
+/// What was fitted, whether sharing holds, and what it costs on held-out blocks.
+std::string sharing_sentence(const SharedFit& fit) {
+  const SharedFit::Test& test = fit.test;
+  std::string out;
+  if (fit.is_joint) out = fmt::format("{} runs fitted together, all samples", fit.runs.size());
+  if (!std::isfinite(test.held_out_together)) return out;
+  const std::string tested = fmt::format(" ({})", p_value_text(test.p_value));
+  if (!fit.is_joint) out = "the single fits together, with what differs from run to run";
+  if (test.is_refused) {
+    out += fmt::format(
+        "; the runs do not share this{}: they differ {} times as much as their own errors allow, most of "
+        "all {}",
+        tested, significant(std::sqrt(test.ratio), 2), test.most_different);
+  } else if (std::isfinite(test.p_value)) {
+    out += "; the runs allow it" + tested;
+  }
+  return out + fmt::format("; held-out error {} together, {} each by itself ({})",
+                           significant(test.held_out_together, 4), significant(test.held_out_alone, 4),
+                           p_value_text(test.held_out_p_value));
+}
+
 void add_shared(const Pooled& pooled, ReportSection& section) {
   for (const SharedFit& fit : pooled.shared) {
     section.add(shared_table(fit));
+    if (const std::string sentence = sharing_sentence(fit); !sentence.empty()) section.soft(sentence);
     for (const std::string& note : fit.notes) section.soft(note);
   }
 }

@@ -1,5 +1,6 @@
 #include "tribofit/report/pooled.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <system_error>
@@ -98,8 +99,14 @@ Json shared_json(const SharedFit& fit, std::span<const RunResult> runs) {
     }
     return object("name", runs[run.run].run.name, "parameters", std::move(parameters));
   };
-  return object("law", fit.law, "common", list_of(fit.common, common), "runs", list_of(fit.runs, each), "notes",
-                fit.notes);
+  const SharedFit::Test& test = fit.test;
+  const bool tested = std::isfinite(test.held_out_together);
+  return object("law", fit.law, "method", fit.is_joint ? "all-samples" : "single-fits", "sharing",
+                tested ? object("p_value", test.p_value, "variance_ratio", test.ratio, "refused", test.is_refused,
+                                "most_different", test.most_different, "held_out_rmse_together", test.held_out_together,
+                                "held_out_rmse_alone", test.held_out_alone, "held_out_p_value", test.held_out_p_value)
+                       : Json(nullptr),
+                "common", list_of(fit.common, common), "runs", list_of(fit.runs, each), "notes", fit.notes);
 }
 
 std::string pooled_json(const Pooled& pooled, std::span<const RunResult> runs) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/campaign/condensed.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/manifest.hpp"
@@ -140,6 +141,8 @@ class ResultReader {
   std::optional<RunResult> read(std::size_t k) const;
   /// The figures kept with the result that read() returns; nothing where it could not be analysed.
   std::optional<RunFigures> figures(std::size_t k) const;
+  /// The condensed run kept with it; nothing where it could not be analysed, or was kept by an earlier version.
+  std::optional<CondensedRun> condensed(std::size_t k) const;
   MissingRun missing(std::size_t k) const;
 
  private:

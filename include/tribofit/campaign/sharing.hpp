@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,14 +38,34 @@ struct SharedFit {
     std::vector<double> value, std_error;  ///< in the order and units of the law's parameters
   };
 
+  /// Whether the runs allow what they are made to share.
+  struct Test {
+    double p_value = std::numeric_limits<double>::quiet_NaN();  ///< that they differ no more than that by chance; NaN:
+                                                                ///< not tested
+    double ratio = 1;  ///< how much more they differ, in squares, than their own errors say
+    bool is_refused = false;
+    std::string most_different;  ///< name of the run
+    /// Held-out error of the runs fitted together and each by itself [1 or N]; p-value of the difference.
+    double held_out_together = std::numeric_limits<double>::quiet_NaN();
+    double held_out_alone = std::numeric_limits<double>::quiet_NaN(), held_out_p_value = 1;
+  };
+
   std::string law;
+  bool is_joint = false;  ///< one fit of all samples; otherwise the single fits together
+  Test test;
   std::vector<std::string> names, units;  ///< of all parameters of the law
   std::vector<Parameter> common;
   std::vector<OfRun> runs;
   std::vector<std::string> notes;  ///< runs or parameters that are not used, and why
 };
 
-/// Joint fit of the runs of a campaign, one for each law, from the joint fits of the single runs and their covariances.
+/// Fits the runs of a campaign together, one fit for each law.
+///
+/// With `results`, all samples of all runs are fitted at once (one fit over many records, as each run keeps them
+/// condensed): a parameter that no run knows by itself comes out where all of them together know it. Whether the runs
+/// allow the sharing is tested by what each of them pulls at the common values; where they do not, and each run knows
+/// what is shared, or where there is no such fit (too many values, effects that act on more than speed), the single
+/// fits are combined:
 ///
 /// Run i states y_i = (s_i, f_i) with covariance V_i. For the common parameters s_i = level + u_i + e_i with u_i the
 /// scatter between runs; a free parameter has no such prior, so the runs' marginal for s_i alone gives what is common
@@ -52,7 +73,8 @@ struct SharedFit {
 /// f_i = y_f + V_fs V_ss^-1 (s^_i - y_s), with s^_i the best prediction of the run's own value. This is the two-stage
 /// form of a mixed model (L. B. Sheiner, S. L. Beal; M. Davidian, D. M. Giltinan, Nonlinear Models for Repeated
 /// Measurement Data, 1995, ch. 5): exact where the runs' likelihoods are normal. Throws InputError for a parameter no
-/// law has and for a condition the runs do not state, with the nearest known name.
-std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing);
+/// law has and for a condition the runs do not state, with the nearest known name. runs: those of `results`.
+std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing,
+                                  const ResultReader* results = nullptr);
 
 }  // namespace tribofit

@@ -48,9 +48,9 @@ struct ResidualPart {
   std::vector<std::size_t> values;  ///< the value that each of its parameters takes; no two of them the same
 };
 
-/// Least squares of all parts together, within bounds. Values that one part alone depends on are eliminated part by part
-/// (Schur complement), and of its residuals a part keeps as many rows as it has parameters, and one: cost and memory
-/// are linear in parts.
+/// Least squares of all parts together, within bounds. Values that one part alone depends on are eliminated part by
+/// part (Schur complement), and of its residuals a part keeps as many rows as it has parameters, and one: cost and
+/// memory are linear in parts.
 SolverResult minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
                       std::span<const double> upper, const SolverOptions& options = {});
 

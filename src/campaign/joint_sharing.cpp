@@ -1,0 +1,190 @@
+#include "joint_sharing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <utility>
+
+#include "fit/shared_fit.hpp"
+#include "limits.hpp"
+#include "tribofit/friction/effects/all.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Why means over a few samples, without channels, are not enough for a model; empty where they are.
+std::string needs_more(const FrictionModel& model) {
+  for (const Effect& effect : model.effects()) {
+    const EffectInfo info = describe(effect);
+    const bool own = std::any_of(info.parameters.begin(), info.parameters.end(),
+                                 [](const Parameter& p) { return p.scope == ParameterScope::record; });
+    const Channels& c = info.needs;
+    if (own || info.needs_full_resolution || model.state_count() > 0 || c.acceleration || c.angle || c.distance ||
+        c.load || c.temperature || c.stick_time || c.lead || c.force || c.plateau || c.time) {
+      return info.key + " acts on more than speed";
+    }
+  }
+  return "";
+}
+
+/// The runs as their fit sees them, read one after the other.
+struct Together {
+  std::deque<Observations> observations;
+  std::vector<SharingRecord> records;
+  Bounds bounds;
+  std::size_t values = 0;
+};
+
+/// The widest bounds of the runs; a parameter that is held in all of them stays held.
+void widen_bounds(const CondensedRun::OfFit& fit, Bounds& bounds) {
+  if (bounds.lower.empty()) bounds = {fit.lower, fit.upper};
+  for (std::size_t k = 0; k < fit.lower.size(); ++k) {
+    bounds.lower[k] = std::min(bounds.lower[k], fit.lower[k]);
+    bounds.upper[k] = std::max(bounds.upper[k], fit.upper[k]);
+  }
+}
+
+/// Adds a run; why it cannot be where it cannot.
+std::string add_run(const ResultReader& results, const RunResult& run, const ResultFit& own, const FrictionModel& model,
+                    Together& out) {
+  std::optional<CondensedRun> condensed = results.condensed(run.position);
+  const CondensedRun::OfFit* fit = condensed ? condensed->fit(own.law, own.effects) : nullptr;
+  if (fit == nullptr || fit->lower.size() != own.parameters.size())
+    return run.run.name + " was kept by an earlier version; --again fits it anew";
+  const auto& slips = condensed->observations.slips;
+  const bool sticks = std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
+  if (describe(model.law()).steep_at_rest && sticks)
+    return "the " + own.law + " law is steep at rest, where a run keeps means only";
+  out.values += condensed->observations.size();
+  if (out.values > kMostValuesTogether) return fmt::format("the runs have more than {} values", kMostValuesTogether);
+  SharingRecord& record = out.records.emplace_back();
+  widen_bounds(*fit, out.bounds);
+  record.is_points = condensed->is_points;
+  record.observations = &out.observations.emplace_back(std::move(condensed->observations));
+  record.common.assign(own.parameters.size(), SharingRecord::kOwn);
+  for (std::size_t k = 0; k < own.parameters.size(); ++k) {
+    record.values.push_back(own.parameters[k].value * model.parameters()[k].parameter.si);
+    if (!std::isfinite(record.values.back())) return "the fit of " + run.run.name + " failed";
+  }
+  return "";
+}
+
+/// The common values of all levels, one after the other.
+std::size_t number_common(const SharedLaw& law, const SharedFit& fit, std::vector<SharingRecord>& records) {
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < law.parameters.size(); ++c) {
+    for (std::size_t i = 0; i < records.size(); ++i) records[i].common[law.parameters[c]] = first + law.level[c][i];
+    first += fit.common[c].values.size();
+  }
+  return first;
+}
+
+/// Every value is known from the single fits of all of its runs.
+bool all_know(const SharedLaw& law, const SharedFit& fit) {
+  for (std::size_t c = 0; c < fit.common.size(); ++c) {
+    for (std::size_t l = 0; l < fit.common[c].values.size(); ++l) {
+      const auto members = std::count(law.level[c].begin(), law.level[c].end(), l);
+      if (fit.common[c].values[l].runs != static_cast<std::size_t>(members)) return false;
+    }
+  }
+  return true;
+}
+
+std::string at_level(const SharedFit::Parameter& common, std::size_t l) {
+  return common.condition.empty() ? common.name : common.name + " at " + common.condition + " " + common.levels[l];
+}
+
+void take_common(const RecordsFit& found, const FrictionModel& model, const SharedLaw& law, SharedFit& fit) {
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < fit.common.size(); ++c) {
+    const double si = model.parameters()[law.parameters[c]].parameter.si;
+    for (std::size_t l = 0; l < fit.common[c].values.size(); ++l) {
+      const SharedEstimate& estimate = found.common[next++];
+      const auto members = std::count(law.level[c].begin(), law.level[c].end(), l);
+      PooledValue& value = fit.common[c].values[l];
+      value.runs = static_cast<std::size_t>(members);
+      value.value = estimate.value / si;
+      value.std_error = estimate.determined ? estimate.std_error / si : kUnknown;
+      value.lower95 = estimate.determined ? estimate.lower95 / si : kUnknown;
+      value.upper95 = estimate.determined ? estimate.upper95 / si : kUnknown;
+      value.statistical = estimate.determined ? estimate.statistical / si : kUnknown;
+      // Scatter between the runs that would widen the error as much.
+      const double beyond = std::max(0.0, value.std_error * value.std_error - value.statistical * value.statistical);
+      value.between = members > 1 ? std::sqrt(beyond * static_cast<double>(members)) : kUnknown;
+      if (!estimate.determined) fit.notes.push_back(at_level(fit.common[c], l) + " is not determined by these runs");
+    }
+  }
+}
+
+void take_runs(const RecordsFit& found, const FrictionModel& model, const SharedLaw& law, SharedFit& fit) {
+  fit.runs.clear();
+  for (std::size_t i = 0; i < law.runs.size(); ++i) {
+    SharedFit::OfRun& run = fit.runs.emplace_back();
+    run.run = law.runs[i];
+    for (std::size_t k = 0; k < found.records[i].size(); ++k) {
+      const SharedEstimate& estimate = found.records[i][k];
+      const double si = model.parameters()[k].parameter.si;
+      run.value.push_back(estimate.value / si);
+      run.std_error.push_back(estimate.determined ? estimate.std_error / si : kUnknown);
+    }
+  }
+}
+
+/// Held-out errors over all samples: those of the single fits as they state them, and by how much the squares of the
+/// condensed values are more where parameters are shared.
+void take_test(const RecordsFit& found, std::span<const RunResult> runs, const SharedLaw& law, const Together& all,
+               SharedFit& fit) {
+  double squares = 0, counts = 0;
+  for (std::size_t i = 0; i < law.runs.size(); ++i) {
+    const RunResult& run = runs[law.runs[i]];
+    double count = 0;
+    for (const double weight : all.observations[i].weight) count += weight;
+    squares += count * std::pow(run.fit(law.like.law, law.like.protocol)->held_out_rmse, 2);
+    counts += count;
+  }
+  fit.test.p_value = found.test.degrees_of_freedom > 0 ? found.test.p_value : kUnknown;
+  fit.test.ratio = found.test.ratio;
+  fit.test.is_refused = found.test.is_refused();
+  fit.test.most_different = runs[law.runs[found.test.most_different]].run.name;
+  fit.test.held_out_alone = std::sqrt(squares / counts);
+  fit.test.held_out_together = std::sqrt(std::max(0.0, squares / counts + found.held_out_change));
+  fit.test.held_out_p_value = found.held_out.p_value;
+}
+
+}  // namespace
+
+std::string fit_jointly(const ResultReader& results, std::span<const RunResult> runs, const SharedLaw& law,
+                        SharedFit& fit) {
+  std::vector<Effect> effects;
+  for (const std::string& key : law.like.effects) {
+    const auto catalogue = effect_catalogue();
+    const auto known = std::find_if(catalogue.begin(), catalogue.end(),
+                                    [&](const Effect& effect) { return describe(effect).key == key; });
+    if (known == catalogue.end()) return key + " is not of the catalogue";
+    effects.push_back(*known);
+  }
+  const FrictionModel model(make_law(law.like.law), std::move(effects));
+  if (std::string why = needs_more(model); !why.empty()) return why;
+  if (model.parameters().size() != fit.names.size()) return "a run was fitted with another form of an effect";
+  Together all;
+  for (const std::size_t r : law.runs) {
+    std::string why = add_run(results, runs[r], *runs[r].fit(law.like.law, law.like.protocol), model, all);
+    if (!why.empty()) return why;
+  }
+  const std::size_t count = number_common(law, fit, all.records);
+  const RecordsFit found = fit_sharing_records(model, all.records, all.bounds, count);
+  if (!found.converged) return "it " + found.message;
+  take_test(found, runs, law, all, fit);
+  if (fit.test.is_refused && all_know(law, fit)) return "";
+  fit.is_joint = true;
+  take_common(found, model, law, fit);
+  take_runs(found, model, law, fit);
+  return "";
+}
+
+}  // namespace tribofit
