@@ -71,16 +71,18 @@ std::string condensed_text(const CondensedRun& run) {
     return object("law", f.law, "effects", f.effects, "lower", list_of(f.lower, number), "upper",
                   list_of(f.upper, number));
   };
-  return line_of(object("points", run.is_points, "flicker", rounded(o.flicker, kCondensedDigits), "flicker_noise",
-                        list_of(o.flicker_noise, noise), "mean_load_N", rounded(o.mean_load, kCondensedDigits), "slips",
-                        list_of(o.slips, slip_json), "velocity_mm_s", scaled_list(o.velocity, kMillimetre), "friction",
-                        scaled_list(o.friction, 1), "weight", scaled_list(o.weight, 1), "velocity_variance_mm2_s2",
+  return line_of(object("points", run.is_points, "within", rounded(run.within, kCondensedDigits), "flicker",
+                        rounded(o.flicker, kCondensedDigits), "flicker_noise", list_of(o.flicker_noise, noise),
+                        "mean_load_N", rounded(o.mean_load, kCondensedDigits), "slips", list_of(o.slips, slip_json),
+                        "velocity_mm_s", scaled_list(o.velocity, kMillimetre), "friction", scaled_list(o.friction, 1),
+                        "weight", scaled_list(o.weight, 1), "velocity_variance_mm2_s2",
                         scaled_list(o.velocity_variance, kMillimetre * kMillimetre), "fits", list_of(run.fits, fit)));
 }
 
 CondensedRun condensed_from(const Json& json) {
   CondensedRun run;
   run.is_points = json.at("points").get<bool>();
+  run.within = json.at("within").get<double>();
   Observations& o = run.observations;
   o.flicker = json.at("flicker").get<double>();
   for (const Json& noise : json.at("flicker_noise"))

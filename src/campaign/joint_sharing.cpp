@@ -38,6 +38,7 @@ struct Together {
   std::vector<SharingRecord> records;
   Bounds bounds;
   std::size_t values = 0;
+  double squares_within = 0, samples = 0;  ///< of friction about the values
 };
 
 /// The widest bounds of the runs; a parameter that is held in all of them stays held.
@@ -62,6 +63,10 @@ std::string add_run(const ResultReader& results, const RunResult& run, const Res
     return "the " + own.law + " law is steep at rest, where a run keeps means only";
   out.values += condensed->observations.size();
   if (out.values > kMostValuesTogether) return fmt::format("the runs have more than {} values", kMostValuesTogether);
+  for (const double weight : condensed->observations.weight) {
+    out.squares_within += weight * condensed->within;
+    out.samples += weight;
+  }
   SharingRecord& record = out.records.emplace_back();
   widen_bounds(*fit, out.bounds);
   record.is_points = condensed->is_points;
@@ -135,24 +140,16 @@ void take_runs(const RecordsFit& found, const FrictionModel& model, const Shared
   }
 }
 
-/// Held-out errors over all samples: those of the single fits as they state them, and by how much the squares of the
-/// condensed values are more where parameters are shared.
+/// Whether the runs allow it; held-out errors over all samples, which scatter about the values alike in both.
 void take_test(const RecordsFit& found, std::span<const RunResult> runs, const SharedLaw& law, const Together& all,
                SharedFit& fit) {
-  double squares = 0, counts = 0;
-  for (std::size_t i = 0; i < law.runs.size(); ++i) {
-    const RunResult& run = runs[law.runs[i]];
-    double count = 0;
-    for (const double weight : all.observations[i].weight) count += weight;
-    squares += count * std::pow(run.fit(law.like.law, law.like.protocol)->held_out_rmse, 2);
-    counts += count;
-  }
+  const double within = all.squares_within / all.samples;
   fit.test.p_value = found.test.degrees_of_freedom > 0 ? found.test.p_value : kUnknown;
   fit.test.ratio = found.test.ratio;
   fit.test.is_refused = found.test.is_refused();
   fit.test.most_different = runs[law.runs[found.test.most_different]].run.name;
-  fit.test.held_out_alone = std::sqrt(squares / counts);
-  fit.test.held_out_together = std::sqrt(std::max(0.0, squares / counts + found.held_out_change));
+  fit.test.held_out_alone = std::hypot(found.held_out_rmse_alone, std::sqrt(within));
+  fit.test.held_out_together = std::hypot(found.held_out_rmse_together, std::sqrt(within));
   fit.test.held_out_p_value = found.held_out.p_value;
 }
 

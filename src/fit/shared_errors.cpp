@@ -164,7 +164,8 @@ void add_errors(const Problem& problem, const std::vector<double>& values, Recor
     out.records.push_back(estimates_of(problem, parts[r], contributions[r], covariance, out.common));
   const Fit together = held_out_together(problem, parts, common), alone = held_out_alone(problem);
   out.held_out = compare_held_out(together, alone);
-  out.held_out_change = std::pow(together.error.held_out_rmse, 2) - std::pow(alone.error.held_out_rmse, 2);
+  out.held_out_rmse_together = together.error.held_out_rmse;
+  out.held_out_rmse_alone = alone.error.held_out_rmse;
 }
 
 }  // namespace tribofit::sharing

@@ -54,7 +54,7 @@ struct RecordsFit {
   SharingTest test;
   /// Held-out squares of these parameters against those of every record by itself, over the cycles of all records.
   Comparison held_out;
-  double held_out_change = 0;  ///< by which the mean of the squares is more [1 or N^2]
+  double held_out_rmse_together = 0, held_out_rmse_alone = 0;  ///< over the values [1 or N]
 };
 
 /// Fits one model to several records at once: all samples, with values that records share and values of their own.

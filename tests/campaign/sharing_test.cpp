@@ -89,7 +89,8 @@ TEST_P(SteadyRuns, TogetherKnowWhatNoneKnows) {
   expect_inside(shared[0], "viscous.sigma", truth.sigma, 1e-4);
   const auto& sharing = shared[0]["sharing"];
   EXPECT_NEAR(sharing["held_out_rmse_together"].get<double>(), 0.008, 0.0003);
-  EXPECT_NEAR(sharing["held_out_rmse_alone"].get<double>(), 0.008, 0.0003);
+  // What does not know its parameters predicts no better than what does.
+  EXPECT_GT(1.001 * sharing["held_out_rmse_alone"].get<double>(), sharing["held_out_rmse_together"].get<double>());
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, SteadyRuns, testing::Values(0.0, 0.8));

@@ -19,6 +19,7 @@ struct CondensedRun {
   };
   Observations observations;
   bool is_points = false;
+  double within = 0;  ///< mean square of friction about the values, over all samples [1 or N^2]
   std::vector<OfFit> fits;
 
   /// That of a law with these effects; null where there is none.
