@@ -12,6 +12,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
@@ -125,9 +126,9 @@ void add_channels(FileRecord& run, const FileRecord& other, double offset) {
     run.second_channels.push_back(channel);
     names.push_back(column.name);
   }
-  run.notes.push_back(fmt::format("the channels {} ({:.6g} Hz) were interpolated linearly at {:.6g} Hz",
-                                  one_file ? listed(names) : "of " + other.path, 1 / typical_interval(time),
-                                  1 / typical_interval(run[Channel::time])));
+  run.notes.push_back(fmt::format(
+      "the channels {} ({}) were interpolated linearly at {}", one_file ? listed(names) : "of " + other.path,
+      frequency_text(1 / typical_interval(time)), frequency_text(1 / typical_interval(run[Channel::time]))));
 }
 
 }  // namespace

@@ -318,6 +318,14 @@ double parse_quantity(std::string_view text, Quantity quantity, std::string_view
   return number * wanted->factor + wanted->offset;
 }
 
+std::string frequency_text(double hertz, int digits) {
+  if (!std::isfinite(hertz)) return "-";
+  const bool is_high = hertz >= 1000;
+  const double decade = std::pow(10.0, std::floor(std::log10(std::max(hertz, 1e-300))) + 1 - digits);
+  const double rounded = decade > 1 ? std::round(hertz / decade) * decade : hertz;  // never "1.2e+04"
+  return fmt::format("{:.{}g} {}", is_high ? rounded / 1000 : rounded, std::max(digits, 3), is_high ? "kHz" : "Hz");
+}
+
 std::string_view to_string(Quantity quantity) {
   for (const Kind& kind : kinds) {
     if (kind.quantity == quantity) return kind.name;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit::kinematics {
@@ -111,8 +112,8 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
     // Second order with zeta = 0.7 (flat response): group delay 2 zeta / (2 pi f_0) at low frequency.
     const double delay = 2 * 0.7 / ((2 * std::numbers::pi) * sensor.bandwidth->value);
     correct_delay(trace.friction, delay, step, ends);
-    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {:.4g} Hz",
-                                1e3 * delay, sensor.bandwidth->value));
+    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {}", 1e3 * delay,
+                                frequency_text(sensor.bandwidth->value)));
   }
   return ends;
 }

@@ -175,7 +175,7 @@ void settle_counterface(const LocalDerivatives& x, const LocalDerivatives& y, bo
     const double ground = resistance(trace.friction, x.slope), base = resistance(trace.friction, against_base);
     counterface = ground >= base ? Counterface::ground : Counterface::base;
     notes.push_back(fmt::format(
-        "motion: the mass rubs on {}: friction would drive that motion in {:.2g} % of its power, and in {:.2g} % "
+        "motion: the mass rubs on {}: friction would drive that motion in {:.3g} % of its power, and in {:.3g} % "
         "against "
         "the {} ({} --rubs-on)",
         ground >= base ? "ground that stands still" : "the moving base", 50 * (1 - std::max(ground, base)),

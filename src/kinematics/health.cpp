@@ -100,12 +100,12 @@ double lowest_pass(const Band& band) {
 std::string describe(const char* name, const Band& band) {
   if (band.upper <= 0) return fmt::format("{}: too short to say", name);
   if (band.corner > 0)
-    return fmt::format("{} falls from about {:.2g} Hz on like f^-{:.0f}, it was low-passed there", name, band.corner,
-                       band.order);
+    return fmt::format("{} falls from about {} on like f^-{:.0f}, it was low-passed there", name,
+                       frequency_text(band.corner, 2), band.order);
   if (band.filtered)
-    return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {:.3g} Hz", name, band.floor,
-                       band.upper);
-  return fmt::format("{} stands above its noise up to {:.3g} Hz", name, band.upper);
+    return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {}", name, band.floor,
+                       frequency_text(band.upper, 3));
+  return fmt::format("{} stands above its noise up to {}", name, frequency_text(band.upper, 3));
 }
 
 }  // namespace
@@ -150,14 +150,14 @@ double corner_of(const UndoneDistortion& low_pass) {
 std::string undone_low_passes(const Motion& motion, std::size_t slips) {
   std::string text;
   if (motion.velocity_low_pass.any()) {
-    text += fmt::format("; v_r decays at re-stick as after a first-order low-pass at {:.3g} Hz ({} slips); corrected",
-                        corner_of(motion.velocity_low_pass), slips);
+    text += fmt::format("; v_r decays at re-stick as after a first-order low-pass at {} ({} slips); corrected",
+                        frequency_text(corner_of(motion.velocity_low_pass), 3), slips);
   }
   if (motion.friction_low_pass.any()) {
     text += fmt::format(
-        "; friction decays at re-stick as after a first-order low-pass at {:.3g} Hz: each law is filtered the same "
+        "; friction decays at re-stick as after a first-order low-pass at {}: each law is filtered the same "
         "way",
-        corner_of(motion.friction_low_pass));
+        frequency_text(corner_of(motion.friction_low_pass), 3));
   }
   return text;
 }
@@ -172,7 +172,7 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   // A smooth motion has a steep spectrum: where v_r comes to rest at once, there is no filter.
   if (restick.slips > 0 && !restick.is_filter) b.corner = 0;
   if (!velocity.empty()) item.message += "; " + describe("velocity", b);
-  item.message += fmt::format("; sampled at {:.4g} Hz", 1 / step);
+  item.message += fmt::format("; sampled at {}", frequency_text(1 / step));
   if (const std::string undone = undone_low_passes(motion, restick.slips); !undone.empty()) {
     item.status = Status::warning;
     item.message += undone;
@@ -180,11 +180,10 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
-        "; v_r decays at re-stick as after a low-pass at {:.2g} Hz ({} slips): mu_s, mu_k and the law's decay (alpha) "
-        "are not "
-        "those "
-        "of the contact, a bandwidth of {:.2g} Hz is needed",
-        restick.corner(), restick.slips, restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless);
+        "; v_r decays at re-stick as after a low-pass at {} ({} slips): mu_s, mu_k and the law's decay (alpha) are not "
+        "those of the contact, a bandwidth of {} is needed",
+        frequency_text(restick.corner(), 2), restick.slips,
+        frequency_text(restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless, 2));
     return item;
   }
   const double low = lowest_pass(a), other = lowest_pass(b);

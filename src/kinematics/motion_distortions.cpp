@@ -8,6 +8,7 @@
 #include "compression.hpp"
 #include "limits.hpp"
 #include "motion_stages.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "undo_low_pass.hpp"
 
 // The stages of a motion that undo what its channels did to their readings.
@@ -89,7 +90,7 @@ void MotionStages::undo_low_pass() {
     spoilt_->add_smeared({std::min(first, trace_.size()), std::min(end, trace_.size())});
   }
   motion_.notes.push_back(
-      fmt::format("velocity: a low-pass at {:.4g} Hz; corrected", 1 / (2 * std::numbers::pi * low_pass_.tau)));
+      fmt::format("velocity: a low-pass at {}; corrected", frequency_text(1 / (2 * std::numbers::pi * low_pass_.tau))));
   find_plateau();
 }
 

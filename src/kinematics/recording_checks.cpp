@@ -127,7 +127,7 @@ const std::vector<SampleSpan>* add_range_end(const Units& channel, const EndRuns
   const double share = static_cast<double>(count) / static_cast<double>(samples);
   item.status = share > kMuchClipped ? Status::problem : Status::warning;
   item.message = fmt::format(
-      "{} stays at {:.4g}{} for {} samples ({:.2g} %): the range was too small; they are not used, {} unreliable",
+      "{} stays at {:.4g}{} for {} samples ({:.3g} %): the range was too small; they are not used, {} unreliable",
       channel.name, channel.factor * (repeats ? end.at : end.pile.level), channel.unit, count, 100 * share, unreliable);
   return held ? &end.pile.spans : &end.spans;
 }
@@ -219,7 +219,7 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   if (still.size() >= kShortestFrozen && static_cast<double>(still.size()) > kMuchFrozen * static_cast<double>(n) &&
       still.size() < n) {
     item.status = Status::problem;
-    item.message = fmt::format("both channels do not change from {:.4g} s for {:.4g} s ({:.2g} % of the record)",
+    item.message = fmt::format("both channels do not change from {:.4g} s for {:.4g} s ({:.3g} % of the record)",
                                trace.time[still.begin], trace.time[still.end - 1] - trace.time[still.begin],
                                100 * static_cast<double>(still.size()) / static_cast<double>(n));
     for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
@@ -238,7 +238,7 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   for (const std::string& sentence : spoilt_by) item.message += (item.message.empty() ? "" : "; ") + sentence;
   if (loses) {
     item.message += fmt::format(
-        "{}the velocity jumps {} times without a gap in time ({:.2g} % of the fast intervals): samples were lost "
+        "{}the velocity jumps {} times without a gap in time ({:.3g} % of the fast intervals): samples were lost "
         "and the time column was regenerated; the frequency and all times are unreliable",
         item.message.empty() ? "" : "; ", lost.jumps, 100 * lost.part);
   }

@@ -74,7 +74,7 @@ void SpoiltSamples::clean(std::vector<double>& channel, const ChannelFaults& fau
     const std::size_t samples = samples_of(faults.frozen);
     frozen_ += samples;
     sentences_.push_back(
-        fmt::format("{} repeats one value in {} ({:.2g} % of the record, left out)", name,
+        fmt::format("{} repeats one value in {} ({:.3g} % of the record, left out)", name,
                     faults.frozen.size() == 1 ? "a stretch" : fmt::format("{} stretches", faults.frozen.size()),
                     100 * static_cast<double>(samples) / static_cast<double>(size_)));
   }

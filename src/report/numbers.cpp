@@ -76,11 +76,6 @@ std::string grouped(std::size_t count) {
   return text;
 }
 
-std::string rate_text(double hertz) {
-  if (!std::isfinite(hertz)) return "-";
-  return hertz >= 1000 ? fmt::format("{:.4g} kHz", hertz / 1000) : fmt::format("{:.4g} Hz", hertz);
-}
-
 std::string friction_unit(const Motion& motion) {
   return motion.friction_kind == FrictionKind::force ? "N" : "1";
 }

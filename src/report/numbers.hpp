@@ -42,9 +42,6 @@ std::string share_text(double share);
 /// 2400000 -> "2 400 000".
 std::string grouped(std::size_t count);
 
-/// Sampling rate: "20 kHz", "118.3 Hz".
-std::string rate_text(double hertz);
-
 /// Unit of friction levels: "1", or "N" where friction is a force.
 std::string friction_unit(const Motion& motion);
 

@@ -10,6 +10,7 @@
 #include "segmentation/counts.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -207,7 +208,7 @@ std::string kind_text(const Identification& r) {
 
 std::string record_sentence(const Identification& r) {
   if (r.motion.is_points()) return points_sentence(r.motion);
-  return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), rate_text(r.rate));
+  return fmt::format("{} samples, {} s at {}", grouped(r.samples), significant(r.duration, 4), frequency_text(r.rate));
 }
 
 Facts stick_slip_facts(const Identification& r) {

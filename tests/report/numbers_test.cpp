@@ -69,8 +69,10 @@ TEST(Numbers, AShareIsNeverRoundedUpToAll) {
 TEST(Numbers, CountsAndRates) {
   EXPECT_EQ(grouped(2400000), "2 400 000");
   EXPECT_EQ(grouped(999), "999");
-  EXPECT_EQ(rate_text(20000), "20 kHz");
-  EXPECT_EQ(rate_text(118.31), "118.3 Hz");
+  EXPECT_EQ(frequency_text(20000), "20 kHz");
+  EXPECT_EQ(frequency_text(118.31), "118.3 Hz");
+  EXPECT_EQ(frequency_text(12345, 2), "12 kHz");
+  EXPECT_EQ(frequency_text(748.2, 2), "750 Hz");
 }
 
 TEST(Numbers, TablesLineUpWhateverTheAlphabet) {

@@ -59,6 +59,9 @@ std::string suggest_unit(std::string_view text);
 /// known one offered), a unit of another quantity, inf and nan.
 double parse_quantity(std::string_view text, Quantity quantity, std::string_view name, std::string_view bare_unit = {});
 
+/// A frequency with so many digits: "20 kHz", "118.3 Hz"; "-" for NaN.
+std::string frequency_text(double hertz, int digits = 4);
+
 /// "length", "angular velocity", ... for messages.
 std::string_view to_string(Quantity quantity);
 
