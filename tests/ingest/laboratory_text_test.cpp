@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <numbers>
 
 #include "temp_files.hpp"
@@ -54,6 +55,36 @@ INSTANTIATE_TEST_SUITE_P(
                       Blanks{"LoneCrBlanks", "time_s mu v_b_mm_s\r", "{} {} {}", "\r"},
                       Blanks{"CrLf", "time_s mu v_b_mm_s\r\n", "{} {} {}", "\r\n"}),
     [](const auto& param) { return std::string(param.param.name); });
+
+/// A logger writes a clock: over midnight, with a date; without one, within a day.
+TEST_F(LaboratoryText, ATimeColumnMayBeAClock) {
+  const auto hours_of = [](int i) {
+    return fmt::format("{:02}:{:02}:{:02}", (23 + i / 36000) % 24, i / 600 % 60, i / 10 % 60);
+  };
+  const auto table = [&](const std::function<std::string(int)>& clock, const char* heading, char sign) {
+    std::string text = heading;
+    for (int i = 35980; i < 36020; ++i) text += fmt::format("{0}{1}{2}{1}{3}\n", clock(i), sign, i % 7, i % 5);
+    return text;
+  };
+  const auto iso = [&](int i) { return fmt::format("2024-02-{}T{}.{}00", i < 36000 ? 28 : 29, hours_of(i), i % 10); };
+  const auto german = [&](int i) { return fmt::format("{}.12.2023 {},{}", i < 36000 ? 30 : 31, hours_of(i), i % 10); };
+  const auto bare = [&](int i) { return fmt::format("12:{:02}:{:02}.{}", i / 600 % 60, i / 10 % 60, i % 10); };
+  const std::vector<std::string> texts = {table(iso, "time,mu,v_b_mm_s\n", ','),
+                                          table(german, "Zeit;mu;v_b_mm_s\n", ';')};
+  for (const std::string& text : texts) {
+    const Trace trace = read_trace(write(text, "clock.csv"));
+    ASSERT_EQ(trace.size(), 40U) << text;
+    for (std::size_t i = 0; i < 40; ++i)
+      EXPECT_NEAR(trace.time[i] - trace.time[0], 0.1 * static_cast<double>(i), 1e-6) << text;
+  }
+  std::string day = "time,mu,v_b_mm_s\n";
+  for (int i = 0; i < 40; ++i) day += bare(i) + ",0.3,1\n";
+  const Trace trace = read_trace(write(day, "day.csv"));
+  EXPECT_NEAR(trace.time.back() - trace.time.front(), 3.9, 1e-9);
+  // May or March?
+  const std::string either = "time,mu,v_b_mm_s\n5/3/2024 12:00:00,0.3,1\n5/3/2024 12:00:01,0.3,1\n";
+  expect_error(write(either, "either.csv"), {}, "is not a number", "correct it", 2, "time");
+}
 
 TEST_F(LaboratoryText, BlanksWithADecimalComma) {
   std::string text = "time_s mu v_b_mm_s\n";

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "fccp.hpp"
 
+#include "clock_time.hpp"
 #include "decimal.hpp"
 #include "dialect.hpp"
 #include "ingest/limits.hpp"
@@ -169,6 +171,10 @@ RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out
 }
 
 void RowParser::take(char* cell, const std::string& column, double& out) {
+  if (const std::optional<double> clock = clock_time(cell)) {
+    out = *clock;
+    return;
+  }
   const bool is_number = *cell != '\0' && to_number(cell, out);
   if (is_number && std::abs(out) < kLargestValue) return;
   const std::string shown = fmt::format("'{}'", std::string_view(cell).substr(0, 40));
