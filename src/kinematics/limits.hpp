@@ -8,8 +8,7 @@
 
 namespace tribofit::kinematics {
 
-/// Samples without which there is nothing to look at, and cycles, slips or plateaus whose median leaves one out that
-/// is wrong.
+/// Samples without which nothing shows, and cycles, slips or plateaus whose median leaves a wrong one out.
 inline constexpr std::size_t kFewestSamples = 16, kFewestForMedian = 3;
 /// Revolutions that an effect of the disc angle needs: what it does in one, a drift does too.
 inline constexpr double kRevolutionsOfAngle = 2;
@@ -30,6 +29,8 @@ inline constexpr double kClearlyFlat = 0.05, kNarrower = 0.25, kNarrowestBand = 
 inline constexpr double kKeepsLength = 0.75, kLongSticks = 1.0 / 3;
 /// From one shoulder of a stretch to the other, over the band: 0.6 where v_r passes through rest, in a reversal.
 inline constexpr double kPasses = 0.25;
+/// Deviation in a stretch, over half the band and over the noise of neighbours, that makes it a swing, not rest.
+inline constexpr double kSwings = 0.25, kSwingsOverNoise = 5;
 /// Blocks of a plateau: a middle and its two shoulders need as many.
 inline constexpr std::size_t kFewestBlocks = 4;
 /// A plateau has settled, and agrees with what is stated, within this part of its level.
@@ -46,8 +47,7 @@ inline constexpr double kLeastLoading = 0.3;
 /// Windows in which noise is looked for before it is known where the record rests, and their samples, a quarter of the
 /// record at most: a parabola follows any motion over so few.
 inline constexpr std::size_t kNoiseWindows = 64, kShortestWindow = 16, kLongestWindowOfNoise = 64;
-/// Part of the windows that are quiet where sticks last a dozen samples, and their noise over the median below which
-/// they are sticks and not chance.
+/// Part of the windows that are quiet where sticks last a dozen samples, and their noise over the median at most.
 inline constexpr double kQuietWindows = 0.1, kQuietNoise = 0.1;
 /// Of the disc's speed, from which what moves with it is at rest on it, however wrong its gain; standard deviations of
 /// the noise by which a block at one speed is not at zero, and so carried.

@@ -41,6 +41,24 @@ Shape shape_of(std::span<const double> run) {
   return {std::abs(middle - 0.5 * (left + right)), std::abs(right - left)};
 }
 
+/// Noise of neighbours in the middle of runs.
+double noise_within(std::span<const double> velocity, const std::vector<StickPlateau>& runs) {
+  std::vector<double> curvatures;
+  for (const StickPlateau& run : runs) {
+    for (std::size_t i = run.inner_begin() + 1; i + 1 < run.inner_end(); ++i)
+      curvatures.push_back(std::abs(velocity[i - 1] - 2 * velocity[i] + velocity[i + 1]));
+  }
+  return curvatures.empty() ? 0 : kSigmaPerMad * median(std::move(curvatures)) / std::sqrt(6.0);
+}
+
+/// Whether v_r swings back and forth in a run, however little beside other parts of the record.
+bool swings(std::span<const double> velocity, const StickPlateau& run, double half_band) {
+  double squares = 0;
+  for (std::size_t i = run.inner_begin(); i < run.inner_end(); ++i) squares += std::pow(velocity[i] - run.level, 2);
+  const double deviation = std::sqrt(squares / static_cast<double>(run.inner_end() - run.inner_begin()));
+  return deviation > kSwings * half_band && deviation > kSwingsOverNoise * noise_within(velocity, {run});
+}
+
 /// What a plateau may be, over the band.
 struct Flatness {
   double curvature = HUGE_VAL, tilt = HUGE_VAL;
@@ -72,6 +90,7 @@ FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_ba
     const double curvature = shape.curvature / (2 * half_band);
     if (curvature >= most.curvature || shape.tilt >= 2 * half_band * most.tilt) continue;
     run.level = mean_of(velocity.subspan(run.inner_begin(), run.inner_end() - run.inner_begin()));
+    if (std::isfinite(most.tilt) && swings(velocity, run, half_band)) continue;
     flat.runs.push_back(run);
     flat.level += run.size();
     curvatures.push_back(curvature);
@@ -79,16 +98,6 @@ FlatRuns flat_runs(std::span<const double> velocity, double mode, double half_ba
   if (!curvatures.empty()) flat.curvature = median(std::move(curvatures));
   if (!lengths.empty()) flat.length = median(std::move(lengths));
   return flat;
-}
-
-/// Noise of neighbours in the middle of runs.
-double noise_within(std::span<const double> velocity, const std::vector<StickPlateau>& runs) {
-  std::vector<double> curvatures;
-  for (const StickPlateau& run : runs) {
-    for (std::size_t i = run.inner_begin() + 1; i + 1 < run.inner_end(); ++i)
-      curvatures.push_back(std::abs(velocity[i - 1] - 2 * velocity[i] + velocity[i + 1]));
-  }
-  return curvatures.empty() ? 0 : kSigmaPerMad * median(std::move(curvatures)) / std::sqrt(6.0);
 }
 
 /// In a band that is wide for a short stick the beginning of the slip belongs to the run: a narrower one leaves it out.
