@@ -12,6 +12,7 @@
 #include "fit/starts.hpp"
 #include "imitations.hpp"
 #include "limits.hpp"
+#include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
@@ -21,6 +22,7 @@ namespace {
 /// What the data can excite, found once.
 struct Excitation {
   bool both_directions = false;
+  std::size_t reversals = 0;       ///< of the record that has most
   double revolutions = 0;          ///< of the record that turns most
   double load_spread = 0;          ///< (95 % - 5 %) / median
   double temperature_spread = 0;   ///< 95 % - 5 % [K]
@@ -55,6 +57,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
     if (std::isfinite(slip.stick_time) && slip.stick_time > 0) sticks.push_back(slip.stick_time);
   }
   out.both_directions = forth && back;
+  for (const Record& record : records) out.reversals = std::max(out.reversals, reversals_of(*record.segmentation));
   out.speed_changes = out.breaks_away;
   for (std::size_t r = 0; r < records.size() && !out.speed_changes; ++r) {
     out.speed_changes = speed_changes(records[r], observations, r);
@@ -102,6 +105,11 @@ std::string obstacle_of_spring(const EffectInfo& info, std::span<const Record> r
   return {};
 }
 
+std::string no_strokes(std::size_t reversals) {
+  if (reversals < kFewestReversals) return too_few_reversals(reversals);
+  return "sliding reverses by no more than the noise of v_r adds up to, or not in every record";
+}
+
 /// Why the data cannot show an effect; empty where they can.
 std::string obstacle(const EffectInfo& info, std::span<const Record> records, const Observations& observations,
                      const Excitation& seen) {
@@ -128,6 +136,7 @@ std::string obstacle(const EffectInfo& info, std::span<const Record> records, co
                : std::string("too few stick times were recorded");
   }
   if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";
+  if (needs.reversal_distance && observations.reversal_distance.empty()) return no_strokes(seen.reversals);
   if (info.excitation.changing_speed && !seen.speed_changes) {
     return "v_r does not change within a record: nothing shows what follows it late";
   }
@@ -216,6 +225,16 @@ struct ParameterStarts {
   double places = 1;
 };
 
+/// About the distance since a reversal at which friction changes most, so that a search ends at the best.
+ParameterStarts distances_of_change(const Observations& observations, std::span<const double> residual,
+                                    AllowedRange bounds) {
+  const double at = distance_of_change(observations, residual, bounds.lower, bounds.upper);
+  std::vector<double> places;
+  for (const double beside : {1.0, 0.98, 1.02, 0.95, 1.05, 0.9, 1.1, 0.8, 1.25})
+    places.push_back(std::clamp(beside * at, bounds.lower, bounds.upper));
+  return {places, limits::kPlacesInStroke};
+}
+
 ParameterStarts starts_at_lines(const Parameter& parameter, const SpectralLines& lines) {
   return {lines.frequencies.empty() ? std::vector<double>{parameter.start} : lines.frequencies, lines.places};
 }
@@ -234,6 +253,8 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
                                                           std::max(parameter.lower, lowest_ringing(observations))));
     case ParameterSearch::moment_of_change:
       return {change_points(observations, residual), static_cast<double>(observations.slips.size())};
+    case ParameterSearch::distance_of_change:
+      return distances_of_change(observations, residual, bounds);
     case ParameterSearch::grid:
       break;
   }

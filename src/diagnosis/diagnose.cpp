@@ -38,7 +38,7 @@ class ProgressReporter {
 /// Everything these data offer to an effect.
 Channels all_channels(std::span<const Record> records) {
   Channels all;
-  all.acceleration = all.distance = all.stick_time = all.lead = !are_points(records);
+  all.acceleration = all.distance = all.reversal_distance = all.stick_time = all.lead = !are_points(records);
   const auto each = [&](auto has) { return std::all_of(records.begin(), records.end(), has); };
   all.angle = each([](const Record& r) {
     return !r.motion->disc_angle.empty() || !r.motion->disc_speed.empty() || r.motion->conditions.speed.known();

@@ -20,6 +20,7 @@ Evidence evidence_of(SketchView view) {
     case SketchView::curve:
     case SketchView::directions:
     case SketchView::since_break_away:
+    case SketchView::since_reversal:
     case SketchView::acceleration:
       return Evidence::within_cycle;
     case SketchView::creep:

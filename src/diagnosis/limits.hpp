@@ -37,6 +37,8 @@ inline constexpr double kLeastTemperatureSpread = 2;  ///< [K]: k_T within its b
 /// by 3.3.
 inline constexpr double kSpeedSigmas = 10, kLeastSpeedSpread = 0.02;
 inline constexpr double kLeastStickRatio = 2.5;  ///< of stick times: its logarithm then spans what scatter does not
+/// Distances since a reversal that are independent of one another, where a change is looked for: twenty a decade.
+inline constexpr double kPlacesInStroke = 50;
 inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
 
 // Instruments and the plateau.

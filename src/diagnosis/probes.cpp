@@ -9,6 +9,7 @@
 
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
+#include "hats.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -16,39 +17,6 @@
 namespace tribofit::diagnosis {
 
 namespace {
-
-/// Straight lines between knots: the weights of x on them.
-class Hats {
- public:
-  Hats(std::vector<double> knots) : knots_(std::move(knots)) {}
-  Eigen::Index count() const { return static_cast<Eigen::Index>(knots_.size()); }
-  const std::vector<double>& knots() const { return knots_; }
-
-  Eigen::RowVectorXd operator()(double x) const {
-    Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(count());
-    const auto next = std::upper_bound(knots_.begin(), knots_.end(), x);
-    if (next == knots_.begin()) {
-      out(0) = 1;
-    } else if (next == knots_.end()) {
-      out(count() - 1) = 1;
-    } else {
-      const auto k = static_cast<Eigen::Index>(next - knots_.begin());
-      const double u = (x - *(next - 1)) / (*next - *(next - 1));
-      out(k - 1) = 1 - u;
-      out(k) = u;
-    }
-    return out;
-  }
-
- private:
-  std::vector<double> knots_;
-};
-
-std::vector<double> even_knots(double first, double last, int count) {
-  std::vector<double> knots;
-  for (int k = 0; k < count; ++k) knots.push_back(first + (last - first) * k / (count - 1));
-  return knots;
-}
 
 double middle_time(const Observations& observations, const Observations::SlipObservation& slip) {
   return 0.5 * (observations.time[slip.begin] + observations.time[slip.end - 1]);
@@ -273,6 +241,24 @@ std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& tr
   return probe;
 }
 
+/// Knots are closer just after a reversal, where what remembers it changes most.
+std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, const Trial& trial) {
+  const Observations& o = context.coarse.observations;
+  if (o.reversal_distance.empty()) return std::nullopt;
+  const double longest = *std::max_element(o.reversal_distance.begin(), o.reversal_distance.end());
+  std::vector<double> knots = even_knots(0, 1, 9);
+  for (double& knot : knots) knot *= knot * longest;
+  const Hats hats(knots);
+  Probe probe;
+  probe.variable = ResidualVariable::reversal_distance;
+  const auto row = [&o, &hats](std::size_t k, std::size_t i) {
+    const auto& range = o.slips[k];
+    return hats(o.reversal_distance[std::min(range.begin + i, range.end - 1)]);
+  };
+  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  return probe;
+}
+
 std::optional<Probe> over_load(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
   const Observations& o = context.coarse.observations;
   if (o.load.empty()) return std::nullopt;
@@ -369,6 +355,7 @@ std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coars
   add(over_angle(context, coarse, inputs));
   add(over_stick_time(context, coarse));
   add(over_load(context, coarse, inputs));
+  add(over_reversal_distance(context, coarse));
   add(over_frequency(context, fine, residual));
   return out;
 }

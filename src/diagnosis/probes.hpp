@@ -18,7 +18,8 @@ struct Probe {
   std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|
 };
 
-/// Every variable that these data can distinguish: velocity, branch, time, angle, stick-time, load, frequency.
+/// Every variable that these data can distinguish: velocity, branch, time, angle, stick-time, load, reversal-distance,
+/// frequency.
 /// trial: at the coarse level of the context.
 std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual);

@@ -7,6 +7,7 @@
 #include "assessment.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/segmentation/strokes.hpp"
 
 namespace tribofit {
 
@@ -15,6 +16,8 @@ FullRecord::FullRecord(std::span<const Record> records, const Observations& obse
   for (std::size_t r = 0; r < records.size(); ++r) {
     if (needs.angle) channels_[r].angle = disc_angle(*records[r].motion);
     if (needs.distance) channels_[r].distance = sliding_distance(*records[r].motion);
+    if (needs.reversal_distance)
+      channels_[r].reversal_distance = strokes_of(*records[r].motion, *records[r].segmentation).distance;
   }
 }
 
@@ -51,6 +54,7 @@ Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   };
   slip.angle = as_fitted(observations_.angle, channel.angle);
   slip.distance = as_fitted(observations_.distance, channel.distance);
+  slip.reversal_distance = as_fitted(observations_.reversal_distance, channel.reversal_distance);
   slip.load = as_fitted(observations_.load, motion.load);
   if (motion.load.empty() && !observations_.load.empty()) {
     load_.assign(range.samples.size(), observations_.load[range.begin]);

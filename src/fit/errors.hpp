@@ -23,7 +23,7 @@ class FullRecord {
 
  private:
   struct Channel {
-    std::vector<double> angle, distance;
+    std::vector<double> angle, distance, reversal_distance;
   };
   std::span<const Record> records_;
   const Observations& observations_;

@@ -9,7 +9,7 @@
 #include "errors.hpp"
 #include "points.hpp"
 #include "slip_ranges.hpp"
-#include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -163,11 +163,27 @@ void add_acceleration(const Motion& motion, Observations& out) {
   }
 }
 
+/// How far each value is from the last reversal, and what each slip remembers of the strokes before it.
+void add_strokes(const Motion& motion, const Segmentation& segmentation, const Reducer& reduce, Observations& out) {
+  const Strokes strokes = strokes_of(motion, segmentation);
+  out.reversal_distance = reduce.means(strokes.distance);
+  out.stroke = strokes.length;
+  for (auto& slip : out.slips) {
+    slip.strokes_begin = slip.strokes_end = out.earlier_strokes.size();
+    if (!strokes.known()) continue;
+    const std::vector<double>& earlier = strokes.earlier[slip.segment];
+    out.earlier_strokes.insert(out.earlier_strokes.end(), earlier.begin(), earlier.end());
+    slip.strokes_end = out.earlier_strokes.size();
+  }
+}
+
 /// The channels that effects need, as far as the record has them.
-void add_channels(const Motion& motion, const Channels& needs, const Reducer& reduce, Observations& out) {
+void add_channels(const Motion& motion, const Segmentation& segmentation, const Channels& needs, const Reducer& reduce,
+                  Observations& out) {
   if (needs.acceleration) add_acceleration(motion, out);
   if (needs.angle) out.angle = reduce.means(disc_angle(motion));
   if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
+  if (needs.reversal_distance) add_strokes(motion, segmentation, reduce, out);
   if (needs.load || needs.force) {
     // Records that differ in a constant load show together what none shows alone.
     if (motion.load.empty() && motion.conditions.load.known()) {
@@ -195,7 +211,7 @@ void set_extent(Observations& out) {
 /// Scales of several records: medians over the slips of all of them, the longest record.
 RecordScales scales_of(std::span<const Observations> records) {
   std::vector<double> times, lengths, sticks, accelerations;
-  double duration = 0, distance = 0, top_speed = 0, force = 0;
+  double duration = 0, distance = 0, stroke = 0, top_speed = 0, force = 0;
   const bool any_stick = std::any_of(records.begin(), records.end(), [](const Observations& record) {
     return std::any_of(record.slips.begin(), record.slips.end(), [](const auto& slip) { return slip.from_stick; });
   });
@@ -218,6 +234,7 @@ RecordScales scales_of(std::span<const Observations> records) {
     for (const double a : record.acceleration) accelerations.push_back(std::abs(a));
     if (record.size() > 0) duration = std::max(duration, record.time.back() - record.time.front());
     distance = std::max(distance, slid);
+    stroke = std::max(stroke, record.stroke);
     top_speed = std::max(top_speed, record.fastest);
     force = std::max(force, record.largest_friction * record.mean_load);
   }
@@ -234,6 +251,7 @@ RecordScales scales_of(std::span<const Observations> records) {
   }
   take(out.duration, duration);
   take(out.distance, distance);
+  take(out.stroke, stroke);
   take(out.top_speed, top_speed);
   if (!accelerations.empty()) take(out.mass, force / quantile(std::move(accelerations), 0.95));
   return out;
@@ -250,6 +268,8 @@ Slip Observations::slip(const SlipObservation& range) const {
   slip.acceleration = part(acceleration);
   slip.angle = part(angle);
   slip.distance = part(distance);
+  slip.reversal_distance = part(reversal_distance);
+  slip.earlier_strokes = part_of(earlier_strokes, range.strokes_begin, range.strokes_end);
   slip.load = part(load);
   slip.temperature = part(temperature);
   slip.velocity_variance = part(velocity_variance);
@@ -260,37 +280,6 @@ Slip Observations::slip(const SlipObservation& range) const {
   slip.mean_load = mean_load;
   slip.mean_temperature = mean_temperature;
   return slip;
-}
-
-std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples) {
-  // The same part of a slip at any rate leaves about the same noise; a longer one would flatten what turns quickly.
-  constexpr double kPart = 0.015;
-  const double stretch = kPart * static_cast<double>(samples.size());
-  const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, 10.0));
-  if (!motion.acceleration.empty()) {
-    const std::span<const double> own = part_of(motion.acceleration, samples.begin, samples.end);
-    return {own.begin(), own.end()};
-  }
-  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
-  const std::size_t length = samples.end - begin;
-  std::vector<double> acceleration(samples.size(), 0.0);
-  if (length < 3) return acceleration;
-  std::vector<double> weights;
-  std::size_t last_left = 0, last_right = 0;
-  for (std::size_t i = samples.begin; i < samples.end; ++i) {
-    const std::size_t right = std::min(half, samples.end - 1 - i);
-    const std::size_t left = std::min(i - begin, 2 * half - right);
-    if (weights.empty() || left != last_left || right != last_right) weights = slope_weights(left, right);
-    last_left = left;
-    last_right = right;
-    double slope = 0;
-    for (std::size_t k = 0; k <= left + right; ++k) {
-      const std::size_t at = i - left + k;
-      slope += weights[k] * (motion.disc_velocity_at(at) - motion.relative_velocity[at]);
-    }
-    acceleration[i - samples.begin] = slope / motion.step;
-  }
-  return acceleration;
 }
 
 std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count) {
@@ -325,6 +314,8 @@ Observations join(std::vector<Observations> records) {
       slip.cycle += out.cycles;
       slip.lead_begin += out.lead_time.size();
       slip.lead_end += out.lead_time.size();
+      slip.strokes_begin += out.earlier_strokes.size();
+      slip.strokes_end += out.earlier_strokes.size();
       if (slip.stick != Observations::npos) slip.stick += out.sticks.size();
       slip.record = r;
       out.slips.push_back(slip);
@@ -344,13 +335,14 @@ Observations join(std::vector<Observations> records) {
     for (auto* side : {&out, &next}) {
       if (side->velocity_variance.empty()) side->velocity_variance.assign(side->size(), 0.0);
     }
-    for (const auto channel : {&Observations::acceleration, &Observations::angle, &Observations::distance,
-                               &Observations::load, &Observations::temperature, &Observations::velocity_variance}) {
+    for (const auto channel :
+         {&Observations::acceleration, &Observations::angle, &Observations::distance, &Observations::reversal_distance,
+          &Observations::load, &Observations::temperature, &Observations::velocity_variance}) {
       append(out.*channel, next.*channel);
     }
-    for (const auto channel :
-         {&Observations::time, &Observations::velocity, &Observations::friction, &Observations::weight,
-          &Observations::root_weight, &Observations::lead_time, &Observations::lead_velocity}) {
+    for (const auto channel : {&Observations::time, &Observations::velocity, &Observations::friction,
+                               &Observations::weight, &Observations::root_weight, &Observations::lead_time,
+                               &Observations::lead_velocity, &Observations::earlier_strokes}) {
       (out.*channel).insert((out.*channel).end(), (next.*channel).begin(), (next.*channel).end());
     }
     out.fastest = std::max(out.fastest, next.fastest);
@@ -386,7 +378,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   });
   weigh_points(motion, out);
   if (out.samples_per_value > 1 || !motion.velocity_variance.empty()) add_velocity_variance(motion, reduce, out);
-  add_channels(motion, needs, reduce, out);
+  add_channels(motion, segmentation, needs, reduce, out);
   set_extent(out);
   add_slow_noise(motion, segmentation, out);
   out.scales = scales_of({&out, 1});

@@ -9,6 +9,7 @@
 
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/segmentation/strokes.hpp"
 
 namespace tribofit {
 
@@ -96,6 +97,9 @@ void require_channels(std::span<const Effect> effects, Identification& trace) {
   }
   if (needs.time && motion.is_points())
     trace.refuse("an effect needs to know what came before each sample, and points have no order in time");
+  if (needs.reversal_distance && !strokes_of(motion, trace.segmentation).known())
+    trace.refuse(fmt::format("an effect needs the distance since a reversal: {}",
+                             too_few_reversals(reversals_of(trace.segmentation))));
   require(needs.temperature, !motion.temperature.empty(), "temperature");
   require(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }

@@ -86,6 +86,8 @@ double growth_of(BoundScaling scaling, const RecordScales& here) {
       return stated.duration / here.duration;
     case BoundScaling::with_distance:
       return here.distance / stated.distance;
+    case BoundScaling::with_stroke:
+      return here.stroke / stated.stroke;
     case BoundScaling::with_mass:
       return here.mass / stated.mass;
     case BoundScaling::never:
@@ -144,12 +146,46 @@ void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& 
   }
 }
 
+double distance_of_change(const Observations& observations, std::span<const double> residual, double lower,
+                          double upper) {
+  struct Value {
+    double distance, level, weight;
+  };
+  std::vector<Value> values;
+  double total = 0, weights = 0;
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.begin; i < slip.end && !observations.reversal_distance.empty(); ++i) {
+      const double weight = observations.weight[i];
+      values.push_back({observations.reversal_distance[i], slip.direction * weight * residual[i], weight});
+      total += values.back().level;
+      weights += weight;
+    }
+  }
+  std::sort(values.begin(), values.end(), [](const Value& a, const Value& b) { return a.distance < b.distance; });
+  double level = 0, weight = 0, best = -1, at = lower;
+  for (const Value& value : values) {
+    level += value.level;
+    weight += value.weight;
+    const bool inside = value.distance > lower && value.distance < upper && weight < weights;
+    if (!inside) continue;
+    const double gap = level / weight - (total - level) / (weights - weight);
+    const double gain = gap * gap * weight * (weights - weight);
+    if (gain > best) {
+      best = gain;
+      at = value.distance;
+    }
+  }
+  return at;
+}
+
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations,
                                     const Bounds& bounds) {
   std::vector<double> p;
   for (const auto& slot : model.parameters()) {
     const Parameter q = on_scale_of(slot.parameter, observations);
     p.push_back(q.start * q.si);
+    if (q.search == ParameterSearch::distance_of_change)
+      p.back() = distance_of_change(observations, about_mean_curve(observations), q.lower * q.si, q.upper * q.si);
   }
   const FrictionCurve curve = curve_of(observations);
   const std::vector<double> of_law = std::visit([&](const auto& law) { return law.start(curve); }, model.law());

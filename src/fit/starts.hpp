@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "tribofit/fit/fit.hpp"
@@ -24,6 +25,11 @@ void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& 
 /// Takes over the starts that were given, within the bounds.
 void apply_given(const FrictionModel& model, const std::vector<GivenParameter>& given, const Bounds& bounds,
                  std::vector<double>& start);
+
+/// Distance since a reversal, between lower and upper [m], at which the level of the residual changes most: one value
+/// for each of the observations.
+double distance_of_change(const Observations& observations, std::span<const double> residual, double lower,
+                          double upper);
 
 /// Start from the data: the law from mean friction over speed (its start()), effects from their catalogue start.
 std::vector<double> start_from_data(const FrictionModel& model, const Observations& observations, const Bounds& bounds);

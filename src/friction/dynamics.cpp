@@ -17,7 +17,7 @@ namespace {
 
 /// A slip of one sample, for hooks that take whole slips.
 struct OneSample {
-  double time, velocity, acceleration, angle, distance, load, temperature;
+  double time, velocity, acceleration, angle, distance, reversal_distance, load, temperature;
   Slip slip;
 
   explicit OneSample(const SlidingState<double>& at)
@@ -26,6 +26,7 @@ struct OneSample {
         acceleration(at.acceleration),
         angle(at.angle),
         distance(at.distance),
+        reversal_distance(at.reversal_distance),
         load(at.load),
         temperature(at.temperature) {
     const auto one = [](const double& x) { return std::span<const double>(&x, 1); };
@@ -34,6 +35,8 @@ struct OneSample {
     slip.acceleration = one(acceleration);
     slip.angle = one(angle);
     slip.distance = one(distance);
+    slip.reversal_distance = one(reversal_distance);
+    slip.earlier_strokes = at.earlier_strokes;
     slip.load = one(load);
     slip.temperature = one(temperature);
     slip.stick_time = at.stick_time;

@@ -25,11 +25,12 @@ struct Variable {
   const char* unit;
   double per_si;  ///< value in `unit` of one SI unit
 };
-constexpr std::array<Variable, 8> kVariables = {{{"v", "mm/s", 1e3},
+constexpr std::array<Variable, 9> kVariables = {{{"v", "mm/s", 1e3},
                                                  {"acceleration", "mm/s^2", 1e3},
                                                  {"t", "s", 1},
                                                  {"angle", "rad", 1},
                                                  {"distance", "mm", 1e3},
+                                                 {"reversal_distance", "mm", 1e3},
                                                  {"stick_time", "s", 1},
                                                  {"load", "N", 1},
                                                  {"temperature", "degC", 1}}};
@@ -56,7 +57,8 @@ std::vector<std::string> split_outside_brackets(std::string_view text, char sepa
   throw InputError(
       "the formula \"" + text + "\": " + problem,
       "write it as 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s' with the variables v [mm/s], "
-      "acceleration [mm/s^2], t [s], angle [rad], distance [mm], stick_time [s], load [N], temperature [degC]");
+      "acceleration [mm/s^2], t [s], angle [rad], distance [mm], reversal_distance [mm], stick_time [s], load [N], "
+      "temperature [degC]");
 }
 
 /// Units of the variables a formula is written in, so that a parameter's number means the same as the variable's.
@@ -258,8 +260,10 @@ Formula::Formula(std::string_view given) : parsed_(std::make_unique<Parsed>()) {
                .load = used.contains("load"),
                .temperature = used.contains("temperature"),
                .stick_time = used.contains("stick_time"),
+               .reversal_distance = used.contains("reversal_distance"),
                .time = used.contains("t")};
-    p.needs.time |= p.needs.acceleration || p.needs.angle || p.needs.distance || p.needs.stick_time;
+    p.needs.time |=
+        p.needs.acceleration || p.needs.angle || p.needs.distance || p.needs.reversal_distance || p.needs.stick_time;
     p.parser.Eval();
     if (p.parser.GetNumResults() != 1) reject("there is more than one expression", p.text);
   } catch (const mu::Parser::exception_type& error) {
@@ -314,8 +318,9 @@ void Formula::evaluate(std::span<const double> values, const Slip& slip, std::sp
   try {
     for (std::size_t i = 0; i < slip.size(); ++i) {
       const SlidingState<double> at = slip.at(i, speed[i]);
-      const std::array<double, kVariables.size()> si = {speed[i],    at.acceleration, at.time, at.angle,
-                                                        at.distance, at.stick_time,   at.load, at.temperature};
+      const std::array<double, kVariables.size()> si = {speed[i],      at.acceleration, at.time,
+                                                        at.angle,      at.distance,     at.reversal_distance,
+                                                        at.stick_time, at.load,         at.temperature};
       for (std::size_t k = 0; k < si.size(); ++k) p.variable[k] = si[k] * kVariables[k].per_si;
       terms[i] = p.parser.Eval();
     }

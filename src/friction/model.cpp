@@ -122,6 +122,7 @@ Channels FrictionModel::needs() const {
     all.acceleration |= c.acceleration;
     all.angle |= c.angle;
     all.distance |= c.distance;
+    all.reversal_distance |= c.reversal_distance;
     all.load |= c.load;
     all.temperature |= c.temperature;
     all.stick_time |= c.stick_time;

@@ -55,6 +55,7 @@ Slip slip_of(const SimulatedMotion& motion, std::size_t begin, std::size_t end, 
   slip.acceleration = part(motion.acceleration);
   slip.angle = part(motion.disc_angle);
   slip.distance = part(motion.distance);
+  slip.reversal_distance = part(motion.reversal_distance);
   slip.load = part(motion.load);
   slip.temperature = part(motion.temperature);
   slip.mean_load = motion.mean_load;
@@ -277,6 +278,7 @@ double floor_rmse(const SimulatedMotion& motion, const Recording& recording, con
     slip.stick_slope = begin >= 2 ? (motion.friction[begin - 1] - motion.friction[begin - 2]) * motion.rate : 0;
     slip.direction = event.direction;
     slip.disc_speed = motion.disc_speed[begin];
+    slip.earlier_strokes = event.earlier_strokes;
     std::vector<double> model_mu(end - begin);
     evaluate<double>(law, kept.data(), slip, velocity, model_mu);
     for (std::size_t i = begin; i < end; ++i) {

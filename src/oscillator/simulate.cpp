@@ -62,6 +62,7 @@ SimulatedMotion Simulation::run() {
   if (time_ < 0) {
     advance(0);
     // Distances count from here.
+    flow_.count_strokes_from(sticking_ ? slid_ : flow_.slid(0, state_));
     if (!sticking_) {
       slid_at_reversal_ -= flow_.slid(0, state_);
       flow_.begin(0, state_, flow_.direction(), flow_.stick_time(), 0);
@@ -105,6 +106,7 @@ void Simulation::sample_stick(double until) {
     const double x = stuck_position(t);
     write_sample(t, x, setup_.disc_velocity(t), spring_pull(x, t) / setup_.load(t), true);
     motion_.distance.push_back(slid_);
+    if (setup_.needs_strokes) motion_.reversal_distance.push_back(flow_.strokes().gone(slid_));
   }
 }
 
@@ -115,6 +117,7 @@ void Simulation::sample_slip(double h) {
     const BlockState y = dense(t, h);
     write_sample(t, y[0] / setup_.natural_frequency, y[1], flow_.friction(t, y), false);
     motion_.distance.push_back(flow_.slid(t, y));
+    if (setup_.needs_strokes) motion_.reversal_distance.push_back(flow_.strokes().gone(motion_.distance.back()));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "normal_stream.hpp"
 #include "slip_flow.hpp"
@@ -42,6 +43,12 @@ class Simulation {
   void note_extremes(double h);
   void watch_creep(double h);
   void end_creeping_slip(double restick_time);
+
+  /// Of the slip under way.
+  std::vector<double> earlier_strokes() const {
+    const std::span<const double> lengths = flow_.strokes().earlier();
+    return {lengths.begin(), lengths.end()};
+  }
 
   double spring_pull(double x, double t) const;
   double gap_to_break_away(double t);

@@ -219,7 +219,8 @@ void Simulation::confirm_creeping_slip(double restick_time) {
                            .direction = flow_.direction() < 0 ? -1 : 1,
                            .mu_s_offset = scatter_.value(),
                            .break_away_friction = std::abs(friction_at_creep_end_),
-                           .peak_speed = peak_speed_});
+                           .peak_speed = peak_speed_,
+                           .earlier_strokes = earlier_strokes()});
 }
 
 }  // namespace tribofit

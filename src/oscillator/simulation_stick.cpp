@@ -30,12 +30,19 @@ double Simulation::gap_to_break_away(double t) {
   const double stick_time = t - stick_begin_;
   const double direction = pull < 0 ? -1 : 1;
   friction_.begin_slip(stick_time, direction, scatter_.value());
+  StrokesSoFar strokes;
+  if (setup_.needs_strokes) {
+    strokes = flow_.strokes();
+    strokes.go(direction, slid_);
+  }
   const SlidingState<double> at = {.velocity = 0,
                                    .direction = direction,
                                    .acceleration = setup_.disc_acceleration(t),
                                    .time = std::max(t, 0.0),
                                    .angle = setup_.drive.speed.angle(t),
                                    .distance = t > 0 ? slid_ : 0,
+                                   .reversal_distance = strokes.gone(slid_),
+                                   .earlier_strokes = strokes.earlier(),
                                    .stick_time = stick_time,
                                    .load = setup_.load(t),
                                    .mean_load = setup_.drive.mean_load,
@@ -93,7 +100,8 @@ void Simulation::break_away() {
                            .stick_time = stick_time,
                            .direction = direction,
                            .mu_s_offset = scatter_.value(),
-                           .break_away_friction = std::abs(pull) / setup_.load(time_)});
+                           .break_away_friction = std::abs(pull) / setup_.load(time_),
+                           .earlier_strokes = earlier_strokes()});
   peak_speed_ = 0;
 }
 

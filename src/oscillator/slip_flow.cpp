@@ -11,6 +11,7 @@ void SlipFlow::begin(double t, const BlockState& y, double direction, double sti
   stick_time_ = stick_time;
   slid_before_ = slid;
   lag_before_ = setup_.disc_travel(t) - y[0] / setup_.natural_frequency;
+  if (setup_.needs_strokes) strokes_.go(direction, slid);
 }
 
 double SlipFlow::slid(double t, const BlockState& y) const {
@@ -26,6 +27,8 @@ SlidingState<double> SlipFlow::instant(double speed, double block_acceleration, 
           .time = std::max(t, 0.0),
           .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,
           .distance = setup_.needs_distance && t > 0 ? slid(t, y) : 0,
+          .reversal_distance = strokes_.gone(setup_.needs_strokes ? slid(t, y) : 0),
+          .earlier_strokes = strokes_.earlier(),
           .stick_time = stick_time_,
           .load = setup_.load(t),
           .mean_load = setup_.drive.mean_load,

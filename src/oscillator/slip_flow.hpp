@@ -1,13 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "tribofit/friction/dynamics.hpp"
 #include "tribofit/oscillator/drive.hpp"
 #include "tribofit/oscillator/rig.hpp"
+#include "tribofit/segmentation/stroke_memory.hpp"
 
 namespace tribofit {
 
@@ -26,13 +30,14 @@ struct Setup {
         natural_frequency(rig.natural_frequency()),
         needs_angle(model.needs().angle),
         needs_distance(model.needs().distance),
+        needs_strokes(model.needs().reversal_distance),
         needs_acceleration(model.needs().acceleration) {}
 
   Rig rig;
   Drive drive;
   double constant_speed;     ///< of the disc, where it is constant [rad/s]
   double natural_frequency;  ///< [rad/s]
-  bool needs_angle, needs_distance, needs_acceleration;
+  bool needs_angle, needs_distance, needs_strokes, needs_acceleration;
 
   double disc_speed(double t) const { return drive.speed.constant ? constant_speed : drive.speed.speed(t); }
   double disc_velocity(double t) const { return drive.radius * disc_speed(t); }
@@ -43,6 +48,27 @@ struct Setup {
   double disc_travel(double t) const { return drive.radius * drive.speed.angle(t); }
   double load(double t) const { return drive.load ? drive.load(t) : drive.mean_load; }
   double temperature(double t) const { return drive.temperature ? drive.temperature(t) : drive.mean_temperature; }
+};
+
+/// How far a motion has slid since it reversed, and the strokes before.
+class StrokesSoFar {
+ public:
+  /// A slip begins, the same way as the one before or the other way.
+  void go(double direction, double slid) {
+    if (direction == direction_) return;
+    if (std::isfinite(begin_)) memory_.end_stroke(slid - begin_);
+    if (direction_ != 0) begin_ = slid;
+    direction_ = direction;
+  }
+  /// Distances are counted from where `slid` was slid.
+  void count_from(double slid) { begin_ -= slid; }
+  /// Infinite before the first reversal.
+  double gone(double slid) const { return slid - begin_; }
+  std::span<const double> earlier() const { return memory_.lengths(); }
+
+ private:
+  double direction_ = 0, begin_ = -std::numeric_limits<double>::infinity();
+  StrokeMemory memory_;
 };
 
 /// The equations of motion while v_r keeps one direction.
@@ -62,6 +88,10 @@ class SlipFlow {
   double slip_speed(double t, const BlockState& y) const { return direction_ * (setup_.disc_velocity(t) - y[1]); }
   /// Slid since the beginning of the simulation [m].
   double slid(double t, const BlockState& y) const;
+  /// Strokes up to this slip; not kept where no effect needs them.
+  const StrokesSoFar& strokes() const { return strokes_; }
+  /// Their distances are counted from where `slid` was slid.
+  void count_strokes_from(double slid) { strokes_.count_from(slid); }
 
   /// dy = dy/dt.
   void operator()(const BlockState& y, BlockState& dy, double t) const;
@@ -80,6 +110,7 @@ class SlipFlow {
   const FrictionDynamics& friction_;
   double direction_ = 1, stick_time_ = 0;
   double slid_before_ = 0, lag_before_ = 0;  ///< lag: way of the disc less that of the block
+  StrokesSoFar strokes_;
 };
 
 }  // namespace tribofit

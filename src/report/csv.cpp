@@ -13,6 +13,7 @@
 #include "numbers.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/segmentation/strokes.hpp"
 
 namespace tribofit {
 namespace {
@@ -44,6 +45,10 @@ void write_samples(WholeFolder& folder, const Identification& result, const std:
     columns.emplace_back("relative_velocity_std_error_mm_s",
                          [&](std::size_t i) { return m.velocity_std_error[i] / kMillimetre; });
     columns.emplace_back("mu_std_error", [&](std::size_t i) { return m.friction_std_error[i]; });
+  }
+  const Strokes strokes = strokes_of(m, result.segmentation);
+  if (strokes.known()) {
+    columns.emplace_back("reversal_distance_mm", [&](std::size_t i) { return strokes.distance[i] / kMillimetre; });
   }
   CsvTable table(folder, "samples.csv", std::move(columns), kMeasuredDigits);
   for (std::size_t i = 0; i < m.size(); ++i) table.row(i);

@@ -15,10 +15,11 @@ namespace {
 
 /// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
 std::string channels_text(const Channels& needs, bool in_full) {
-  const std::array<std::tuple<bool, const char*, const char*>, 9> all = {
+  const std::array<std::tuple<bool, const char*, const char*>, 10> all = {
       {{needs.acceleration, "acceleration", "block acceleration (from v_b)"},
        {needs.angle, "disc angle", "disc angle (measured, or from the speed), two revolutions"},
        {needs.distance, "distance", "sliding distance (from v_r)"},
+       {needs.reversal_distance, "reversals", "distance since a reversal (from v_r), four reversals"},
        {needs.load, "load", "a load that varies"},
        {needs.force && !needs.load, "load", "the normal force, or friction as a force"},
        {needs.temperature, "temperature", "temperature"},
@@ -45,7 +46,7 @@ std::string parameters_text(std::span<const Parameter> parameters) {
 /// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
 std::string scaling_text(BoundScaling scaling) {
   using enum BoundScaling;
-  constexpr std::array<std::pair<BoundScaling, const char*>, 12> kTexts = {
+  constexpr std::array<std::pair<BoundScaling, const char*>, 13> kTexts = {
       {{with_slip_time, "in proportion to the slip time"},
        {against_slip_time, "in inverse proportion to the slip time"},
        {with_stick_time, "in proportion to the stick time"},
@@ -55,6 +56,7 @@ std::string scaling_text(BoundScaling scaling) {
        {with_duration, "in proportion to the duration of the record"},
        {against_duration, "in inverse proportion to the duration of the record"},
        {with_distance, "in proportion to the distance slid"},
+       {with_stroke, "in proportion to the strokes"},
        {with_mass, "in proportion to friction force over acceleration"},
        {with_speed, "from the speeds of the record"},
        {against_speed, "from the speeds of the record"}}};

@@ -31,6 +31,9 @@ inline constexpr double kShowsDuration = 0.4, kChatterPeak = 0.2, kChatterTime =
 inline constexpr double kSpikeSamples = 3, kSpikeTime = 0.1;
 /// Samples between two slips in opposite directions that show whether v_r stays or passes: a third at either end.
 inline constexpr std::size_t kShortestTurn = 6;
+/// Standard deviations of a distance (white noise of v_r, added up) beyond which a motion has turned: coloured noise
+/// adds up to several times as much. Larger: short strokes pass for none; smaller: noise begins strokes.
+inline constexpr double kTurnOverNoise = 10;
 
 // ---- sticks
 

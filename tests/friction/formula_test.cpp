@@ -29,15 +29,16 @@ TEST(Formula, FollowsItsExpressionInTheUnitsOfThePage) {
 
 TEST(Formula, SeesEveryVariable) {
   const samples::ExampleSlip example(10);
-  const FrictionModel model(
-      CoulombLaw{}, {Formula("all = k*(acceleration + t + angle + distance + stick_time + load + temperature); k=1")});
+  const FrictionModel model(CoulombLaw{}, {Formula("all = k*(acceleration + t + angle + distance + reversal_distance + "
+                                                   "stick_time + load + temperature); k=1")});
   const double mu = run(model, {0.5, 0.0, 1.0}, example.slip)[3];
   EXPECT_NEAR(mu,
-              1e3 * example.acceleration[3] + example.time[3] + example.angle[3] + 1e3 * example.distance[3] + 0.1 +
-                  example.load[3] + example.temperature[3],
+              1e3 * example.acceleration[3] + example.time[3] + example.angle[3] + 1e3 * example.distance[3] +
+                  1e3 * example.reversal_distance[3] + 0.1 + example.load[3] + example.temperature[3],
               1e-9);
   EXPECT_TRUE(model.needs().acceleration && model.needs().load && model.needs().temperature);
-  EXPECT_TRUE(model.needs().angle && model.needs().distance && model.needs().stick_time);
+  EXPECT_TRUE(model.needs().angle && model.needs().distance && model.needs().reversal_distance);
+  EXPECT_TRUE(model.needs().stick_time && model.needs().time);
 }
 
 TEST(Formula, RefusesWhatItCannotRead) {

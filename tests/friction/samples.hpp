@@ -11,7 +11,8 @@ namespace samples {
 
 /// A slip of prescribed speed with every channel present: peak * sin^2 over `duration`.
 struct ExampleSlip {
-  std::vector<double> time, velocity, acceleration, angle, distance, load, temperature;
+  std::vector<double> time, velocity, acceleration, angle, distance, reversal_distance, load, temperature;
+  std::vector<double> earlier_strokes = {0.02, 0.012, 0.004};
   tribofit::Slip slip;
 
   explicit ExampleSlip(std::size_t n = 400, double peak = 0.08, double duration = 0.1, double direction = 1) {
@@ -24,6 +25,7 @@ struct ExampleSlip {
       angle.push_back(0.42 * time.back());
       slid += std::abs(velocity.back()) * duration / static_cast<double>(n);
       distance.push_back(slid);
+      reversal_distance.push_back(slid - 1.499);
       load.push_back(50 + 5 * std::sin(40 * time.back()));
       temperature.push_back(25 + s);
     }
@@ -32,6 +34,8 @@ struct ExampleSlip {
     slip.acceleration = acceleration;
     slip.angle = angle;
     slip.distance = distance;
+    slip.reversal_distance = reversal_distance;
+    slip.earlier_strokes = earlier_strokes;
     slip.load = load;
     slip.temperature = temperature;
     slip.from_stick = true;

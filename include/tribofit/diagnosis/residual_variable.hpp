@@ -7,7 +7,7 @@
 namespace tribofit {
 
 /// What the error that a model leaves may vary with.
-enum class ResidualVariable { velocity, branch, time, angle, stick_time, load, frequency, stick };
+enum class ResidualVariable { velocity, branch, time, angle, stick_time, load, frequency, stick, reversal_distance };
 
 struct ResidualVariableInfo {
   std::string_view name;        ///< in JSON
@@ -18,7 +18,7 @@ struct ResidualVariableInfo {
 inline const ResidualVariableInfo& describe(ResidualVariable variable) {
   static constexpr std::string_view kOfLoop =
       "Run at 1, 2, 4 and 8 rpm: a loop that is constant in ms is a lag or a delay, one constant in um a memory.";
-  static constexpr std::array<ResidualVariableInfo, 8> infos = {
+  static constexpr std::array<ResidualVariableInfo, 9> infos = {
       {{"velocity", "the sliding speed", "Repeat at another disc speed: what belongs to v_r stays at the same v_r."},
        {"branch", "the branch, speeding up or slowing down", kOfLoop},
        {"time", "time", "Repeat the run: what belongs to the clock or to the surface comes back at another time."},
@@ -27,7 +27,9 @@ inline const ResidualVariableInfo& describe(ResidualVariable variable) {
        {"load", "the normal load", "Step the load up and down: what belongs to it comes back at the same load."},
        {"frequency", "a narrow band of frequency",
         "Record with the disc at rest: a line that stays is picked up by the instruments."},
-       {"stick", "creep in stick", kOfLoop}}};
+       {"stick", "creep in stick", kOfLoop},
+       {"reversal-distance", "the distance since a reversal",
+        "Repeat the same stroke at two speeds: what is constant in mm is a play or a hysteresis, in ms a memory."}}};
   return infos[static_cast<std::size_t>(variable)];
 }
 inline std::string_view to_string(ResidualVariable variable) {

@@ -23,6 +23,7 @@ struct RecordScales {
   double stick_time = 0.15;      ///< [s]; a slip time of this record where no stick is known
   double duration = 40;          ///< of the longest record [s]
   double distance = 0.25;        ///< slid in the longest record [m]
+  double stroke = 0.1;           ///< of a motion back and forth [m]; [D] has none
   double mass = 4;               ///< largest friction force over the acceleration that one value in twenty exceeds [kg]
 };
 
@@ -54,6 +55,7 @@ struct Observations {
     double break_away_root_weight = 1;  ///< of its residual beside that of a sample: less where its time is not known
     double slow_variance = 0;           ///< of its level, by the 1/f noise that its record shows [1 or N squared]
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
+    std::size_t strokes_begin = 0, strokes_end = 0;  ///< of earlier_strokes
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
     std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none
   };
@@ -73,7 +75,9 @@ struct Observations {
   std::vector<double> velocity_variance;         ///< of v_r within each value [m^2/s^2]; empty when values are samples
   std::vector<double> weight, root_weight;       ///< samples behind each value (of points: as their standard errors
                                                  ///< say, one on average), and its square root
-  std::vector<double> acceleration, angle, distance, load, temperature;  ///< empty when not needed or absent
+  /// Empty when not needed or absent.
+  std::vector<double> acceleration, angle, distance, reversal_distance, load, temperature;
+  std::vector<double> earlier_strokes;           ///< that the slips remember [m], where there is a reversal_distance
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<SlipObservation> slips;
   std::vector<StickCreep> sticks;           ///< creep as evidence; empty unless add_stick_evidence() filled it
@@ -85,6 +89,7 @@ struct Observations {
   double mean_load = 1;         ///< N0 [N]
   double mean_temperature = 0;  ///< T0 [degC]
   double fastest = 0;           ///< largest |v_r| [m/s]
+  double stroke = 0;            ///< median length [m]; 0: not needed, or no strokes
   double slowest = 0;           ///< least |v_r| [m/s]; 0 where a slip begins in stick
   double largest_friction = 0;  ///< largest |mu|, the scale for bounds where friction is a force
   double flicker = 0;           ///< power of 1/f noise in the first record, in squared parts of friction

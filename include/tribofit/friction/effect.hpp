@@ -81,9 +81,10 @@ struct Motion;
 /// Channels that an effect needs to see.
 struct Channels {
   bool acceleration = false, angle = false, distance = false, load = false, temperature = false, stick_time = false;
-  bool lead = false;     ///< the last samples of the stick before each slip
-  bool force = false;    ///< the normal force, or friction as a force
-  bool plateau = false;  ///< v_b on the plateau of stick, with a stated speed
+  bool reversal_distance = false;  ///< the distance since the last reversal, in a record that reverses a few times
+  bool lead = false;               ///< the last samples of the stick before each slip
+  bool force = false;              ///< the normal force, or friction as a force
+  bool plateau = false;            ///< v_b on the plateau of stick, with a stated speed
   /// What came before, or when: points have none of it. describe() sets it where the sketch shows the effect over
   /// anything else than speed, direction, load and temperature.
   bool time = false;
@@ -123,16 +124,17 @@ enum class InstrumentValue {
 
 /// Over which variable the sketch of an effect is drawn (see oscillator/fingerprint.hpp).
 enum class SketchView {
-  loop,         ///< what the bare law leaves over v_r, both branches of one slip
-  curve,        ///< mu over v_r, with the effect and without
-  directions,   ///< |mu| over |v_r|, both directions
-  creep,        ///< v_r in stick over mu
-  stick_time,   ///< friction at break-away over stick time
-  time,         ///< what the bare law leaves of each slip, over time
-  distance,     ///< the same over sliding distance
-  angle,        ///< over the angle of the disc
-  load,         ///< over the load
-  temperature,  ///< over temperature
+  loop,            ///< what the bare law leaves over v_r, both branches of one slip
+  curve,           ///< mu over v_r, with the effect and without
+  directions,      ///< |mu| over |v_r|, both directions
+  creep,           ///< v_r in stick over mu
+  stick_time,      ///< friction at break-away over stick time
+  time,            ///< what the bare law leaves of each slip, over time
+  distance,        ///< the same over sliding distance
+  since_reversal,  ///< |mu| over the distance since the last reversal
+  angle,           ///< over the angle of the disc
+  load,            ///< over the load
+  temperature,     ///< over temperature
   since_break_away,
   acceleration,
   load_channel,  ///< the load channel over mu

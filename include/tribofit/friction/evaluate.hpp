@@ -262,8 +262,8 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
 template <class T>
 T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
   Slip first = slip;
-  for (auto* channel :
-       {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.load, &first.temperature}) {
+  for (auto* channel : {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.reversal_distance,
+                        &first.load, &first.temperature}) {
     if (!channel->empty()) *channel = channel->first(1);
   }
   first.time = {&slip.break_away_time, 1};

@@ -22,6 +22,7 @@ enum class BoundScaling {
   with_duration,        ///< a time within the record
   against_duration,     ///< a rate of change over the record
   with_distance,        ///< a distance within all that was slid
+  with_stroke,          ///< a distance after a reversal
   with_mass,            ///< the mass whose inertia is as large as friction
   with_speed,           ///< a speed at which a law falls: from 1/1000 to 100 times the fastest slip
   against_speed         ///< its inverse, the steepness of a law
@@ -35,10 +36,11 @@ enum class ParameterScope {
 
 /// How a search for a parameter begins.
 enum class ParameterSearch {
-  grid,             ///< from `start_grid_points` values
-  steady_line,      ///< from the strongest spectral line that runs through the whole record
-  ringing_line,     ///< from the strongest line that begins anew at each break-away
-  moment_of_change  ///< from the times at which the parameter before it may have begun to act
+  grid,               ///< from `start_grid_points` values
+  steady_line,        ///< from the strongest spectral line that runs through the whole record
+  ringing_line,       ///< from the strongest line that begins anew at each break-away
+  moment_of_change,   ///< from the times at which the parameter before it may have begun to act
+  distance_of_change  ///< from the distance since a reversal at which friction changes most
 };
 
 /// One parameter of a law or of an effect as a person sees it.

@@ -21,12 +21,15 @@ double scalar_part(const T& x) {
 /// One instant as a friction law may see it. SI.
 template <class T>
 struct SlidingState {
-  T velocity;                                                          ///< v_r [m/s], signed
-  double direction = 1;                                                ///< of sliding: the sign of v_r, also at rest
-  double acceleration = 0;                                             ///< of the block [m/s^2]
-  double time = 0;                                                     ///< from the trace's first sample [s]
-  double angle = 0;                                                    ///< of the disc [rad]
-  double distance = 0;                                                 ///< slid since the trace's first sample [m]
+  T velocity;               ///< v_r [m/s], signed
+  double direction = 1;     ///< of sliding: the sign of v_r, also at rest
+  double acceleration = 0;  ///< of the block [m/s^2]
+  double time = 0;          ///< from the trace's first sample [s]
+  double angle = 0;         ///< of the disc [rad]
+  double distance = 0;      ///< slid since the trace's first sample [m]
+  /// Slid since the last reversal [m]; infinite: none is known.
+  double reversal_distance = std::numeric_limits<double>::infinity();
+  std::span<const double> earlier_strokes = {};                        ///< before that reversal [m], see SlidingStroke
   double stick_time = 0;                                               ///< of the stick before this slip [s]
   double load = 0;                                                     ///< normal force [N]
   double mean_load = 1;                                                ///< N0 [N]
@@ -60,7 +63,7 @@ inline std::span<const double> part_of(std::span<const double> channel, std::siz
 
 /// Consecutive samples of one slip, structure of arrays, SI. Channels a trace does not have are empty.
 struct Slip : SlipFacts {
-  std::span<const double> time, velocity, acceleration, angle, distance, load, temperature;
+  std::span<const double> time, velocity, acceleration, angle, distance, reversal_distance, load, temperature;
   std::span<const double>
       velocity_variance;  ///< of v_r within each value, where values are means [m^2/s^2]; else empty
   std::span<const double> lead_time,
@@ -68,6 +71,8 @@ struct Slip : SlipFacts {
   std::span<const double> earlier_time, earlier_velocity;  ///< of the slip before that stick; empty where not recorded
   double mean_load = 1;                                    ///< N0 [N]
   double mean_temperature = 0;                             ///< T0 [degC]
+
+  std::span<const double> earlier_strokes;  ///< as in SlidingState
 
   std::size_t size() const { return time.size(); }
 
@@ -91,6 +96,8 @@ struct Slip : SlipFacts {
             time[i],
             value(angle, 0),
             value(distance, 0),
+            value(reversal_distance, std::numeric_limits<double>::infinity()),
+            earlier_strokes,
             std::isnan(stick_time) ? 0 : stick_time,
             value(load, mean_load),
             mean_load,

@@ -47,6 +47,7 @@ struct SimulatedSlip {
   double mu_s_offset = 0;          ///< added to mu_s in this cycle (the scatter) [1]
   double break_away_friction = 0;  ///< |mu| at break-away [1]
   double peak_speed = 0;           ///< largest |v_r| [m/s]; so far, where the slip does not end within the record
+  std::vector<double> earlier_strokes = {};  ///< as in SlidingState, where an effect needs them [m]
 };
 
 /// Where the block turns round, x' = 0.
@@ -64,6 +65,8 @@ struct SimulatedMotion {
   std::vector<double> friction;  ///< signed mu at the interface [1]; in rigid stick what the spring asks for
   std::vector<double> disc_speed, disc_angle;                      ///< [rad/s, rad]
   std::vector<double> distance;                                    ///< slid since the first sample [m]
+  std::vector<double> reversal_distance;                           ///< since the last reversal, infinite before the
+                                                                   ///< first [m]; empty where no effect needs it
   std::vector<double> load, temperature;                           ///< [N, degC]; empty where constant
   std::vector<std::uint8_t> sticks;                                ///< 1 in stick
   std::vector<SimulatedSlip> slips;                                ///< in order of time
