@@ -56,6 +56,7 @@ Drive drive_for(View view, const PublishedTest& test) {
   if (view == View::stick_time) {
     drive.speed = stepped_speed({0, 12, 19, 23}, {0.5 * kRpm, 1 * kRpm, 2 * kRpm, 8 * kRpm});
   }
+  if (view == View::since_reversal) drive.speed = reversing_speed(10 * test.speed, 0.2);
   if (view == View::load) drive.load = [](double t) { return 50 + 25 * std::sin(2 * std::numbers::pi * t / 20); };
   if (view == View::temperature) {
     drive.temperature = [](double t) { return 40 - 20 * std::cos(2 * std::numbers::pi * t / 40); };
@@ -66,6 +67,8 @@ Drive drive_for(View view, const PublishedTest& test) {
 
 Scene play(View view, const FrictionModel& model, const std::vector<double>& effect) {
   Scene scene;
+  // Strokes of 100 mm, on a rig that does not stick.
+  if (view == View::since_reversal) scene.test.rig = rig_with_damping_ratio(2, 1e6, 1);
   const PublishedTest& test = scene.test;
   std::vector<double> p = test.friction;
   const std::vector<double> bare = p;
@@ -73,11 +76,13 @@ Scene play(View view, const FrictionModel& model, const std::vector<double>& eff
   SimulationOptions options{.duration = 1.2, .settle = 1.6, .tolerance = 1e-8};
   if (view == View::stick_time) options.duration = 26;
   if (view == View::directions) options.duration = 2;
+  if (view == View::since_reversal) options.duration = 10;
   if (is_slow(view)) options.duration = 42;
   if (options.duration > 5) options.rate = 1000;
   const Drive drive = drive_for(view, test);
   scene.with = simulate_recording(model, p, test.rig, drive, options);
-  const bool compares = view == View::curve || view == View::stick_time || view == View::creep;
+  const bool compares =
+      view == View::curve || view == View::stick_time || view == View::creep || view == View::since_reversal;
   if (compares) scene.without = simulate_recording(FrictionModel(ExponentialLaw{}), bare, test.rig, drive, options);
   return scene;
 }
@@ -141,6 +146,21 @@ Fingerprint directions(const Scene& scene) {
     add(v > 0 ? forward : backward, std::abs(v), std::abs(scene.trace().friction[i]));
   }
   return {.x = {"|v_r|", "mm/s", 1e-3}, .y = {"|mu|", "", 1}, .clouds = {forward, backward}, .conditions = ""};
+}
+
+/// Of whole strokes.
+Fingerprint since_reversal(const Scene& scene) {
+  FingerprintCloud with{.name = "with", .x = {}, .y = {}}, without{.name = "without", .x = {}, .y = {}};
+  const SimulatedMotion& motion = scene.with.motion;
+  for (const auto& [begin, end] : slips_of(motion)) {
+    for (std::size_t i = begin; i < end; i += 5) {
+      const double distance = motion.distance[i] - motion.distance[begin];
+      const double direction = motion.relative_velocity[i] < 0 ? -1 : 1;
+      add(with, distance, direction * motion.friction[i]);
+      add(without, distance, direction * scene.without.motion.friction[i]);
+    }
+  }
+  return {.x = {"since reversal", "mm", 1e-3}, .y = kMu, .clouds = {with, without}, .conditions = ""};
 }
 
 /// The second half of a stick, without its end: what re-stick struck has died away.
@@ -208,6 +228,8 @@ Fingerprint draw(View view, const Scene& scene) {
       return curve(scene);
     case View::directions:
       return directions(scene);
+    case View::since_reversal:
+      return since_reversal(scene);
     case View::creep:
       return creep(scene);
     case View::stick_time:

@@ -114,4 +114,12 @@ TEST(Creep, DerivativesAreThoseOfDifferences) {
   }
 }
 
+TEST(Bristle, CreepInStickFollowsTheRampOfTheSpring) {
+  // near d mu/dt / sigma0 while mu is small against mu_s
+  const Bristle bristle;
+  const double p[] = {36.7e3, 0};
+  EXPECT_NEAR(bristle.creep(p, 0.5, 0.0, 2.0), 2.0 / 36.7e3, 1e-12);
+  EXPECT_NEAR(bristle.creep(p, 0.5, 0.25, 2.0), 4.0 / 36.7e3, 1e-12);
+}
+
 }  // namespace

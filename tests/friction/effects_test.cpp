@@ -81,18 +81,12 @@ TEST(Bristle, IsElasticBelowBreakAwayAndSteadyFarFromIt) {
   EXPECT_NEAR(run(model, {0.5, level, stiffness, 0.0}, far.slip)[99], level, 1e-9);
 }
 
-TEST(Bristle, CreepInStickFollowsTheRampOfTheSpring) {
-  // near d mu/dt / sigma0 while mu is small against mu_s
-  const Bristle bristle;
-  const double p[] = {36.7e3, 0};
-  EXPECT_NEAR(bristle.creep(p, 0.5, 0.0, 2.0), 2.0 / 36.7e3, 1e-12);
-  EXPECT_NEAR(bristle.creep(p, 0.5, 0.25, 2.0), 4.0 / 36.7e3, 1e-12);
-}
-
 /// One instant of sliding, with every channel.
 struct OneInstant {
   double time = 2, velocity = 0.05, acceleration = 0, angle = 0, distance = 0, load = 50, temperature = 20;
   double stick_time = 0, since_break_away = -1, disc_speed = 0.4;
+  double reversal_distance = std::numeric_limits<double>::infinity();
+  std::vector<double> earlier_strokes = {};
 };
 
 double read_at(const FrictionModel& model, const std::vector<double>& p, const OneInstant& x) {
@@ -103,6 +97,8 @@ double read_at(const FrictionModel& model, const std::vector<double>& p, const O
   slip.acceleration = one(x.acceleration);
   slip.angle = one(x.angle);
   slip.distance = one(x.distance);
+  slip.reversal_distance = one(x.reversal_distance);
+  slip.earlier_strokes = x.earlier_strokes;
   slip.load = one(x.load);
   slip.temperature = one(x.temperature);
   slip.stick_time = x.stick_time;
@@ -122,6 +118,15 @@ struct Point {
   OneInstant at;
   double expected;
 };
+
+void expect_points(const std::vector<Point>& points, double mu) {
+  for (const Point& point : points) {
+    const FrictionModel model(CoulombLaw{}, {make_effect(point.key)});
+    std::vector<double> p = {0.5, mu};
+    p.insert(p.end(), point.p.begin(), point.p.end());
+    EXPECT_NEAR(read_at(model, p, point.at), point.expected, 1e-8) << point.key << " " << &point - points.data();
+  }
+}
 
 TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
   const double mu = 0.3, turn = 2 * std::numbers::pi;
@@ -167,12 +172,36 @@ TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
       {"velocity-compression", {0.1}, {}, mu},
       {"clock-drift", {1e-4}, {}, mu},
   };
-  for (const Point& point : points) {
-    const FrictionModel model(CoulombLaw{}, {make_effect(point.key)});
-    std::vector<double> p = {0.5, mu};
-    p.insert(p.end(), point.p.begin(), point.p.end());
-    EXPECT_NEAR(read_at(model, p, point.at), point.expected, 1e-8) << point.key << " " << &point - points.data();
-  }
+  expect_points(points, mu);
+}
+
+TEST(Effects, SayWhatTheirEquationSaysAfterAReversal) {
+  const double mu = 0.3;
+  const std::vector<Point> points = {
+      {"hysteresis", {0.1, 0.01}, {}, mu},  // no reversal is known
+      {"hysteresis", {0.1, 0.01}, {.reversal_distance = 0, .earlier_strokes = {10}}, mu - 0.2},
+      {"hysteresis", {0.1, 0.01}, {.reversal_distance = 0.01}, mu - 0.2 * std::exp(-1)},
+      {"hysteresis",
+       {0.1, 0.01},
+       {.velocity = -0.05, .reversal_distance = 0.01, .earlier_strokes = {10}},
+       -mu + 0.2 * std::exp(-1)},
+      // Strokes of 10 mm about one middle, from where friction ended to where it will.
+      {"hysteresis", {0.1, 0.01}, {.reversal_distance = 0, .earlier_strokes = {0.01}}, mu - 0.1 * (2 - std::exp(-1))},
+      {"hysteresis", {0.1, 0.01}, {.reversal_distance = 0.01, .earlier_strokes = {0.01}}, mu - 0.1 * std::exp(-1)},
+      // A stroke that outgrows them, and one of 4 mm beside one of 10: closed after 4 mm, which is 11 mm of the latter.
+      {"hysteresis", {0.1, 0.01}, {.reversal_distance = 0.02, .earlier_strokes = {0.01}}, mu - 0.1 * std::exp(-3)},
+      {"hysteresis",
+       {0.1, 0.01},
+       {.reversal_distance = 0.005, .earlier_strokes = {0.03, 0.01, 0.004}},
+       mu - 0.1 * (2 * std::exp(-1.1) - std::exp(-3))},
+      {"backlash", {0.2, 0.01}, {}, mu},
+      {"backlash", {0.2, 0.01}, {.reversal_distance = 0.008}, 0.8 * mu},
+      {"backlash", {0.2, 0.01}, {.velocity = -0.05, .reversal_distance = 0.008}, -0.8 * mu},
+      {"backlash", {0.2, 0.01}, {.reversal_distance = 0.013}, mu},
+      // Turned within the play, and back: the other side is as far as it was.
+      {"backlash", {0.2, 0.01}, {.reversal_distance = 0.005, .earlier_strokes = {0.05, 0.004}}, mu},
+  };
+  expect_points(points, mu);
 }
 
 TEST(StribeckExponent, BendsTheFallAndKeepsItsEnds) {

@@ -25,6 +25,7 @@ const std::vector<Test>& tests() {
   const std::vector<Run> slow_and_long = {{.setting = Setting::slow, .speed = 0.25, .duration = 400, .rate = 2000}};
   const std::vector<Run> stiffer = {{.duration = 6, .stiffness = 4}};
   const std::vector<Run> two_radii = {{.speed = 2, .radius = 0.009}, {.speed = 1, .radius = 0.018}};
+  const std::vector<Run> other_strokes = {{.setting = Setting::both_directions, .speed = 0.5}};
   const std::vector<Run> more_turns = {{.setting = Setting::slow, .duration = 60}};
   static const std::vector<Test> all = {
       {"asymmetry", "sensor-offset", {{}, {"sensor-offset"}}},
@@ -51,6 +52,12 @@ const std::vector<Test>& tests() {
       {"runout", "drift", {more_turns, {}}},
       {"viscous", "stribeck-exponent", {{{.speed = 4}}, {}}},
       {"ageing", "rate-state", {{{.setting = Setting::pauses}}, {}}},
+      {"hysteresis", "frictional-lag", {other_strokes, {}}},
+      {"hysteresis", "rate-state", {other_strokes, {}}},
+      {"hysteresis", "bristle", {other_strokes, {}}},
+      {"hysteresis", "asymmetry", {other_strokes, {}}},
+      {"backlash", "hysteresis", {other_strokes, {}}},
+      {"backlash", "asymmetry", {other_strokes, {}}},
       {"load-dependence", "crosstalk", {{{.setting = Setting::load_both_directions}}, {}}},
   };
   return all;

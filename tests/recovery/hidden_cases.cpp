@@ -259,7 +259,10 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
     for (const double size : r.effect.hidden.sizes) {
       if (options.largest_only && size != r.effect.hidden.sizes.back()) continue;
       add(fmt::format("{}{}={:g}", r.effect.key, suffix, size), options.runs, Kind::single, r.setting,
-          [&](Case& c, Random& random) { c.hidden = {ingredient(r.effect, size, random)}; });
+          [&](Case& c, Random& random) {
+            c.hidden = {ingredient(r.effect, size, random)};
+            if (r.programme != Programme::stick_slip) hide_in_sliding(c, r.programme);
+          });
     }
   }
   plan_together(options, add);
@@ -288,6 +291,7 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
           [&, &p = partner](Case& c, Random& random) {
             const std::vector<double>& sizes = r.effect.hidden.sizes;
             c.hidden = {ingredient(r.effect, sizes[random.below(sizes.size())], random)};
+            if (r.programme != Programme::stick_slip) hide_in_sliding(c, r.programme);
             c.partner = p;
           });
     }

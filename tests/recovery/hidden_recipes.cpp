@@ -35,7 +35,10 @@ std::vector<Recipe> from_catalogue() {
   for (const Effect& effect : effect_catalogue()) {
     const EffectInfo info = describe(effect);
     if (info.hidden.sizes.empty()) continue;
-    for (const Setting setting : settings_for(info.sketch.view)) out.push_back({info, setting});
+    // Stick-slip hardly shows what comes after a reversal: its slips are few there.
+    const auto programme =
+        info.sketch.view == SketchView::since_reversal ? Programme::reversals : Programme::stick_slip;
+    for (const Setting setting : settings_for(info.sketch.view)) out.push_back({info, setting, programme});
   }
   return out;
 }
@@ -75,6 +78,7 @@ std::optional<Programme> sliding_programme(const EffectInfo& effect) {
     case SketchView::curve:
       return Programme::steps;
     case SketchView::directions:
+    case SketchView::since_reversal:
       return Programme::reversals;
     case SketchView::time:
     case SketchView::distance:
@@ -111,6 +115,8 @@ double growth_of(BoundScaling scaling, const RelativeScales& scales) {
       return 1 / scales.duration;
     case BoundScaling::with_distance:
       return scales.distance;
+    case BoundScaling::with_stroke:
+      return scales.stroke;
     case BoundScaling::with_mass:
       return scales.mass;
     case BoundScaling::never:

@@ -43,6 +43,7 @@ class Random {
 struct Recipe {
   tribofit::EffectInfo effect;
   Setting setting;
+  Programme programme = Programme::stick_slip;
 };
 
 /// Every effect of the catalogue, in its order, in each setting in which the variable of its sketch varies.
@@ -58,7 +59,8 @@ std::optional<Programme> sliding_programme(const tribofit::EffectInfo& effect);
 
 /// Scales of a record over those of the records for which effects state their sizes.
 struct RelativeScales {
-  double slip_time = 1, stick_time = 1, slip_length = 1, top_speed = 1, duration = 1, distance = 1, mass = 1;
+  double slip_time = 1, stick_time = 1, slip_length = 1, top_speed = 1, duration = 1, distance = 1, stroke = 1,
+         mass = 1;
 };
 /// By how much a parameter is larger at these scales.
 double growth_of(tribofit::BoundScaling scaling, const RelativeScales& scales);
@@ -72,6 +74,9 @@ std::uint64_t hash(std::string_view text, std::uint64_t seed);
 
 /// The speed of the disc about `mean` [rad/s], at t = 0 and later (and constant, or as it goes on, before).
 tribofit::SpeedProfile sliding_speed(Programme programme, double mean, Random& random);
+
+/// The case as a record of sliding, what is hidden in it on the scales of that.
+void hide_in_sliding(Case& c, Programme programme);
 
 /// The case on a rig that is `slowness` times slower: all times grow by it, all speeds fall.
 Case slowed(Case c, double slowness);

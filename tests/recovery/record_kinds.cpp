@@ -47,7 +47,11 @@ constexpr RecordKind kRecordKinds[] = {
 /// An eighth of a period is to sliding what a slip is to stick-slip.
 RelativeScales sliding_scales() {
   const double slip_time = kPeriod / 8 * 30;
-  return {.slip_time = slip_time, .slip_length = slip_time, .duration = 60.0 / 40, .distance = 60 * kMeanSpeed / 0.25};
+  return {.slip_time = slip_time,
+          .slip_length = slip_time,
+          .duration = 60.0 / 40,
+          .distance = 60 * kMeanSpeed / 0.25,
+          .stroke = 2 * kMeanSpeed * kPeriod / std::numbers::pi / 0.1};
 }
 
 /// A rig that follows every speed without stick-slip: critically damped, 25 nm under its load.
@@ -170,6 +174,12 @@ SpeedProfile sliding_speed(Programme programme, double mean, Random& random) {
   }
   for (std::size_t k = 12; k > 1; --k) std::swap(speeds[k - 1], speeds[random.below(k)]);
   return stepped_speed(std::move(times), std::move(speeds));
+}
+
+void hide_in_sliding(Case& c, Programme programme) {
+  c.programme = programme;
+  let_slide(c);
+  for (Ingredient& what : c.hidden) scale(what, sliding_scales());
 }
 
 Case slowed(Case c, double slowness) {

@@ -7,6 +7,7 @@
 
 #include "tribofit/friction/effects/ageing.hpp"
 #include "tribofit/friction/effects/asymmetry.hpp"
+#include "tribofit/friction/effects/backlash.hpp"
 #include "tribofit/friction/effects/bristle.hpp"
 #include "tribofit/friction/effects/channel_delay.hpp"
 #include "tribofit/friction/effects/contact_spin.hpp"
@@ -17,6 +18,7 @@
 #include "tribofit/friction/effects/force_low_pass.hpp"
 #include "tribofit/friction/effects/frictional_lag.hpp"
 #include "tribofit/friction/effects/heating.hpp"
+#include "tribofit/friction/effects/hysteresis.hpp"
 #include "tribofit/friction/effects/interference.hpp"
 #include "tribofit/friction/effects/load_coupling.hpp"
 #include "tribofit/friction/effects/load_dependence.hpp"
@@ -40,11 +42,12 @@ namespace tribofit {
 /// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
 /// memories. The last three are not part of the catalogue: forms of others, and the user's own (see formula.hpp).
 using EffectAlternatives =
-    std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry, Heating,
-                 RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout, DiscPattern, SpeedRipple,
-                 LoadCoupling, Ringing, SensorInertia, SensorOffset, Crosstalk, ForceBandwidth, ChannelDelay,
-                 RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset, VelocityBandwidth, VelocityCompression,
-                 ClockDrift, Interference, ForceLowPass, RateStateHealing, Formula>;
+    std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry,
+                 Hysteresis, Heating, RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout,
+                 DiscPattern, SpeedRipple, LoadCoupling, Ringing, Backlash, SensorInertia, SensorOffset, Crosstalk,
+                 ForceBandwidth, ChannelDelay, RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset,
+                 VelocityBandwidth, VelocityCompression, ClockDrift, Interference, ForceLowPass, RateStateHealing,
+                 Formula>;
 
 /// One effect of the list. What it takes to copy, move and destroy thirty types is compiled once, in catalogue.cpp.
 class Effect : public EffectAlternatives {
