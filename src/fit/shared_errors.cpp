@@ -31,8 +31,11 @@ Contribution contribution_of(const Problem& problem, const Part& part, const Com
   Contribution out;
   NormalEquations equations = part.equations;
   const auto count = static_cast<Index>(part.common.size());
-  MatrixXd known = inverse_of_symmetric(block_of(common.inverse, part.values, part.values));
-  if (count > 0) add_to(equations.total, part.common, known - part.reduced(part.equations.total));
+  MatrixXd known(count, count);
+  if (count > 0) {
+    known = inverse_of_symmetric(block_of(common.inverse, part.values, part.values));
+    add_to(equations.total, part.common, known - part.reduced(part.equations.total));
+  }
   out.spread = part.member->record.is_points
                    ? spread_of_points(equations, squares_of(part), part.free)
                    : spread_of(influence(equations, part.free), slow_levels_of(problem, part, equations));

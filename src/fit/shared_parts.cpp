@@ -126,7 +126,8 @@ void drop_open(const Common& common, Part& part) {
 
 SlowLevels slow_levels_of(const Problem& problem, const Part& part, const NormalEquations& equations) {
   const double flicker = part.member->record.observations->flicker;
-  if (part.member->record.is_points || !(flicker > 0)) return {};
+  const bool shows = flicker > 0 || part.common.empty();
+  if (part.member->record.is_points || !shows) return {};
   return slow_levels(equations, level_change(problem.model, part.p), part.free, flicker);
 }
 

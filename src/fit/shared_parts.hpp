@@ -55,7 +55,8 @@ Common common_of(const Problem& problem, const std::vector<Part>& parts, const s
 /// Leaves out of a record the common values that no record determines.
 void drop_open(const Common& common, Part& part);
 
-/// Slow noise of the level, where the record shows it without any model: what else differs between records is tested.
+/// Slow noise of the level, where the record shows it without any model or shares nothing, as a fit of it alone has it:
+/// what else differs between records that share is tested.
 SlowLevels slow_levels_of(const Problem& problem, const Part& part, const NormalEquations& equations);
 
 /// Whether the records allow what they share.
