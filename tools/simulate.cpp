@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -86,7 +87,8 @@ void plan_drive(const SimulateRequest& request, Plan& plan) {
   }
   plan.writes_speed = stepped || !request.reversing.empty();
   const double duration = stated_value(request.duration, Quantity::time, "--duration", "s");
-  if (!(duration > 0)) throw InputError("--duration is not positive", "give it as e.g. 20s");
+  if (!(duration > 0))
+    throw InputError("--duration: '" + request.duration + "' is not positive", "give it as e.g. 20s");
   swing_load(request.load_swing, duration, drive);
   vary_temperature(request.temperature, duration, drive);
 }
@@ -104,15 +106,25 @@ Sensors plan_sensors(const SimulateRequest& request) {
           .seed = request.seed};
 }
 
-void refuse_sample_count(const SimulateRequest& request, double samples) {
-  constexpr double kMost = 1e8;  // 10 GB of memory, and a file of 3 GB
-  if (samples >= 2 && samples <= kMost) return;
+void refuse_work(const SimulateRequest& request, const SimulationOptions& options, const Rig& rig) {
+  constexpr double kMost = 1e8;         // 10 GB of memory, and a file of 3 GB
+  constexpr double kMostPeriods = 1e7;  // minutes of work for a bare law, and 2 GB of memory
+  const double samples = options.duration * options.rate;
+  const double periods = options.duration * rig.natural_frequency() / (2 * std::numbers::pi);
   const std::string what = fmt::format("--duration {} at --rate {}", request.duration, request.rate);
   if (samples < 2) {
     throw InputError(what + " is less than two samples", "give a longer duration or a higher rate");
   }
-  throw InputError(fmt::format("{} is {:.3g} samples, more than the {:g} that are simulated", what, samples, kMost),
-                   "give a shorter duration or a lower rate");
+  if (samples > kMost) {
+    throw InputError(fmt::format("{} is {:.3g} samples, more than the {:g} that are simulated", what, samples, kMost),
+                     "give a shorter duration or a lower rate");
+  }
+  if (periods > kMostPeriods) {
+    throw InputError(fmt::format("--duration {} is {:.3g} natural periods of {:.3g} kg on {:.3g} N/mm, more than the "
+                                 "{:g} that are simulated",
+                                 request.duration, periods, rig.mass, 1e-3 * rig.stiffness, kMostPeriods),
+                     "give a shorter duration");
+  }
 }
 
 Plan make_plan(const SimulateRequest& request) {
@@ -126,8 +138,9 @@ Plan make_plan(const SimulateRequest& request) {
                   .rate = stated_value(request.rate, Quantity::frequency, "--rate", "Hz"),
                   .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
                   .seed = request.seed};
-  if (!(plan.options.rate > 0)) throw InputError("--rate is not positive", "give it as e.g. 20kHz");
-  refuse_sample_count(request, plan.options.duration * plan.options.rate);
+  if (!(plan.options.rate > 0))
+    throw InputError("--rate: '" + request.rate + "' is not positive", "give it as e.g. 20kHz");
+  refuse_work(request, plan.options, plan.machine.rig);
   const bool starts_at_speed = plan.run_up == 0 && plan.reversing == 0 && plan.drive.speed.speed(0) != 0;
   if (starts_at_speed && plan.machine.rig.mass > 0 && plan.machine.rig.stiffness > 0 &&
       plan.machine.parameters[0] > 0) {

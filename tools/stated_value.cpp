@@ -38,14 +38,18 @@ double largest(Quantity quantity) {
   }
 }
 
+/// The smallest value in SI that is not zero: below it squares and reciprocals leave the range of doubles.
+constexpr double kSmallest = 1e-20;
+
 }  // namespace
 
 double stated_value(std::string_view text, Quantity quantity, const std::string& option, std::string_view bare_unit) {
   const double value = parse_quantity(text, quantity, option, bare_unit);
-  if (std::abs(value) <= largest(quantity)) return value;
-  throw InputError(fmt::format("{}: '{}' is more than any machine has", option, text),
-                   "check the number and its unit; give a " + std::string(to_string(quantity)) + " such as " +
-                       std::string(example_of(quantity)));
+  const double size = std::abs(value);
+  if (size == 0 || (size >= kSmallest && size <= largest(quantity))) return value;
+  throw InputError(
+      fmt::format("{}: '{}' is {} than any machine has", option, text, size < 1 ? "less" : "more"),
+      fmt::format("check the number and its unit; {} such as {} is meant", to_string(quantity), example_of(quantity)));
 }
 
 std::uint64_t stated_seed(const std::string& text) {

@@ -14,6 +14,7 @@
 #include "map_file.hpp"
 #include "options.hpp"
 #include "results.hpp"
+#include "stated_value.hpp"
 #include "studied_machine.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -47,7 +48,7 @@ SettleOptions settle_options(const StudyRequest& r) {
   if (r.from == "sliding") options.start = StartFrom::sliding;
   if (r.from == "rest") options.start = StartFrom::rest;
   if (!r.sharpness.empty()) {
-    options.sharpness = parse_quantity(r.sharpness, Quantity::inverse_velocity, "--sharpness", "s/mm");
+    options.sharpness = stated_value(r.sharpness, Quantity::inverse_velocity, "--sharpness", "s/mm");
     if (!(options.sharpness > 0)) {
       throw InputError("--sharpness: '" + r.sharpness + "' is not greater than zero", "give it as e.g. 500s/mm");
     }
@@ -63,7 +64,7 @@ SettleOptions settle_options(const StudyRequest& r) {
 /// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".
 double velocity_from(const std::string& text, const Machine& machine, const std::string& option) {
   const bool bare = text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
-  const double velocity = bare ? parse_quantity(text, Quantity::velocity, option, "mm/s")
+  const double velocity = bare ? stated_value(text, Quantity::velocity, option, "mm/s")
                                : machine.radius * disc_speed_from(text, machine.radius, option);
   if (!(velocity > 0))
     throw InputError(option + ": '" + text + "' is not greater than zero", "give e.g. 6mm/s or 4rpm");
@@ -104,8 +105,8 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
     }
     const std::vector<std::string> ends = split(range, "..");
     if (ends.size() != 2) throw bad("'" + range + "' is not a range");
-    low = parse_quantity(ends[0], axis.variable.quantity, option, axis.variable.unit);
-    high = parse_quantity(ends[1], axis.variable.quantity, option, axis.variable.unit);
+    low = stated_value(ends[0], axis.variable.quantity, option, axis.variable.unit);
+    high = stated_value(ends[1], axis.variable.quantity, option, axis.variable.unit);
   } else if (axis.variable.name == "ratio") {
     high = std::min(high, 1.0);
   }

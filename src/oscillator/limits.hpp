@@ -17,6 +17,9 @@ inline constexpr double kFirstStiffSteps = 1e5, kStiffStepsAPeriod = 2e4;
 /// The same of the explicit solver, which needs a few hundred steps a natural period, 1e4 with the stiffest bristles.
 inline constexpr double kFirstSteps = 5e5, kStepsAPeriod = 2e4;
 
+/// And in all: some minutes of work. More: nobody waits for the end.
+inline constexpr double kMostSteps = 1e9;
+
 /// Iterations in which friction and the acceleration that it makes must agree.
 inline constexpr int kMostIterations = 50;
 

@@ -1,5 +1,7 @@
 #include "tribofit/oscillator/sensors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,19 +21,19 @@ namespace tribofit {
 namespace {
 
 void check(const Sensors& sensors) {
-  const auto not_negative = [](double value, const char* name) {
+  const auto not_negative = [](double value, const char* name, const char* unit = "") {
     if (std::isfinite(value) && value >= 0) return;
-    throw InputError("the " + std::string(name) + " is negative", "give zero (absent) or more");
+    throw InputError(fmt::format("the {} is negative: {:g}{}", name, value, unit), "give zero (absent) or more");
   };
-  not_negative(sensors.mass_below, "mass below the force sensor");
-  not_negative(sensors.force_bandwidth, "bandwidth of the force sensor");
-  not_negative(sensors.velocity_high_pass, "high-pass of the vibrometer");
-  not_negative(sensors.velocity_low_pass, "low-pass of the vibrometer");
-  not_negative(sensors.friction_low_pass, "low-pass of the friction channel");
+  not_negative(sensors.mass_below, "mass below the force sensor", " kg");
+  not_negative(sensors.force_bandwidth, "bandwidth of the force sensor", " Hz");
+  not_negative(sensors.velocity_high_pass, "high-pass of the vibrometer", " Hz");
+  not_negative(sensors.velocity_low_pass, "low-pass of the vibrometer", " Hz");
+  not_negative(sensors.friction_low_pass, "low-pass of the friction channel", " Hz");
   not_negative(sensors.friction_noise, "noise on mu");
-  not_negative(sensors.velocity_noise, "noise on the velocity");
+  not_negative(sensors.velocity_noise, "noise on the velocity", " m/s");
   not_negative(sensors.friction_resolution, "resolution of mu");
-  not_negative(sensors.velocity_resolution, "resolution of the velocity");
+  not_negative(sensors.velocity_resolution, "resolution of the velocity", " m/s");
   if (!(sensors.force_damping > 0)) {
     throw InputError("the damping of the force sensor is not positive", "0.7 is usual");
   }

@@ -1,9 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <string>
 
 #include "find_zero.hpp"
 #include "limits.hpp"
@@ -29,11 +30,14 @@ void Simulation::DeleteStepper::operator()(Stepper* stepper) const {
 /// Refuses what would take for ever.
 void Simulation::count_step() {
   const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
-  if (static_cast<double>(++steps_) < kFirstSteps + kStepsAPeriod * periods) return;
-  throw InputError("the simulation needs too many steps: after " + std::to_string(steps_) +
-                       " it is at t = " + std::to_string(time_) + " s",
-                   "check that load, mass, stiffness and damping fit together, and that the effects have plausible "
-                   "parameters");
+  if (static_cast<double>(++steps_) < std::min(kMostSteps, kFirstSteps + kStepsAPeriod * periods)) return;
+  const Rig& rig = setup_.rig;
+  throw InputError(fmt::format("the simulation needs too many steps: {:g} of them lead from t = {:.6g} to {:.6g} s of "
+                               "{:g} s, with a mass of {:g} kg, a stiffness of {:g} N/m, a damping of {:g} N s/m, a "
+                               "load of {:g} N and {:g} m/s under the block",
+                               static_cast<double>(steps_), -options_.settle, time_, options_.duration, rig.mass,
+                               rig.stiffness, rig.damping, setup_.load(time_), setup_.disc_velocity(time_)),
+                   "check that these fit together, and that the effects have plausible parameters");
 }
 
 /// One step of length h from state_; false (and a shorter step_) when its error is too large.
@@ -57,7 +61,7 @@ bool Simulation::try_step(double h) {
   }
   const bool advances = step_ > 1e-15 * std::max(1.0, std::abs(time_));
   if (!accepted && !advances) {
-    throw InputError("the simulation does not get beyond t = " + std::to_string(time_) + " s",
+    throw InputError(fmt::format("the simulation does not get beyond t = {:.6g} s", time_),
                      "check that friction is finite and that its effects have plausible parameters");
   }
   return accepted;

@@ -1,5 +1,7 @@
 #include "tribofit/oscillator/steady_sliding.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +30,8 @@ SteadySliding steady_sliding(const Machine& machine) {
 
   SteadySliding out;
   out.friction = flow.friction(0, y);
+  require(std::isfinite(out.friction), fmt::format("friction at {:g} mm/s is not a finite number", 1e3 * disc),
+          "check the formulas and the parameters of the effects");
   out.displacement = setup.load(0) * out.friction / machine.rig.stiffness;
   y[0] = setup.natural_frequency * out.displacement;
 

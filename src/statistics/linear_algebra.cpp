@@ -25,6 +25,10 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
 
 Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) {
   if (matrix.size() == 0) return {};
+  // LAPACK prints and ends the process.
+  if (!matrix.allFinite()) {
+    return Eigen::VectorXcd::Constant(matrix.rows(), std::numeric_limits<double>::quiet_NaN());
+  }
   MatrixXd overwritten = matrix;
   const int n = static_cast<int>(matrix.rows()), unused = 1, work_size = 4 * n;
   VectorXd real(n), imaginary(n), work(work_size);

@@ -16,7 +16,8 @@ struct SymmetricEigen {
 /// Only the lower triangle is read. Cost: n^3.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
-/// Eigenvalues of a real square matrix, in no order (LAPACK's dgeev); all NaN where it does not converge. Cost: n^3.
+/// Eigenvalues of a real square matrix, in no order (LAPACK's dgeev); all NaN where it does not
+/// converge or the matrix is not finite. Cost: n^3.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// Solution x of A x = b for a symmetric A that is positive or negative semidefinite (LDL^T with pivots); the columns

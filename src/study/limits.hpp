@@ -58,6 +58,11 @@ inline constexpr std::size_t kMostTries = 100;
 /// Draws without an answer beyond this part leave no interval: 2.5 % at either end could be among them.
 inline constexpr double kMostMissing = 0.1;
 
+// ---- portraits
+
+/// Cycles drawn in all, of some 1000 samples each: a gigabyte of memory.
+inline constexpr std::size_t kMostDrawnCycles = 20000;
+
 // ---- the twin
 
 /// Fewest simulations that show a spread, and the samples over all of them: a minute of work.

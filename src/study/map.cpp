@@ -28,8 +28,8 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
     try {
       steady_sliding(with_value(request.machine, axis.variable.name, value));
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{} = {:g} {}: {}", axis.variable.name, value / axis.variable.si, axis.variable.unit,
-                                   error.what()),
+      const std::string unit = axis.variable.unit == "1" ? "" : " " + std::string(axis.variable.unit);
+      throw InputError(fmt::format("{} = {:g}{}: {}", axis.variable.name, value / axis.variable.si, unit, error.what()),
                        "let the axis begin and end where there is a machine");
     }
   }

@@ -1,11 +1,15 @@
 #include "tribofit/study/response.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <span>
 
+#include "limits.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/study/sweep.hpp"
 #include "tribofit/study/vary.hpp"
@@ -60,6 +64,11 @@ Response study_response(const Machine& machine, std::size_t harmonics, const Set
 
 std::vector<Portrait> study_phase(const Machine& machine, const std::vector<double>& velocity,
                                   const PortraitOptions& options) {
+  if (velocity.size() * options.cycles > kMostDrawnCycles) {
+    throw InputError(fmt::format("{} cycles at each of {} speeds are more than the {} that are drawn in all",
+                                 options.cycles, velocity.size(), kMostDrawnCycles),
+                     "draw fewer cycles or fewer speeds");
+  }
   std::vector<Portrait> out;
   for (const double v : velocity) {
     const Machine at = with_value(machine, "velocity", v);

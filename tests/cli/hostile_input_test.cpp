@@ -83,12 +83,34 @@ INSTANTIATE_TEST_SUITE_P(
                       Absurd{"Amplitude", "--effect runout:A=1e300,phase=1", {"runout:A", "'1e300'"}},
                       Absurd{"Temperature", "--temperature 20degC..1e300degC", {"--temperature", "1e300degC"}},
                       Absurd{"Standstill", "--speed 0rpm", {"--speed", "'0rpm' is zero"}},
+                      Absurd{"Tiny", "--radius 1e-300mm", {"--radius", "'1e-300mm'", "less than any machine has"}},
+                      Absurd{"TooManySteps", "--stiffness 1e-12N/mm", {"too many steps", "1e-09 N/m", "0.85 kg"}},
+                      Absurd{"TooManyPeriods", "--duration 1e8s --rate 1Hz", {"--duration 1e8s is 2.2e+09 natural"}},
+                      Absurd{"NegativeNoise", "--noise-mu -0.25", {"the noise on mu is negative: -0.25"}},
+                      Absurd{"NegativeMass", "--mass -2kg", {"the mass of the block is not positive: -2 kg"}},
+                      Absurd{"NegativeDecay", "--alpha -3s/mm", {"alpha = -3 s/mm"}},
                       Absurd{"NegativeSeed", "--seed -1", {"--seed", "'-1'"}},
                       Absurd{"SeedTooLarge", "--seed 99999999999999999999", {"--seed", "99999999999999999999"}},
                       Absurd{"EmptySpeed", "--speed ''", {"--speed is given an empty value"}},
                       Absurd{"EmptyDuration", "--duration ''", {"--duration is given an empty value"}},
                       Absurd{"DividesByZero", "--duration 1s --formula 'x = v/0'", {"finite"}}),
     [](const auto& param_info) { return param_info.param.name; });
+
+TEST(AbsurdMachine, IsNotStudied) {
+  const Workshop shop;
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"speed --points 2 --formula 'x = sqrt(-1)'", "friction at 6.28319 mm/s is not a finite number"},
+           {"phase --range 1mm/s..20mm/s --points 1000 --cycles 10000", "10000 cycles at each of 1000 speeds"},
+           {"phase --at 1e-300mm/s", "--at: '1e-300mm/s' is less"},
+           {"speed --range 1mm/s..1e300mm/s", "--range: '1e300mm/s' is more"},
+           {"map --x mass=1kg..1e300kg:3 --y stiffness", "--x: '1e300kg' is more"},
+           {"map --x mu_s=-5..5:3 --y stiffness", "mu_s = -5:"},
+           {"speed --sharpness 1e-300s/mm", "--sharpness: '1e-300s/mm' is less"}}) {
+    const Outcome outcome = shop.shell(within_ten_seconds("study " + arguments));
+    EXPECT_EQ(outcome.status, 3) << arguments << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+  }
+}
 
 TEST(AbsurdMachine, LargeValuesAreWrittenAsTheyAre) {
   const Workshop shop;

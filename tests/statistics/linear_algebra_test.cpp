@@ -118,5 +118,11 @@ TEST(LinearAlgebra, ComplementOfConstantAndRamp) {
   EXPECT_LT((rest.transpose() * rest - MatrixXd::Identity(4, 4)).norm(), 1e-14);
 }
 
+TEST(LinearAlgebra, AMatrixThatIsNotFiniteHasNoEigenvalues) {
+  MatrixXd matrix = second_differences(3);
+  matrix(1, 2) = std::nan("");
+  for (const auto& value : eigenvalues(matrix)) EXPECT_TRUE(std::isnan(value.real()));
+}
+
 }  // namespace
 }  // namespace tribofit
