@@ -67,7 +67,7 @@ ExitStatus run_and_report(int argc, char** argv) {
 
 /// Leaves nothing half-written behind, then ends as the signal would have.
 void leave(int signal) {
-  tribofit::remove_unfinished_files();
+  tribofit::end_writing();
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }

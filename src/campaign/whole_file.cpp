@@ -1,8 +1,10 @@
 #include "tribofit/campaign/whole_file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,10 +12,12 @@
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <random>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
@@ -46,6 +50,32 @@ void enlist(const std::string& name) {
     return;
   }
 }
+
+std::atomic<int> names_changing{0};
+std::atomic<bool> writing_ended{false};
+
+/// While a file gets a name: no signal interrupts that, and where writing has ended it gets none.
+class NameChange {
+ public:
+  NameChange() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+    ++names_changing;
+    if (!writing_ended) return;
+    --names_changing;
+    for (;;) ::pause();  // the process ends
+  }
+  ~NameChange() {
+    --names_changing;
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NameChange(const NameChange&) = delete;
+  NameChange& operator=(const NameChange&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 void strike_off(const std::string& name) {
   for (UnfinishedFile& place : unfinished_files) {
@@ -98,6 +128,8 @@ std::string advice_for(int error) {
     case EPERM:
     case EROFS:
       return "name a place you may write to";
+    case ENXIO:
+      return "name a file, or begin to read the pipe first";
     case ENOENT:
       return "make the folder first";
     case EISDIR:
@@ -105,6 +137,19 @@ std::string advice_for(int error) {
     default:
       return "name another place";
   }
+}
+
+/// A device, or a pipe: whoever reads that is waited for, but not for ever. Negative, with errno, where it cannot be.
+int open_special(const std::string& path) {
+  constexpr std::chrono::milliseconds kPatience(5000), kPause(20);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  int descriptor = -1;
+  while ((descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK)) < 0) {
+    if (errno != ENXIO || std::chrono::steady_clock::now() > end) return -1;
+    std::this_thread::sleep_for(kPause);
+  }
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  return descriptor;
 }
 
 }  // namespace
@@ -115,7 +160,7 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) 
   const bool exists = ::stat(path_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
   if (exists && !S_ISREG(status.st_mode)) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    descriptor_ = open_special(path_);
     if (descriptor_ < 0) fail(errno);
     return;
   }
@@ -123,6 +168,7 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) 
   std::error_code ignored;  // a link that leads nowhere is replaced
   if (exists) target_ = std::filesystem::canonical(path_, ignored).string();
   if (target_.empty()) target_ = path_;
+  const NameChange change;
   open_temporary(exists ? status.st_mode & 07777U : 0666U);
   enlist(temporary_);
 }
@@ -191,6 +237,7 @@ void WholeFile::finish() {
 void WholeFile::commit() {
   finish();
   if (temporary_.empty()) return;
+  const NameChange change;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   strike_off(temporary_);
   temporary_.clear();
@@ -201,6 +248,14 @@ void remove_unfinished_files() noexcept {
   for (const UnfinishedFile& place : unfinished_files) {
     if (place.state.load() == UnfinishedFile::taken) ::unlink(place.name.data());
   }
+}
+
+void end_writing() noexcept {
+  writing_ended = true;
+  constexpr timespec kPause = {0, 1000000};
+  constexpr int kMostPauses = 1000;  // on a disc that does not answer
+  for (int k = 0; k < kMostPauses && names_changing > 0; ++k) ::nanosleep(&kPause, nullptr);
+  remove_unfinished_files();
 }
 
 void remove_abandoned_files(const std::string& folder) {

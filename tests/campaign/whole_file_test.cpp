@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "report/folder.hpp"
@@ -148,6 +151,36 @@ TEST(WholeFile, AnInterruptionRemovesWhatIsUnfinishedAndNothingElse) {
   WholeFile again(folder.path("again"));
   remove_unfinished_files();
   EXPECT_EQ(folder.names().size(), 20u);
+}
+
+/// Threads that do nothing but begin and end files, until a signal comes.
+[[noreturn]] void write_until_a_signal(const std::string& folder) {
+  std::signal(SIGTERM, [](int number) {
+    end_writing();
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  });
+  std::vector<std::thread> writers;
+  for (int w = 0; w < 3; ++w) {
+    writers.emplace_back([&folder, w] {
+      for (int k = 0;; ++k) write_whole(folder + std::to_string(w) + "-" + std::to_string(k % 5), "whole");
+    });
+  }
+  for (;;) ::pause();
+}
+
+TEST(WholeFile, ASignalLeavesNothingWhateverThreadsWrite) {
+  const Folder folder;
+  for (int k = 0; k < 60; ++k) {
+    const pid_t child = ::fork();
+    if (child == 0) write_until_a_signal(folder.path(""));
+    std::this_thread::sleep_for(std::chrono::microseconds(3000 + 217 * k));
+    ::kill(child, SIGTERM);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(WTERMSIG(status), SIGTERM);
+  }
+  for (const std::string& name : folder.names()) EXPECT_FALSE(name.ends_with(".part")) << name;
 }
 
 TEST(WholeFile, TwoWritersOfOneNameDoNotMix) {

@@ -32,6 +32,18 @@ TEST(HostileInput, PipesAndDevicesAreRefusedAndNotWaitedFor) {
   }
 }
 
+TEST(HostileInput, APipeThatNobodyReadsIsNotWrittenTo) {
+  const Workshop shop;
+  shop.write("trace.csv", good_trace());
+  shop.shell("mkfifo pipe; mkdir csv; mkfifo csv/samples.csv");
+  for (const char* arguments : {"--radius 15mm --json pipe trace.csv", "--radius 15mm --csv csv trace.csv"}) {
+    const Outcome outcome = shop.shell(within_ten_seconds(arguments));
+    EXPECT_TRUE(outcome.status == 1 || outcome.status == 3) << arguments << ": " << outcome.status << outcome.err;
+  }
+  const Outcome read = shop.shell("identify --radius 15mm --quiet --json pipe trace.csv & cat pipe");
+  EXPECT_THAT(read.out, HasSubstr("\"fits\"")) << read.err;
+}
+
 TEST(HostileInput, ASessionIsNoGigabyte) {
   const Workshop shop;
   shop.shell("truncate -s 1G big.json");

@@ -37,6 +37,10 @@ class WholeFile {
 /// program (it is async-signal-safe), after which no WholeFile may be used.
 void remove_unfinished_files() noexcept;
 
+/// The same at the end of the process: a thread that begins or commits a file from now on waits for that end. For a
+/// handler of a signal.
+void end_writing() noexcept;
+
 /// Removes what programs that were killed left under temporary names in a folder; files that somebody still writes
 /// stay, wherever that program runs.
 void remove_abandoned_files(const std::string& folder);
