@@ -10,6 +10,7 @@
 #include "fit/fit_laws.hpp"
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
+#include "imitations.hpp"
 #include "limits.hpp"
 #include "rival_laws.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -329,7 +330,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   const std::size_t coarse_count = floor.sampling > 0 ? fine_values(cycles) : coarse_values(records, cycles);
   const Observations coarse = observe_all(records, channels, coarse_count, floor.noise);
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
-  context.shared = floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0;
+  context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
+                   left_by_corrections(records, fine, floor.noise) / context.noise_squares();
   context.threads = options.threads;
   context.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
+#include "limits.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 
 namespace tribofit::diagnosis {
@@ -68,7 +70,34 @@ std::vector<std::string> problems_of(std::span<const Record> records) {
   return checks;
 }
 
+/// How well the time between the channels is known where a low-pass was undone [s]; 0 where none was. A filter may hold
+/// its input for a sample, which is half of one either way.
+double time_left_by_filters(const Motion& motion) {
+  const UndoneDistortion &v = motion.velocity_low_pass, &mu = motion.friction_low_pass;
+  return v.any() || mu.any() ? std::hypot(v.std_error, mu.std_error, 0.5 * motion.step) : 0;
+}
+
 }  // namespace
+
+double left_by_corrections(std::span<const Record> records, const Observations& observations, double noise) {
+  double squares = 0;
+  for (const auto& slip : observations.slips) {
+    const Motion& motion = *records[slip.record].motion;
+    const double time = time_left_by_filters(motion);
+    if (time == 0) continue;
+    // Over a part of the slip: between neighbours noise is more than the change.
+    const std::size_t reach = std::max<std::size_t>(1, (slip.end - slip.begin) / limits::kPartsOfSlip);
+    for (std::size_t i = slip.begin; i + reach < slip.end; ++i) {
+      const std::size_t k = i + reach;
+      if (observations.weight[k] < limits::kUnused) continue;
+      const double passed = std::max(motion.step, observations.time[k] - observations.time[i]);
+      const double change = observations.friction[k] - observations.friction[i];
+      const double by_noise = noise * noise * (1 / observations.weight[i] + 1 / observations.weight[k]);
+      squares += observations.weight[i] * (change * change - by_noise) * std::pow(time / passed, 2);
+    }
+  }
+  return std::max(0.0, squares);
+}
 
 std::string imitated_by(std::span<const Record> records, SketchView view) {
   for (const std::string& check : problems_of(records)) {

@@ -7,6 +7,11 @@
 
 namespace tribofit::diagnosis {
 
+/// Squares of friction [1 or N squared] that a low-pass leaves which was undone as well as it is known: friction
+/// changes by so much in the time that is not known. noise: of a sample of friction. What explains no more is not
+/// distinguishable from it.
+double left_by_corrections(std::span<const Record> records, const Observations& observations, double noise);
+
 /// Why an effect that shows over this variable cannot be named: a check of the data reports a problem that would look
 /// like it. Empty where none does.
 ///

@@ -116,6 +116,9 @@ inline constexpr double kMostOfTheError = 0.5;     ///< a share that is "most of
 /// Of the squares of the noise: smaller structure does not matter. What sampling leaves (DiagnosisContext::shared) has
 /// structure itself.
 inline constexpr double kLeastStructure = 0.05;
+inline constexpr std::size_t kPartsOfSlip =
+    32;                                        ///< over which the slope of friction is taken: it turns twice in a slip
+inline constexpr double kUnused = 1e-6;        ///< samples behind a value: one that takes no part has next to none
 inline constexpr double kFarAboveFloor = 1.5;  ///< times the noise floor, from which an error is unexplained
 /// The same once effects were added, whose scatter is in it, or where most of it wanders as slow noise does.
 inline constexpr double kFarAboveAfterEffects = 2;

@@ -56,7 +56,7 @@ struct DiagnosisContext {
   Blocks blocks;
   double noise = 0;    ///< sensor noise of a sample [1 or N]
   double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
-  double shared = 0;   ///< part of the squares of that noise that sampling leaves: no chance, and no structure either
+  double shared = 0;   ///< of its squares, what sampling and corrections leave: no chance, and no structure either
 
   int threads = 1;                       ///< over candidates
   std::function<bool()> cancelled = {};  ///< asked before each trial, which then throws DiagnosisCancelled

@@ -92,9 +92,7 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
   if (has_velocity) {
     const double gain = vibrometer.gain ? vibrometer.gain->value : 1;
     scale(trace.velocity, vibrometer.sign / gain, 0);
-    double delay = vibrometer.delay ? vibrometer.delay->value : 0;
-    // To first order in frequency a low-pass is a delay; a full inverse would only amplify noise.
-    if (vibrometer.low_pass) delay += 1 / ((2 * std::numbers::pi) * vibrometer.low_pass->value);
+    const double delay = vibrometer.delay ? vibrometer.delay->value : 0;
     correct_delay(trace.velocity, delay, step, ends);
     if (vibrometer.sign < 0) notes.push_back("velocity: sign reversed as declared");
     if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {:.4g}", gain));

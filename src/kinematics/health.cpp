@@ -180,9 +180,9 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   if (restick.is_filter && !motion.velocity_low_pass.any()) {
     item.status = Status::problem;
     item.message += fmt::format(
-        "; v_r decays at re-stick as after a low-pass at {} ({} slips): mu_s, mu_k and the law's decay (alpha) are not "
-        "those of the contact, a bandwidth of {} is needed",
-        frequency_text(restick.corner(), 2), restick.slips,
+        "; v_r decays at re-stick as after a {}low-pass at {} ({} slips): mu_s, mu_k and the law's decay (alpha) are "
+        "not those of the contact, a bandwidth of {} is needed",
+        restick.is_second_order ? "second-order " : "", frequency_text(restick.corner(), 2), restick.slips,
         frequency_text(restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless, 2));
     return item;
   }

@@ -207,9 +207,9 @@ inline constexpr double kKinkInside = 30;
 inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
 /// Time constants tried [samples], each so many times the one before.
 inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35;
-/// Standard uncertainty of a time constant for the cubic that stands for v_r before re-stick, over it: off by 2 %
-/// either way in simulated records (200 and 800 Hz read at 10 kHz).
-inline constexpr double kKinkModel = 0.01;
+/// Standard uncertainty of a time constant, over it, for the cubic that stands for v_r before re-stick (off by 2 %
+/// either way in simulated records) and where it is of the tail alone; from when on, how long that is [times it].
+inline constexpr double kKinkModel = 0.01, kDecayModel = 5e-4, kDecayAfter = 0.5, kDecayLasts = 3;
 /// What v_r reads at re-stick over the fastest: alpha is off by some five times as much; what does not matter.
 inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;
 /// Squares that a kink leaves over those a filter leaves, and what the filter may leave over the reading: a contact
@@ -266,8 +266,8 @@ inline constexpr double kLeastZero = 0.002, kLargestZero = 0.5;
 /// How nearly the plateau is off omega r by as much, over the mean and over its standard error, where it is the zero: a
 /// compressed slip leaves the plateau where it is.
 inline constexpr double kZeroAgrees = 0.1, kZeroErrors = 3;
-/// The same for either half of the record, where slips are read wrongly: they are in both.
-inline constexpr double kHalvesAgree = 0.3;
+/// The same for either half of the record, where slips are read wrongly: they are in both, as fast at least as this.
+inline constexpr double kHalvesAgree = 0.3, kHalfOfMean = 0.5;
 
 // ---- compression of the velocity
 
@@ -291,8 +291,9 @@ inline constexpr double kStepPart = 0.1;
 
 /// Values in which steps and noise are looked for, and levels of a channel that has some: 12 bits are finer than noise.
 inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
-/// Part of the distances between levels that are whole numbers of the smallest, and how nearly.
-inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05;
+/// Part of the distances between levels that are whole numbers of the smallest, and how nearly; of the changes
+/// of a channel that holds its values for some samples, those that come when they should.
+inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05, kHeldAlike = 0.99;
 /// Steps of friction over its range that show in a fit.
 inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03;
 /// Steps of velocity over the fastest from which alpha is off by more than its error (at 4 % by 2 %, at 1 % by
@@ -326,8 +327,7 @@ inline constexpr double kFrequencyAgrees = 0.2;
 /// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
 inline constexpr double kUnsure = 2.5;
 inline constexpr std::size_t kBesideUnsure = 2;
-/// Standard errors of the velocity and part of the fastest slip, from which a slider on a spring slips: segmentation
-/// takes the same.
+/// Standard errors of the velocity and part of the fastest slip, from which a slider on a spring slips.
 inline constexpr double kSlipsOverError = 8, kSlipsOverFastest = 0.06;
 /// Windows before that, in which a slip begins: the velocity grows e-fold in one or less.
 inline constexpr std::size_t kRisesWithin = 2;

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "limits.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -28,18 +30,43 @@ struct Smallest {
   double at = 0;  ///< [samples]
 };
 
-/// A filter of one parameter: time constant of an exponential, or width of a mean.
+enum class Response { first_order, second_order, mean };
+
+/// A filter of one parameter: time constant of a first order, 1/(2 pi f) of a Butterworth filter of second order, or
+/// width of a mean.
 struct Filter {
-  bool is_mean = false;
+  Response kind = Response::first_order;
   double width = 0;
-  /// Standard deviation of its impulse response, which a first-order low-pass has for its time constant.
-  double spread() const { return is_mean ? width / std::sqrt(12.0) : width; }
+  /// By how much it is late; of a mean, which is not, the standard deviation of its impulse response.
+  double spread() const {
+    switch (kind) {
+      case Response::first_order:
+        break;
+      case Response::second_order:
+        return std::numbers::sqrt2 * width;
+      case Response::mean:
+        return width / std::sqrt(12.0);
+    }
+    return width;
+  }
 };
+
+/// A Butterworth filter of second order: its moments are sqrt(2) t, 2 t^2, 0, and what is left when the input rests
+/// swings out at 1/(sqrt(2) t) with as much damping.
+Eigen::Vector3d second_order_responses(double u, double t) {
+  const double m1 = std::numbers::sqrt2 * t, m2 = 2 * t * t;
+  if (u <= 0) return {m1 - u, u * u - 2 * u * m1 + m2, -u * u * u + 3 * u * u * m1 - 3 * u * m2};
+  if (t == 0) return Eigen::Vector3d::Zero();
+  const double x = u / m1, e = std::exp(-x), cosine = e * std::cos(x), sine = e * std::sin(x);
+  const auto swing = [&](double value, double slope) { return value * cosine + (value + m1 * slope) * sine; };
+  return {swing(m1, -1), swing(m2, -2 * m1), swing(0, -3 * m2)};
+}
 
 /// Its responses to (-u)^n, u < 0, for n = 1, 2, 3. An exponential makes of it a polynomial of w = -u before, and
 /// n! t^n exp(-u/t) after.
 Eigen::Vector3d responses(const Filter& filter, double u, double t) {
-  if (filter.is_mean && t > 0) {
+  if (filter.kind == Response::second_order) return second_order_responses(u, t);
+  if (filter.kind == Response::mean && t > 0) {
     const double a = std::max(0.5 * t - u, 0.0), b = std::max(-0.5 * t - u, 0.0);
     const double a2 = a * a, b2 = b * b;
     return {(a2 - b2) / (2 * t), (a * a2 - b * b2) / (3 * t), (a2 * a2 - b2 * b2) / (4 * t)};
@@ -191,23 +218,65 @@ Smallest usual(const std::vector<Restick>& some, const Filter& filter) {
   return {median(std::move(squares)), median(std::move(slopes)), median(std::move(places))};
 }
 
+/// Squares that a decay to a level leaves from `first` on, where the input rests.
+double left_by_tail(const Restick& restick, std::size_t first, double t) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  double squares = 0;
+  for (std::size_t i = first; i < restick.velocity.size(); ++i) {
+    const Eigen::Vector2d x(std::exp(-static_cast<double>(i - first) / t), 1);
+    const double y = restick.velocity[i];
+    normal += x * x.transpose();
+    right += x * y;
+    squares += y * y;
+  }
+  return squares - normal.ldlt().solve(right).dot(right);
+}
+
+/// The time constant of each re-stick [samples] by a cubic before it; of its tail alone, where it is long enough: that
+/// needs no motion to be known.
+struct Refined {
+  double by_all = 0;
+  std::optional<double> by_tail;
+};
+
+Refined refine(const Restick& restick, double about) {
+  const auto least = [&](const auto& left) {
+    return golden_section(left, about / kKinkNext, about * kKinkNext, kCuts).at;
+  };
+  Refined out{least([&](double t) { return fit(restick, {Response::first_order, t}).squares; }), {}};
+  const double from = fit(restick, {Response::first_order, out.by_all}).at + kDecayAfter * about + 1;
+  const auto first = static_cast<std::size_t>(std::ceil(std::max(0.0, from)));
+  if (static_cast<double>(restick.velocity.size()) < static_cast<double>(first) + kDecayLasts * about) return out;
+  out.by_tail = least([&](double t) { return left_by_tail(restick, first, t); });
+  return out;
+}
+
+/// The usual one of some time constants [samples] and its error. model: of the motion that was assumed, over it.
+Estimate usual_of(const std::vector<double>& taus, double model) {
+  const double tau = median(taus), scatter = kSigmaPerMad * median_absolute_deviation(taus, tau);
+  return {tau, std::hypot(scatter / std::sqrt(static_cast<double>(taus.size())), model * tau)};
+}
+
 /// The time constant that fits each re-stick best; about: of the usual one [samples].
 void refine(const std::vector<Restick>& some, double about, double step, LowPass& found) {
-  std::vector<double> taus;
+  std::vector<double> by_all, by_tail;
   for (const Restick& restick : some) {
-    const auto left = [&](double t) { return fit(restick, {false, t}).squares; };
-    taus.push_back(static_cast<double>(restick.stride) * step *
-                   golden_section(left, about / kKinkNext, about * kKinkNext, kCuts).at);
+    const Refined one = refine(restick, about);
+    by_all.push_back(static_cast<double>(restick.stride) * one.by_all);
+    if (one.by_tail) by_tail.push_back(static_cast<double>(restick.stride) * *one.by_tail);
   }
-  found.tau = median(taus);
-  const double scatter = kSigmaPerMad * median_absolute_deviation(taus, found.tau);
-  found.std_error = std::hypot(scatter / std::sqrt(static_cast<double>(taus.size())), kKinkModel * found.tau);
+  const Estimate all = usual_of(by_all, kKinkModel);
+  const Estimate tail = by_tail.size() < kFewestPeriods ? all : usual_of(by_tail, kDecayModel);
+  const Estimate& best = tail.std_error < all.std_error ? tail : all;
+  found.tau = best.value * step;
+  found.std_error = best.std_error * step;
 }
 
 }  // namespace
 
 double LowPass::corner() const {
-  return tau > 0 ? 1 / (2 * std::numbers::pi * tau) : 0;
+  return tau > 0 ? (is_second_order ? std::numbers::sqrt2 : 1) / (2 * std::numbers::pi * tau) : 0;
 }
 
 namespace {
@@ -232,14 +301,14 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
   const Smallest sharp = usual(some, {});
   Smallest best = sharp;
   Filter filter;
-  for (const bool is_mean : {false, true}) {
-    for (double t = kKinkFirst; t < (is_mean ? 2 : 1) * most; t *= kKinkNext) {
-      const Smallest here = usual(some, {is_mean, t});
-      if (here.squares < best.squares) best = here, filter = {is_mean, t};
+  for (const Response kind : {Response::first_order, Response::second_order, Response::mean}) {
+    for (double t = kKinkFirst; t < (kind == Response::mean ? 2 : 1) * most; t *= kKinkNext) {
+      const Smallest here = usual(some, {kind, t});
+      if (here.squares < best.squares) best = here, filter = {kind, t};
     }
   }
   if (sharp.squares > kKinkExplained * best.squares) {
-    const auto left = [&](double width) { return usual(some, {filter.is_mean, width}).squares; };
+    const auto left = [&](double width) { return usual(some, {filter.kind, width}).squares; };
     filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
     best = usual(some, filter);
   }
@@ -250,16 +319,19 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
   const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
   found.creeps = rise_in_stick(velocity, rest, fastest) > kKinkCreeps * std::max(found.at_restick, kKinkSeen) * fastest;
-  found.is_filter = !found.creeps && tau > 0 && found.at_restick > kKinkSeen &&
-                    sharp.squares > kKinkExplained * best.squares &&
-                    best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) &&
-                    beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
-  found.is_first_order = found.is_filter && !filter.is_mean && is_inside;
+  // A second order goes beyond rest itself, by as much as it fits.
+  const bool returns = filter.kind == Response::second_order ||
+                       beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
+  found.is_filter =
+      !found.creeps && tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
+      best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) && returns;
+  found.is_second_order = found.is_filter && filter.kind == Response::second_order;
+  found.is_first_order = found.is_filter && filter.kind == Response::first_order && is_inside;
   if (found.is_first_order) refine(some, filter.width, step, found);
   for (const Restick& restick : all) {
     const double width = found.is_first_order ? found.tau / (step * static_cast<double>(restick.stride)) : 0;
     found.resticks.push_back(static_cast<double>(restick.begin) +
-                             static_cast<double>(restick.stride) * fit(restick, {false, width}).at);
+                             static_cast<double>(restick.stride) * fit(restick, {Response::first_order, width}).at);
   }
   const double left = std::max(kKinkNoise * noise, kKinkUnexplained * fastest);
   look.is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;

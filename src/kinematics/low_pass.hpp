@@ -7,14 +7,15 @@
 namespace tribofit::kinematics {
 
 /// A low-pass of the velocity, from re-stick. There v_r comes to rest at once: before, it falls like a cubic in time,
-/// after, it is zero. Behind a filter (first order, or a centred mean) it trails off.
+/// after, it is zero. Behind a filter (first order, Butterworth of second order, or a centred mean) it trails off.
 struct LowPass {
-  double tau = 0;                ///< spread of its impulse response, for a first order its time constant [s]; 0: none
+  double tau = 0;                ///< by which it is late, for a first order its time constant [s]; 0: none
   double std_error = 0;          ///< of a first order's time constant, from slip to slip [s]
   double at_restick = 0;         ///< what v_r reads when it is zero, tau times its slope, over the fastest
   std::size_t slips = 0;         ///< that were looked at; 0: too few samples to see a kink
   bool is_filter = false;        ///< it explains what no kink does, and more than alpha's error
   bool is_first_order = false;   ///< a first order explains it best, not a mean
+  bool is_second_order = false;  ///< a Butterworth filter of second order does
   bool creeps = false;           ///< v_r grows in stick: then it trails off as the contact does
   std::vector<double> resticks;  ///< where v_r came to rest [samples], once in every slip
   double corner() const;         ///< [Hz]

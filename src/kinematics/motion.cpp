@@ -10,6 +10,7 @@
 #include "disc_ripple.hpp"
 #include "displacement.hpp"
 #include "force_alone.hpp"
+#include "held_values.hpp"
 #include "motion_channels.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
@@ -232,6 +233,7 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
   if (trace.kind == RecordKind::force_only) return kinematics::motion_of_force(std::move(trace));
   std::vector<std::string> notes;
+  kinematics::keep_fresh_values(trace, notes);
   MotionOptions own = options;
   const bool was_made = kinematics::make_missing_channels(trace, notes);
   if (was_made) own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;  // of a vibrometer

@@ -70,7 +70,20 @@ void MotionStages::undo_compression() {
   find_plateau();
 }
 
+/// One that the user states is undone whether it shows or not.
+void MotionStages::undo_stated_low_pass() {
+  const std::optional<Declared>& stated = instruments_.vibrometer.low_pass;
+  if (!stated || trace_.velocity_kind == VelocityKind::fixed_block) return;
+  const double tau = 1 / (2 * std::numbers::pi * stated->value);
+  const double fastest = search_.sticks ? search_.plateaus.depth : largest_of(trace_.velocity);
+  kinematics::undo_low_pass(trace_.velocity, tau, motion_.step, search_.noise, fastest);
+  motion_.notes.push_back(
+      fmt::format("velocity: the declared low-pass at {}; corrected", frequency_text(stated->value)));
+  find_plateau();
+}
+
 void MotionStages::undo_low_pass() {
+  undo_stated_low_pass();
   if (!search_.sticks || trace_.velocity_kind == VelocityKind::fixed_block) return;
   std::vector<double> relative;  // to a disc whose speed varies
   if (!speed_is_constant() && is_block()) {

@@ -108,7 +108,10 @@ HealthItem MotionStages::check_level() const {
 }
 
 void MotionStages::compare_plateau() {
-  if (!is_block() || !speed_was_stated_ || !search_.sticks || range_ends_.velocity_slew > 0) return;
+  // What moves a velocity that is nonlinear from omega r is neither radius nor gain.
+  const bool is_nonlinear =
+      range_ends_.velocity_slew > 0 || (zero_.kind == BlockZero::Kind::uneven && !motion_.compression.any());
+  if (!is_block() || !speed_was_stated_ || !search_.sticks || is_nonlinear) return;
   kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
   const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
   if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);

@@ -50,6 +50,7 @@ class MotionStages {
   void find_zero();
   void undo_zero();
   void undo_compression();
+  void undo_stated_low_pass();
   void undo_low_pass();
   void undo_clock_drift();
   void find_friction_filter();

@@ -48,7 +48,7 @@ bool is_steady(const Positions& positions, double mean) {
                  second = slope_of(time.subspan(half), position.subspan(half));
   const auto agrees = [&](const Estimate& part) {
     return std::abs(part.value - mean) < kHalvesAgree * std::abs(mean) + kZeroErrors * part.std_error &&
-           part.value * mean > 0;
+           part.value / mean > kHalfOfMean;
   };
   return agrees(first) && agrees(second);
 }

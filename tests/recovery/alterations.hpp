@@ -130,6 +130,23 @@ inline std::function<void(Trace&, Random&)> low_passed(std::vector<Channel> chan
   };
 }
 
+/// A Butterworth filter of second order.
+inline std::function<void(Trace&, Random&)> low_passed_twice(std::vector<Channel> channels, double corner) {
+  return [=](Trace& trace, Random&) {
+    const double w = std::tan(std::numbers::pi * corner * trace.interval()), k = std::numbers::sqrt2 * w;
+    const double norm = 1 / (1 + k + w * w), b = w * w * norm, a1 = 2 * (w * w - 1) * norm, a2 = (1 - k + w * w) * norm;
+    for (const Channel channel : channels) {
+      std::vector<double>& x = trace.*channel;
+      double x1 = x[0], x2 = x[0], y1 = x[0], y2 = x[0];
+      for (double& value : x) {
+        const double y = b * (value + 2 * x1 + x2) - a1 * y1 - a2 * y2;
+        x2 = x1, x1 = value, y2 = y1, y1 = y;
+        value = y;
+      }
+    }
+  };
+}
+
 /// A centred mean.
 inline std::function<void(Trace&, Random&)> averaged(std::vector<Channel> channels, double width) {
   return [=](Trace& trace, Random&) {
@@ -258,6 +275,10 @@ inline const std::vector<Alteration>& beyond_rescue() {
       {"both: means of 0.5 ms", averaged({kFriction, kVelocity}, 0.5e-3), "bandwidth", "low-pass"},
       {"both: means of 1 ms", averaged({kFriction, kVelocity}, 1e-3), "bandwidth", "low-pass"},
       {"velocity: means of 2 ms", averaged({kVelocity}, 2e-3), "bandwidth", "low-pass"},
+      {"both: second order of 500 Hz", low_passed_twice({kFriction, kVelocity}, 500), "bandwidth",
+       "second-order low-pass"},
+      {"velocity: second order of 1 kHz", low_passed_twice({kVelocity}, 1000), "bandwidth",
+       "second-order low-pass at 1"},
       {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "the law's decay (alpha) is unreliable"},
       {"friction: twenty levels", rounded(kFriction, 0.02), "resolution",
        "mu_k and the law's decay (alpha) are unreliable"},

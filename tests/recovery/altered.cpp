@@ -143,7 +143,7 @@ TEST(NotAltered, ARoundedPlateauIsNotOff) {
 
 TEST(Diagnosed, NamesNoEffectWhileAProblemStands) {
   const auto problems = {rounded(kVelocity, 3.2e-3), clipped_velocity(0.6, 5e-6), clipped_friction(0.45, 1e-3),
-                         averaged({kFriction, kVelocity}, 1e-3)};
+                         averaged({kFriction, kVelocity}, 1e-3), low_passed_twice({kVelocity}, 500)};
   for (const auto& alter : problems) {
     Trace trace = truth::simulate(rig_of(11)).trace;
     Random random;

@@ -37,9 +37,11 @@ Trace under_unrecorded_load(const truth::Rig& rig, const UnrecordedLoad& load) {
   Trace trace = record(motion, model, truth, sensors).trace;
   for (std::size_t i = 0; i < trace.load.size(); ++i) trace.friction[i] *= trace.load[i] / rig.load;
   trace.load.clear();
+  trace.disc_speed.clear();
   trace.conditions.radius = {rig.radius, "file"};
   trace.conditions.speed = {rig.speed(), "file"};
   trace.conditions.load = {rig.load, "file"};
+  trace.steps = {{0, trace.size(), "", {}}};
   return trace;
 }
 

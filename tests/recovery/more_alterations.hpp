@@ -13,23 +13,6 @@ namespace tribofit::altered {
 
 using Alter = std::function<void(Trace&, Random&)>;
 
-/// A Butterworth filter of second order.
-inline Alter low_passed_twice(std::vector<Channel> channels, double corner) {
-  return [=](Trace& trace, Random&) {
-    const double w = std::tan(std::numbers::pi * corner * trace.interval()), k = std::numbers::sqrt2 * w;
-    const double norm = 1 / (1 + k + w * w), b = w * w * norm, a1 = 2 * (w * w - 1) * norm, a2 = (1 - k + w * w) * norm;
-    for (const Channel channel : channels) {
-      std::vector<double>& x = trace.*channel;
-      double x1 = x[0], x2 = x[0], y1 = x[0], y2 = x[0];
-      for (double& value : x) {
-        const double y = b * (value + 2 * x1 + x2) - a1 * y1 - a2 * y2;
-        x2 = x1, x1 = value, y2 = y1, y1 = y;
-        value = y;
-      }
-    }
-  };
-}
-
 /// A mean over the samples before.
 inline Alter trailing_mean(std::vector<Channel> channels, double width) {
   return [=](Trace& trace, Random&) {
