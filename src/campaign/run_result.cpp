@@ -247,9 +247,14 @@ std::optional<std::string> folder_of_campaign(const std::string& results) {
 ResultReader::ResultReader(std::string folder) : folder_(std::move(folder)) {
   const Json campaign = campaign_object(folder_);
   traces_ = text(campaign, "folder");
-  problems_ = texts(campaign, "problems");
-  for (const Json& run : campaign.at("runs")) {
-    runs_.push_back({text(run, "name"), text(run, "file"), text(run, "settings")});
+  try {
+    problems_ = texts(campaign, "problems");
+    for (const Json& run : campaign.at("runs")) {
+      runs_.push_back({text(run, "name"), text(run, "file"), text(run, "settings")});
+    }
+  } catch (const Json::exception&) {  // whole, but of another make
+    throw InputError("is no list of runs", "run the batch again with --again: it writes the file anew",
+                     {(std::filesystem::path(folder_) / campaign_name).string(), 0, ""});
   }
 }
 

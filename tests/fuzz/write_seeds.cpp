@@ -1,55 +1,16 @@
-// Writes the fuzzers' seeds into the folder that is named: one small file of each format, as its tests write them, and
-// a few texts. Made anew where a format changes, they need no place in the repository.
+// Writes the seeds of traces into the folder that is named. Made anew where a format changes, they need no place in the
+// repository.
 
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <string>
 
-#include "../ingest/record_files.hpp"
-
-namespace files = tribofit::record_files;
-
-namespace {
-
-files::Columns record() {
-  files::Columns columns = {{"time", "s", {}}, {"mu", "1", {}}, {"v_b", "mm/s", {}}, {"Fn", "N", {}}};
-  for (int i = 0; i < 12; ++i) {
-    const std::array<double, 4> row = {5e-5 * i, 0.3 + 0.01 * std::sin(i), 6 + std::cos(i), 50};
-    for (std::size_t k = 0; k < row.size(); ++k) columns[k].values.push_back(row[k]);
-  }
-  return columns;
-}
-
-}  // namespace
+#include "seeds.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::cerr << "usage: fuzz_seeds FOLDER\n";
     return EXIT_FAILURE;
   }
-  const std::filesystem::path folder(argv[1]);
-  std::filesystem::create_directories(folder);
-  const auto write = [&](const char* name, const std::string& bytes) {
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-  };
-  const files::Columns columns = record();
-  write("comma.csv", files::text_of(columns, ','));
-  write("blanks.txt", files::text_of(columns, ' '));
-  write("cut-off.csv", files::text_of(columns, ';') + "1;2;3;4;5");
-  write("v5.mat", files::mat5_of(columns));
-  write("v5-packed.mat", files::mat5_of(columns, false, true));
-  write("v5-big-endian.mat", files::mat5_of(columns, true));
-  files::write_mat73((folder / "v73.mat").string(), columns);
-  write("uneven.uff", files::uff_of(columns));
-  write("even.uff", files::uff_of(columns, 5e-5));
-  write("binary.uff", files::uff_binary_of(columns));
-  write("binary-big-endian.uff", files::uff_binary_of(columns, 5e-5, true));
-  write("plain.tdms", files::tdms_of(columns));
-  write("big-endian.tdms", files::tdms_of(columns, true));
-  write("interleaved.tdms", files::tdms_of(columns, false, true));
+  tribofit::fuzz::write_seeds(argv[1]);
   return EXIT_SUCCESS;
 }
