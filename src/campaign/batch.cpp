@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
@@ -20,19 +21,21 @@
 namespace tribofit {
 namespace {
 
-/// What shows without reading whether a file was written to.
+/// What shows without reading whether a file is another or was written to. The time of change counts, too: that of
+/// modification is kept by those who copy.
 struct FileState {
-  std::uint64_t bytes = 0;
-  timespec changed{};
-  bool operator==(const FileState& other) const {
-    return bytes == other.bytes && changed.tv_sec == other.changed.tv_sec && changed.tv_nsec == other.changed.tv_nsec;
-  }
+  std::uint64_t bytes = 0, device = 0, node = 0;
+  std::array<std::int64_t, 4> times{};
+  bool operator==(const FileState& other) const = default;
 };
 
 FileState state_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};
-  return {static_cast<std::uint64_t>(status.st_size), status.st_mtim};
+  return {static_cast<std::uint64_t>(status.st_size),
+          status.st_dev,
+          status.st_ino,
+          {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ctim.tv_sec, status.st_ctim.tv_nsec}};
 }
 
 /// Keeps the traces that are in memory at the same time below a number of bytes; one alone may have more.
@@ -109,7 +112,6 @@ class Batch {
       return;
     }
     const Run& run = *end.run;
-    const FileState before = state_of(run.trace.path);
     RunRecord record = record_of(run);
     if (is_present(run, record)) {
       end.present = true;
@@ -117,7 +119,7 @@ class Batch {
       end.message = record.message;
     } else {
       admission_.enter(bytes_[k]);
-      fit_and_keep(k, before, record, end);
+      fit_and_keep(k, record, end);
       admission_.leave(bytes_[k]);
     }
     report_progress(k, end);
@@ -141,7 +143,7 @@ class Batch {
     record.key = hexadecimal(xxh64(record.settings));
     if (!run.problem.empty()) return false;
     try {
-      record.key = hexadecimal(xxh64(record.settings, content_hash(std::vector{run.trace.path})));
+      record.key = key_of(run, record);
     } catch (const InputError& error) {
       record.message = with_place(error, run);
       return false;
@@ -155,10 +157,9 @@ class Batch {
     return true;
   }
 
-  void fit_and_keep(std::size_t k, const FileState& before, RunRecord& record, RunEnd& end) {
-    const Run& run = *end.run;
+  void fit_and_keep(std::size_t k, RunRecord& record, RunEnd& end) {
     std::optional<Identification> result;
-    if (record.status == RunStatus::ok) result = analysis_of(run, k, before, record);
+    if (record.status == RunStatus::ok) result = analysis_of_what_stays(*end.run, k, record);
     end.status = record.status;
     end.message = record.message;
     try {
@@ -171,8 +172,33 @@ class Batch {
     }
   }
 
-  std::optional<Identification> analysis_of(const Run& run, std::size_t k, const FileState& before,
-                                            RunRecord& record) const {
+  std::string key_of(const Run& run, const RunRecord& record) const {
+    return hexadecimal(xxh64(record.settings, content_hash(std::vector{run.trace.path})));
+  }
+
+  /// The analysis of the bytes that the key of the record is of: again, where the file changed meanwhile.
+  std::optional<Identification> analysis_of_what_stays(const Run& run, std::size_t k, RunRecord& record) const {
+    constexpr int kMostTries = 3;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      record.status = RunStatus::ok;
+      record.message.clear();
+      const FileState before = state_of(run.trace.path);
+      try {
+        record.key = key_of(run, record);
+        std::optional<Identification> result = analysis_of(run, k, record);
+        if (state_of(run.trace.path) == before && key_of(run, record) == record.key) return result;
+      } catch (const InputError& error) {  // of the hash: gone meanwhile
+        record.message = with_place(error, run);
+      }
+    }
+    record.status = RunStatus::unreadable;
+    if (record.message.empty()) {
+      record.message = run.file + ": changed each time it was read; run again when it is complete";
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Identification> analysis_of(const Run& run, std::size_t k, RunRecord& record) const {
     const auto refuse = [&](std::string message) {
       record.status = RunStatus::unreadable;
       record.message = std::move(message);
@@ -190,9 +216,6 @@ class Batch {
       return refuse(run.file + ": there is not enough memory for it; use fewer --threads");
     } catch (const std::exception& error) {  // whatever it is, it is this run's alone
       return refuse(run.file + ": " + error.what());
-    }
-    if (!(state_of(run.trace.path) == before)) {
-      return refuse(run.file + ": changed while it was read; run again when it is complete");
     }
     result->path = run.file;
     result->warnings.insert(result->warnings.begin(), run.warnings.begin(), run.warnings.end());

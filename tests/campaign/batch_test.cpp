@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "runs.hpp"
@@ -61,6 +65,50 @@ TEST_F(Batch, AColumnOfTheManifestCalledLikeOneOfOursHidesNone) {
   EXPECT_EQ(cell("condition status"), "mine");
   EXPECT_EQ(cell("condition cycles"), "many");
   EXPECT_GT(std::atoi(cell("cycles").c_str()), 3);
+}
+
+/// Two files of one size and one time of modification take turns under one name: the key of a result is that of the
+/// bytes it comes from.
+TEST_F(Batch, AFileThatChangesWhileItIsReadIsDoneAgainOrNamed) {
+  namespace fs = std::filesystem;
+  std::array<std::string, 2> texts = {short_trace(1), short_trace(2)};
+  const std::size_t size = std::max(texts[0].size(), texts[1].size());
+  fs::create_directory(shop_ / "one");
+  const fs::path path = shop_ / "one/a.csv", beside = shop_ / "beside";
+  const auto put = [&](std::size_t k) {
+    std::ofstream(beside, std::ios::binary) << texts[k];
+    fs::last_write_time(beside, fs::file_time_type{});
+    fs::rename(beside, path);
+  };
+  const auto key_and_values = [&](const std::string& folder) {
+    shop_.identify("one --radius 15mm --quiet --out " + folder);
+    const auto result = json_in(shop_ / (folder + "/a.json"));
+    const bool read = result.contains("trace") && result["trace"].is_object();
+    return std::pair{result["run"]["key"].get<std::string>(), read ? result["trace"]["checksum"].dump() : ""};
+  };
+  std::map<std::string, std::string> values;
+  for (const std::size_t k : {0u, 1u}) {
+    texts[k].resize(size, '\n');
+    put(k);
+    values.insert(key_and_values("still" + std::to_string(k)));
+  }
+  ASSERT_EQ(values.size(), 2u);
+  std::atomic<bool> stops = false;
+  std::thread changes([&] {
+    for (std::size_t k = 0; !stops; ++k) {
+      put(k % 2);
+      std::this_thread::sleep_for(std::chrono::microseconds(700));
+    }
+  });
+  for (int k = 0; k < 12; ++k) {
+    const auto [key, read] = key_and_values("moving" + std::to_string(k));
+    if (!read.empty()) {
+      EXPECT_EQ(read, values[key]);
+    }
+  }
+  stops = true;
+  changes.join();
+  EXPECT_EQ(values.count(key_and_values("moving0").first), 1u);
 }
 
 TEST_F(Batch, EveryNumberOfThreadsGivesTheSameBytes) {
