@@ -73,7 +73,7 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
     found = find(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
   } else if (find && run.has_velocity() && other.has_friction()) {
     found = find(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
-    found.offset = -found.offset;
+    found.offset = -found.offset, found.drift = -found.drift;
   }
   if (!run.has_friction() && !other.has_friction()) {
     run.notes.push_back(overlap ? "the times of the two files were taken as written"
@@ -87,14 +87,13 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
     run.clock_offset_std_error = std::numeric_limits<double>::quiet_NaN();
     return overlap ? as_written : 0;
   }
-  run.notes.push_back(
-      fmt::format("clock offset from {} break-aways: {:+.6f} s (+-{:.2g} s) added to the times of {}; it holds any "
-                  "lag of friction behind velocity too",
-                  found.events, found.offset - as_written, found.uncertainty, other.path));
+  run.notes.push_back(fmt::format(
+      "clock offset from {} break-aways: {:+.6f} s (+-{:.2g} s) added to the times of {}, right in the middle "
+      "of the common time as one clock drifts by {:+.1f} ppm (+-{:.1f}) against the other; it holds any lag "
+      "of friction behind velocity too",
+      found.events, found.offset - as_written, found.uncertainty, other.path, 1e6 * found.drift,
+      1e6 * found.drift_uncertainty));
   run.clock_offset_std_error = found.uncertainty;
-  if (found.ambiguity > kOffsetsAlike) {
-    run.warnings.push_back("the stick-slip is so regular that the clock offset may be wrong by whole periods");
-  }
   return found.offset;
 }
 

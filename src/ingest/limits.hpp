@@ -26,9 +26,6 @@ inline constexpr std::size_t kMostStepChanges = 10, kRowsPerStepChange = 10;
 inline constexpr double kSameRate = 0.01;
 /// Break-aways that two clocks are compared by: two coincide at some offset whatever they are.
 inline constexpr std::size_t kFewestBreakAways = 3;
-/// What the best offset leaves of friction over what the next best one leaves, from which nothing distinguishes them:
-/// records of perfectly regular stick-slip have a ratio of one.
-inline constexpr double kOffsetsAlike = 0.95;
 
 // ---- rows that are left out
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,13 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "clock_scan.hpp"
+#include "force_balance.hpp"
 #include "ingest/clock.hpp"
 #include "ingest/limits.hpp"
 #include "limits.hpp"
-#include "statistics/golden_section.hpp"
-#include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -60,217 +60,144 @@ std::vector<double> upward_crossings(const std::vector<double>& time, Signal sig
   return events;
 }
 
-double median_interval(const std::vector<double>& events) {
-  return events.size() > 1 ? typical_interval(events) : 0;
-}
-
-struct Candidate {
-  double offset = 0;
-  std::size_t support = 0;
+/// Slips as the velocity shows them.
+struct Slips {
+  std::vector<double> jumps;        ///< times at which it leaves its plateau
+  double period = 0, duration = 0;  ///< medians [s]
 };
 
-/// Offsets under which most events of both coincide, best first.
-std::vector<Candidate> coincidences(const std::vector<double>& a, const std::vector<double>& b, double width,
-                                    double apart) {
-  std::vector<double> differences;
-  for (const double x : a) {
-    for (const double y : b) differences.push_back(x - y);
-  }
-  std::sort(differences.begin(), differences.end());
-  std::vector<Candidate> windows;
-  for (std::size_t i = 0, j = 0; i < differences.size(); ++i) {
-    while (j < differences.size() && differences[j] <= differences[i] + width) ++j;
-    windows.push_back({(differences[i] + differences[j - 1]) / 2, j - i});
-  }
-  std::stable_sort(windows.begin(), windows.end(), [](const auto& x, const auto& y) { return x.support > y.support; });
-  std::vector<Candidate> best;
-  for (const Candidate& window : windows) {
-    if (best.size() == kMostOffsets) break;
-    if (!best.empty() &&
-        static_cast<double>(window.support) < kFewestOfBest * static_cast<double>(best.front().support))
-      break;
-    const bool is_new = std::all_of(best.begin(), best.end(),
-                                    [&](const Candidate& c) { return std::abs(c.offset - window.offset) > apart; });
-    if (is_new) best.push_back(window);
-  }
-  return best;
-}
-
-/// How far friction is from balancing the motion at a given offset: m a + c v + k x = N mu holds for any law of
-/// friction, in stick and in slip, so friction is a linear function of the block's displacement, velocity and
-/// acceleration when the clocks agree, and is not when they do not.
-class ForceBalance {
- public:
-  ForceBalance(const std::vector<double>& friction_time, const std::vector<double>& friction,
-               const std::vector<double>& velocity_time, const std::vector<double>& velocity)
-      : friction_time_(friction_time), friction_(friction), velocity_time_(velocity_time) {
-    const std::size_t n = velocity.size();
-    double mean = 0;
-    for (const double v : velocity) mean += v / static_cast<double>(n);
-    motion_.resize(n);
-    double x = 0;
-    const auto half =
-        std::max<std::size_t>(1, static_cast<std::size_t>(kAccelerationOver / typical_interval(velocity_time)));
-    width_ = static_cast<double>(half) * typical_interval(velocity_time);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (i > 0) x += ((velocity[i] + velocity[i - 1]) / 2 - mean) * (velocity_time[i] - velocity_time[i - 1]);
-      const std::size_t before = i - std::min(i, half), after = std::min(n - 1, i + half);
-      const double a = (velocity[after] - velocity[before]) / (velocity_time[after] - velocity_time[before]);
-      motion_[i] = {x, velocity[i] - mean, a};
-    }
-  }
-
-  /// Part of the variance of friction that the motion does not balance, for friction samples [begin, end).
-  double operator()(double offset, std::size_t begin, std::size_t end, std::size_t stride) const {
-    // Regressors: a constant, a drift of the integral, x, v, a; scaled so that the normal equations are well
-    // conditioned.
-    constexpr int count = 5;
-    Eigen::Matrix<double, count, count> normal = Eigen::Matrix<double, count, count>::Zero();
-    Eigen::Matrix<double, count, 1> right = Eigen::Matrix<double, count, 1>::Zero();
-    double squares = 0, sum = 0, samples = 0;
-    std::size_t k = 0;
-    const double first = friction_time_[begin], span = friction_time_[end - 1] - first;
-    for (std::size_t i = begin; i < end; i += stride) {
-      const double t = friction_time_[i] - offset;
-      if (t < velocity_time_.front() || t >= velocity_time_.back()) continue;
-      if (k == 0)
-        k = static_cast<std::size_t>(std::upper_bound(velocity_time_.begin(), velocity_time_.end(), t) -
-                                     velocity_time_.begin()) -
-            1;
-      while (velocity_time_[k + 1] <= t) ++k;
-      const double part = (t - velocity_time_[k]) / (velocity_time_[k + 1] - velocity_time_[k]);
-      const Eigen::Vector3d motion = (1 - part) * motion_[k] + part * motion_[k + 1];
-      Eigen::Matrix<double, count, 1> row;
-      row << 1, (friction_time_[i] - first) / span, motion;
-      normal.noalias() += row * row.transpose();
-      right += friction_[i] * row;
-      squares += friction_[i] * friction_[i];
-      sum += friction_[i];
-      samples += 1;
-    }
-    const double variance = squares - sum * sum / samples;
-    if (samples < static_cast<double>(kFewestBalanced) || !(variance > 0)) return 1;
-    const Eigen::Matrix<double, count, 1> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-    const Eigen::Matrix<double, count, count> scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::VectorXd scaled_right = scale.asDiagonal() * right;
-    const Eigen::VectorXd solved = solve_symmetric_system(scaled, scaled_right).x;
-    // Mass and stiffness have one sign; where they have not, a shifted copy of the motion imitates friction.
-    if (!(solved[2] * solved[4] > 0)) return 1;
-    const double balanced = scaled_right.dot(solved);
-    return std::clamp((squares - balanced) / variance, 0.0, 1.0);
-  }
-
-  /// The offset that leaves least within `reach` of `start`.
-  double minimise(double start, double reach, std::size_t begin, std::size_t end, std::size_t stride,
-                  double tolerance) const {
-    const auto cost = [&](double offset) { return (*this)(offset, begin, end, stride); };
-    double best = start, least = std::numeric_limits<double>::infinity();
-    // The minimum is as narrow as the jump of friction at re-stick, over which the acceleration is smeared.
-    const int steps = static_cast<int>(std::max(kFewestScanSteps, std::ceil(2 * reach / (kScanStep * width_))));
-    for (int i = 0; i <= steps; ++i) {
-      const double offset = start + reach * (2.0 * i / steps - 1);
-      if (const double c = cost(offset); c < least) {
-        least = c;
-        best = offset;
-      }
-    }
-    const double width = 4 * reach / steps;
-    const int cuts = std::max(0, static_cast<int>(std::ceil(std::log(tolerance / width) / std::log(0.618))));
-    return golden_section(cost, best - width / 2, best + width / 2, cuts).at;
-  }
-
- private:
-  double width_ = 0;  ///< over which the acceleration is taken, to either side [s]
-  const std::vector<double>&friction_time_, &friction_, &velocity_time_;
-  std::vector<Eigen::Vector3d> motion_;  ///< displacement from its mean, velocity from its mean, acceleration
-};
-
-/// Refuses records of different runs. width: within which events coincide [s]; unbalanced: of the variance of friction;
-/// ambiguity: the same over that of the next best offset.
-void refuse_strangers(const std::vector<double>& falls, const std::vector<double>& jumps, double offset, double width,
-                      double unbalanced, double ambiguity) {
-  const auto within = [&](const std::vector<double>& events, double from, double to) {
-    return static_cast<std::size_t>(
-        std::count_if(events.begin(), events.end(), [&](double t) { return t >= from && t <= to; }));
-  };
-  const double from = std::max(falls.front(), jumps.front() + offset),
-               to = std::min(falls.back(), jumps.back() + offset);
-  std::size_t matched = 0, shared = 0;
-  for (const double jump : jumps) {
-    const double at = jump + offset;
-    if (at < from || at > to) continue;
-    ++shared;
-    matched += within(falls, at - width, at + width) > 0 ? 1U : 0U;
-  }
-  const bool belong = static_cast<double>(matched) >= kFewestMatched * static_cast<double>(shared) && shared > 1;
-  const bool balances = unbalanced < kMostUnbalanced && (unbalanced < kBalanced || ambiguity < kAmbiguous);
-  if (belong && balances) return;
-  throw InputError(
-      fmt::format("the two records are not of one run: {} of {} break-aways coincide, and the motion leaves "
-                  "{:.0f} % of friction unbalanced",
-                  matched, shared, 100 * unbalanced),
-      "give the two files of one run");
-}
-
-/// Times at which friction falls and at which the velocity leaves its plateau.
-struct BreakAways {
-  std::vector<double> falls, jumps;
-};
-
-BreakAways find_break_aways(const std::vector<double>& friction_time, const std::vector<double>& friction,
-                            const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
-  const double low = quantile(thinned(friction, kEnough), kEndsOfFriction),
-               high = quantile(thinned(friction, kEnough), 1 - kEndsOfFriction);
-  const Plateau plateau = find_plateau(velocity);
-  if (!(high > low) || !(plateau.reach > 0)) return {};
-  BreakAways out;
-  out.falls = upward_crossings(
-      friction_time, [&](std::size_t i) { return -friction[i]; }, -(low + kFallFrom * (high - low)),
-      -(low + kFallTo * (high - low)));
-  out.jumps = upward_crossings(
-      velocity_time, [&](std::size_t i) { return std::abs(velocity[i] - plateau.velocity); }, kRiseFrom * plateau.reach,
-      kRiseTo * plateau.reach);
-  for (std::vector<double>* events : {&out.falls, &out.jumps})
-    events->resize(std::min(events->size(), kMostBreakAways));
+Slips find_slips(const TimedChannel& velocity) {
+  const Plateau plateau = find_plateau(velocity.value);
+  if (!(plateau.reach > 0)) return {};
+  const auto excursion = [&](std::size_t i) { return std::abs(velocity.value[i] - plateau.velocity); };
+  Slips out;
+  out.jumps = upward_crossings(velocity.time, excursion, kRiseFrom * plateau.reach, kRiseTo * plateau.reach);
+  if (out.jumps.size() < kFewestBreakAways) return {};
+  double outside = 0;
+  for (std::size_t i = 0; i < velocity.time.size(); ++i) outside += excursion(i) > kRiseTo * plateau.reach ? 1 : 0;
+  out.period = typical_interval(out.jumps);
+  out.duration = outside * typical_interval(velocity.time) / static_cast<double>(out.jumps.size());
+  if (out.duration < kFewestInSlip * typical_interval(velocity.time)) return {};
   return out;
 }
 
-/// The offset of a candidate that leaves least of friction for the events that it matches.
-struct BestOffset {
-  double offset = 0;
-  Candidate candidate;
-  double ambiguity = 0;  ///< what it leaves over what the next best one does
+/// Offsets of parts of the time that both share, and the line through them.
+struct PartsOfClock {
+  ClockLine clock;
+  double offset_std_error = 0, drift_std_error = 0;
 };
 
-BestOffset best_offset(const std::vector<Candidate>& candidates, const ForceBalance& unbalanced, double reach,
-                       std::size_t n, double tolerance) {
-  const std::size_t coarse = std::max<std::size_t>(1, n / kScanned);
-  BestOffset best;
-  double least = std::numeric_limits<double>::infinity(), second = least;
-  for (const Candidate& candidate : candidates) {
-    const double offset = unbalanced.minimise(candidate.offset, reach, 0, n, coarse, tolerance);
-    const double cost = unbalanced(offset, 0, n, coarse) / static_cast<double>(candidate.support);
-    second = std::min(second, std::max(least, cost));
-    if (!(cost < least)) continue;
-    least = cost;
-    best.offset = offset;
-    best.candidate = candidate;
+/// Each part is looked at by itself, at most `reach` beside a clock: what wanders from cycle to cycle scatters them.
+PartsOfClock follow_parts(const ForceBalance& unbalanced, const ClockMatch& match, double reach, double step,
+                          double tolerance) {
+  const std::size_t parts = std::clamp(match.cycles / kCyclesOfPart, kFewestParts, kMostParts);
+  const double length = (match.to - match.from) / static_cast<double>(parts);
+  std::vector<double> middles, offsets;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const double from = match.from + static_cast<double>(k) * length;
+    middles.push_back(from + 0.5 * length);
+    offsets.push_back(unbalanced.minimise(match.clock, reach, step, tolerance, unbalanced.sample_at(from),
+                                          unbalanced.sample_at(from + length)));
   }
-  best.ambiguity = least / second;
-  return best;
+  const StraightLine line = fit_line(middles, offsets);
+  double squares = 0;
+  for (std::size_t k = 0; k < parts; ++k) squares += std::pow(offsets[k] - line.at(middles[k]), 2);
+  const auto count = static_cast<double>(parts);
+  const double variance = squares / (count - 2) + tolerance * tolerance;
+  return {{match.clock.at(line.middle) + line.value, match.clock.drift + line.slope, line.middle},
+          std::sqrt(variance / count),
+          std::sqrt(variance / line.squares)};
 }
 
-/// The same offset from contiguous parts: their spread is what wanders from cycle to cycle.
-double uncertainty_of(double offset, const ForceBalance& unbalanced, std::size_t n, std::size_t stride,
-                      double interval) {
-  constexpr std::size_t parts = kPartsOfRecord;
-  double squares = 0;
-  for (std::size_t i = 0; i < parts; ++i) {
-    const double part = unbalanced.minimise(offset, kSearchReachOfPart * interval, i * n / parts, (i + 1) * n / parts,
-                                            stride, kFoundInPart * interval);
-    squares += (part - offset) * (part - offset);
+/// The best alignment and the best other one.
+struct Decision {
+  ClockMatch best, other;
+  double margin() const { return best.evidence - other.evidence; }
+  bool is_clear() const { return best.unbalanced < kMostUnbalanced && margin() > kClearEvidence; }
+};
+
+/// Of a stretch of friction, [from, to) of its bins.
+Decision decide(const ScannedChannels& channels, const ForceBalance& unbalanced, std::size_t from, std::size_t to,
+                double reach) {
+  ClockScan scan = scan_clocks(channels, from, to);
+  for (ClockMatch& match : scan.best) {
+    match.clock = follow_parts(unbalanced, match, reach, channels.width, kFoundInBin * channels.width).clock;
+    match.unbalanced = unbalanced(match.clock, unbalanced.sample_at(match.from), unbalanced.sample_at(match.to));
+    match.evidence = evidence_of(match.unbalanced, scan.usual, match.cycles);
   }
-  return std::sqrt(squares / (parts * (parts - 1.0)));
+  std::stable_sort(scan.best.begin(), scan.best.end(),
+                   [](const ClockMatch& a, const ClockMatch& b) { return a.evidence > b.evidence; });
+  Decision out;
+  if (!scan.best.empty()) out.best = scan.best[0];
+  if (scan.best.size() > 1) out.other = scan.best[1];
+  return out;
+}
+
+/// Clocks are compared over stretches in which a drift does not matter, from the middle of friction outwards, until one
+/// shows the offset.
+Decision find_alignment(const ScannedChannels& channels, const ForceBalance& unbalanced, double blur) {
+  const std::size_t n = channels.friction.time.size();
+  const double whole = channels.width * static_cast<double>(n), longest = 2 * blur / kMostClockDrift;
+  const auto stretches = static_cast<std::size_t>(std::ceil(whole / longest));
+  const double reach = std::min(blur, 0.5 * whole * kMostClockDrift) + 2 * channels.width;
+  Decision found;
+  for (std::size_t k = 0; k < stretches && !found.is_clear(); ++k) {
+    const std::size_t beside = (k + 1) / 2, middle = stretches / 2;
+    const std::size_t at = k % 2 == 0 ? middle + beside : middle - beside;
+    const Decision next = decide(channels, unbalanced, at * n / stretches, (at + 1) * n / stretches, reach);
+    if (k == 0 || next.margin() > found.margin()) found = next;
+  }
+  return found;
+}
+
+/// The same alignment over all of the time that both share, twice as much at a time: the line of the clock is known so
+/// well that it does not go astray.
+ClockMatch followed_to_ends(ClockMatch match, const ScannedChannels& channels, const ForceBalance& unbalanced) {
+  const std::vector<double>&friction = channels.friction.time, &velocity = channels.velocity.time;
+  const double width = channels.width;
+  while (true) {
+    const double from = std::max(friction.front(), match.clock.on_friction(velocity.front())),
+                 to = std::min(friction.back(), match.clock.on_friction(velocity.back())),
+                 more = 0.5 * (match.to - match.from);
+    if (from > match.from - width && to < match.to + width) break;
+    match.from = std::max(from, match.from - more), match.to = std::min(to, match.to + more);
+    match.clock = follow_parts(unbalanced, match, 4 * width, width, kFoundInBin * width).clock;
+  }
+  match.cycles = static_cast<std::size_t>(std::count_if(channels.jumps.begin(), channels.jumps.end(), [&](double jump) {
+    const double t = match.clock.on_friction(jump);
+    return t >= match.from && t <= match.to;
+  }));
+  return match;
+}
+
+/// Says why two records were not joined.
+[[noreturn]] void refuse(const Decision& found) {
+  const ClockMatch& best = found.best;
+  const std::string left = fmt::format(
+      "at the best offset both share {} cycles and the motion leaves {:.1f} % of "
+      "friction unbalanced, at another one {} cycles and {:.1f} %",
+      best.cycles, 100 * best.unbalanced, found.other.cycles, 100 * found.other.unbalanced);
+  throw InputError("the two records are not of one run, share too few cycles, or their cycles are too alike: " + left,
+                   "give the two files of one run, or one file with both channels on one clock");
+}
+
+/// Friction around slips, where it shows the time: around so many of them that there are no more samples than are
+/// searched.
+TimedChannel around_slips(const std::vector<double>& time, const std::vector<double>& value, const Slips& slips,
+                          const ClockLine& clock) {
+  const double around = (kBeforeSlip + kAfterSlip) * slips.duration;
+  const double samples = static_cast<double>(slips.jumps.size()) * around / typical_interval(time);
+  const std::size_t every = 1 + static_cast<std::size_t>(samples / kSearched);
+  TimedChannel out;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < slips.jumps.size(); k += every) {
+    const double jump = clock.on_friction(slips.jumps[k]), from = jump - kBeforeSlip * slips.duration,
+                 to = jump + kAfterSlip * slips.duration;
+    for (; i < time.size() && time[i] < to; ++i) {
+      if (time[i] >= from) out.time.push_back(time[i]), out.value.push_back(value[i]);
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -281,28 +208,29 @@ namespace tribofit {
 ClockOffset estimate_clock_offset(const std::vector<double>& friction_time, const std::vector<double>& friction,
                                   const std::vector<double>& velocity_time, const std::vector<double>& velocity) {
   using namespace kinematics;
-  const auto [falls, jumps] = find_break_aways(friction_time, friction, velocity_time, velocity);
-  if (std::min(falls.size(), jumps.size()) < kFewestBreakAways) return {};
-  const double interval = std::max(typical_interval(friction_time), typical_interval(velocity_time));
-  // Friction falls twice a cycle, at break-away and again at re-stick.
-  const double period = median_interval(jumps);
-  const double width = std::max(kCoincideSamples * interval, kCoincidePart * period);
-  auto candidates = coincidences(falls, jumps, width, kOffsetsApart * period);
-  // Instruments started by one trigger share their clock.
-  if (!candidates.empty()) candidates.push_back({0, candidates.front().support});
+  const TimedChannel motion{velocity_time, velocity};
+  const Slips slips = find_slips(motion);
+  if (slips.jumps.size() < kFewestBreakAways) return {};
+  const double step = typical_interval(friction_time), velocity_step = typical_interval(velocity_time);
+  const double length = velocity_time.back() - velocity_time.front();
+  const double width = std::max({step, velocity_step, slips.duration / kBinsOfSlip, length / kMostBins});
+  const ScannedChannels channels{width, binned({friction_time, friction}, width), binned(motion, width), slips.jumps,
+                                 slips.period};
+  const ForceBalance coarse(channels.friction, channels.velocity, 1);
+  const Decision found = find_alignment(channels, coarse, kMostBlur * slips.duration);
+  if (!found.is_clear()) refuse(found);
+  const ClockMatch match = followed_to_ends(found.best, channels, coarse);
 
-  const ForceBalance unbalanced(friction_time, friction, velocity_time, velocity);
-  const std::size_t n = friction.size();
-  // Either of these may have been matched, and both lag behind the jump.
-  const double reach = std::max(kReachSamples * interval, kReachPart * period);
-  const BestOffset best = best_offset(candidates, unbalanced, reach, n, kFoundInScan * interval);
-  const std::size_t coarse = std::max<std::size_t>(1, n / kScanned), fine = std::max<std::size_t>(1, n / kSearched);
-  refuse_strangers(falls, jumps, best.candidate.offset, width, unbalanced(best.offset, 0, n, coarse), best.ambiguity);
+  const TimedChannel force = around_slips(friction_time, friction, slips, match.clock);
+  const auto half = static_cast<std::size_t>(std::max(1.0, kAccelerationOver * slips.duration / velocity_step));
+  const PartsOfClock fine = follow_parts(ForceBalance(force, motion, half), match, 2 * width, width / 4,
+                                         kFound * std::max(step, velocity_step));
   ClockOffset result;
-  result.events = best.candidate.support;
-  result.ambiguity = candidates.size() > 1 ? best.ambiguity : 0;
-  result.offset = unbalanced.minimise(best.offset, kSearchReach * interval, 0, n, fine, kFound * interval);
-  result.uncertainty = uncertainty_of(result.offset, unbalanced, n, fine, interval);
+  result.events = match.cycles;
+  result.offset = fine.clock.offset;
+  result.uncertainty = std::hypot(fine.offset_std_error, kBetweenSamples * step);
+  result.drift = fine.clock.drift;
+  result.drift_uncertainty = fine.drift_std_error;
   return result;
 }
 

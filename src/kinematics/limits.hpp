@@ -152,41 +152,41 @@ inline constexpr double kSharpJump = 0.8;
 
 // ---- two files of one run
 
-/// Samples for a quantile, parts of velocity and of friction left out at either end of their ranges, and bins in which
-/// the usual velocity is looked for.
+/// Samples for a quantile, part of the velocity left out at either end of its range, and bins in which the usual
+/// velocity is looked for.
 inline constexpr std::size_t kEnough = 20000, kVelocityBins = 100;
-inline constexpr double kSpikesOfVelocity = 0.002, kEndsOfFriction = 0.05;
-/// Parts of the range of friction that it falls from and to, and of the largest excursion of the velocity that it rises
-/// from and to, at a break-away: noise goes through one of them, not through both.
-inline constexpr double kFallFrom = 0.7, kFallTo = 0.45, kRiseFrom = 0.1, kRiseTo = 0.35;
-/// Samples, and part of the period, within which two events coincide; part of the period by which two offsets are not
-/// the same one.
-inline constexpr double kCoincideSamples = 3, kCoincidePart = 0.05, kOffsetsApart = 0.3;
-/// Break-aways that are compared (differences grow with the square), offsets that are tried, and events that one must
-/// match over those the best does.
-inline constexpr std::size_t kMostBreakAways = 1000, kMostOffsets = 8;
-inline constexpr double kFewestOfBest = 0.6;
-/// Samples, and part of the period, beside an offset within which the clocks may agree: break-away and re-stick may
-/// have been matched.
-inline constexpr double kReachSamples = 4, kReachPart = 0.25;
-/// [s] to either side over which the acceleration is taken: noise averages out, the jump at re-stick stays sharp
-/// enough.
-inline constexpr double kAccelerationOver = 1e-3;
-/// Samples without which nothing is balanced, of a scan (some dozens in every slip) and of the final search.
-inline constexpr std::size_t kFewestBalanced = 20, kScanned = 8000, kSearched = 400000;
-/// Step of a scan over the width of the minimum, which is not stepped over, and fewest steps.
-inline constexpr double kScanStep = 1, kFewestScanSteps = 40;
-/// Samples beside the offset that are searched, in the whole record and in its parts, whose spread is the uncertainty;
-/// and how nearly the minimum is found in the scan, in the whole and in a part [samples].
-inline constexpr std::size_t kPartsOfRecord = 6;
-inline constexpr double kSearchReach = 4, kSearchReachOfPart = 8;
-inline constexpr double kFoundInScan = 1.0 / 4, kFound = 1.0 / 50, kFoundInPart = 1.0 / 20;
+inline constexpr double kSpikesOfVelocity = 0.002;
+/// Parts of the largest excursion of the velocity that it rises from and to at a break-away: noise goes through one of
+/// them, not through both.
+inline constexpr double kRiseFrom = 0.1, kRiseTo = 0.35;
+/// Samples without which an excursion is noise; bins of a slip, in which its edges show; most bins of a record: of more
+/// the comparison takes seconds.
+inline constexpr double kFewestInSlip = 4, kBinsOfSlip = 32, kMostBins = 1 << 21;
+/// Part of the period by which two offsets are not the same one, and how many are looked at closely.
+inline constexpr double kOffsetsApart = 0.3;
+inline constexpr std::size_t kMostOffsets = 4;
+/// Cycles that two records must share at an offset; that the balance and a line are fitted to; for which a wrong offset
+/// may stay good by chance.
+inline constexpr std::size_t kFewestShared = 3;
+inline constexpr double kCyclesFitted = 3, kCyclesAlike = 20;
+/// Drift of one clock against the other: quartz clocks are off by 100 ppm each at most. And by what part of a slip it
+/// may blur what is compared at one offset.
+inline constexpr double kMostClockDrift = 3e-4, kMostBlur = 1.0 / 3;
+/// Of a slip's duration, to either side, for the acceleration: noise averages out, the jump at re-stick stays sharp.
+inline constexpr double kAccelerationOver = 1.0 / 30;
+/// Samples without which nothing is balanced, and of the final search; from before to after a slip, over its duration.
+inline constexpr std::size_t kFewestBalanced = 20;
+inline constexpr double kSearched = 200000, kBeforeSlip = 1, kAfterSlip = 2.5;
+/// Parts of the shared time in which the offset is found by itself, and cycles of one.
+inline constexpr std::size_t kFewestParts = 4, kMostParts = 12, kCyclesOfPart = 2;
+/// How nearly an offset is found: part of a bin, part of a sample; and by what part of one a jump between two samples
+/// of friction is misplaced.
+inline constexpr double kFoundInBin = 1.0 / 8, kFound = 1.0 / 50, kBetweenSamples = 0.03;
 
-/// Of the break-aways in the time that both share, those that must coincide where both files are of one run, and what
-/// the motion may leave of the variance of friction. Of two runs one in five coincides by chance.
-inline constexpr double kFewestMatched = 0.8, kMostUnbalanced = 0.3;
-/// What a join of one run may leave at any rate, and else over what the next best offset leaves.
-inline constexpr double kBalanced = 0.06, kAmbiguous = 0.5;
+/// What the motion may leave of the squares of friction where both files are of one run.
+inline constexpr double kMostUnbalanced = 0.3;
+/// Logarithm of the odds against the next best offset: of two runs one pair in ninety is beyond 3, in 500 beyond 5.
+inline constexpr double kClearEvidence = 7;
 
 // ---- low-pass of the velocity
 

@@ -185,4 +185,20 @@ SpectralPeak fundamental(std::span<const double> signal, double step, std::size_
   return peak;
 }
 
+std::vector<double> products_at_every_lag(std::span<const double> x, std::span<const double> y) {
+  const std::size_t lags = x.size() + y.size() - 1, size = good_size(lags);
+  std::vector<double> first(size), second(size);
+  std::copy(x.begin(), x.end(), first.begin());
+  std::reverse_copy(y.begin(), y.end(), second.begin());
+  std::vector<std::complex<double>> lines = transform(std::move(first));
+  const std::vector<std::complex<double>> factors = transform(std::move(second));
+  for (std::size_t k = 0; k < lines.size(); ++k) lines[k] *= factors[k];
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<double> products;
+  fft.inv(products, lines, static_cast<Eigen::Index>(size));
+  products.resize(lags);
+  return products;
+}
+
 }  // namespace tribofit

@@ -1,6 +1,7 @@
-/// Runs the long list of altered records: what came of each, and the count.
+/// Runs the long list of altered records, or of pairs of files: what came of each, and the count.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -12,130 +13,101 @@
 #include <vector>
 
 #include "altered_cases.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/kinematics/clock_offset.hpp"
+#include "joined_pairs.hpp"
 
 namespace {
 
 using namespace tribofit::altered;
 
-/// Two files of one run or of none, as two instruments write them.
-struct Pair {
-  std::string name;
-  unsigned seed = 0;
-  double rpm = 4, late = 0, clock = 0, ppm = 0;  ///< the velocity's start, its clock's zero [s], its drift
-  bool strangers = false;
-};
-
-std::vector<Pair> pairs() {
-  std::vector<Pair> all;
-  Random random(1);
-  const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-  for (unsigned k = 0; k < 500; ++k) {
-    Pair pair;
-    pair.seed = 1 + k % 12;
-    pair.rpm = 2 + 2 * (k % 5);
-    const double late = std::exp(uniform(std::log(0.1), std::log(30.0)));
-    pair.late = k % 2 == 0 ? late : -late;
-    pair.clock = k % 3 == 0 ? uniform(-50, 50) : 0;
-    pair.ppm = k % 4 == 0 ? uniform(-200, 200) : 0;
-    pair.strangers = k % 10 == 9;
-    if (k % 20 == 8) pair.late = k % 40 == 8 ? 41 : -41;
-    pair.name = fmt::format("{} rpm, {:.3g} s late, clock {:.3g} s, {:.3g} ppm{}", pair.rpm, pair.late, pair.clock,
-                            pair.ppm, pair.strangers ? ", of other runs" : "");
-    all.push_back(pair);
-  }
-  return all;
+unsigned threads_of_machine() {
+  return std::max(1U, std::thread::hardware_concurrency());
 }
 
-constexpr double kDuration = 80, kLength = 40;
-
-/// A stretch of a channel from a time on, with the times on its own clock.
-std::pair<std::vector<double>, std::vector<double>> stretch(const tribofit::Trace& trace, Channel channel,
-                                                            double from) {
-  const double step = trace.interval();
-  const auto begin = static_cast<std::size_t>(from / step + 0.5), n = static_cast<std::size_t>(kLength / step);
-  std::vector<double> time, values;
-  for (std::size_t i = begin; i < std::min(trace.size(), begin + n); ++i) {
-    time.push_back(static_cast<double>(i - begin) * step);
-    values.push_back((trace.*channel)[i]);
+/// Calls `work` for 0 to count - 1, on some threads.
+template <typename Work>
+void run_all(std::size_t count, unsigned threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::thread> running;
+  for (unsigned k = 0; k < threads; ++k) {
+    running.emplace_back([&] {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    });
   }
-  return {time, values};
+  for (std::thread& thread : running) thread.join();
 }
 
-/// "right", "refused" or "WRONG" with the error.
-std::string join_of(const Pair& pair, const tribofit::Trace& trace, const tribofit::Trace& other) {
-  const double friction_from = pair.late < 0 ? -pair.late : 0, velocity_from = pair.late > 0 ? pair.late : 0;
-  const auto [friction_time, friction] = stretch(trace, kFriction, friction_from);
-  auto [velocity_time, velocity] = stretch(pair.strangers ? other : trace, kVelocity, velocity_from);
-  for (double& t : velocity_time) t = t * (1 + 1e-6 * pair.ppm) + pair.clock;
-  const double overlap = kLength - std::abs(pair.late), middle = std::max(0.0, -pair.late) + 0.5 * overlap;
-  const double at = middle * (1 + 1e-6 * pair.ppm) + pair.clock;  // the velocity's clock half way through the overlap
-  const double truth = middle + pair.late - at;
-  try {
-    const tribofit::ClockOffset found =
-        tribofit::estimate_clock_offset(friction_time, friction, velocity_time, velocity);
-    if (found.events == 0) return "refused: no events";
-    const double error = found.offset - truth;
-    const bool is_right = overlap > 0 && !pair.strangers && std::abs(error) < 1e-4;
-    return fmt::format("{} {:+.3f} ms", is_right ? "right" : "WRONG", 1e3 * error);
-  } catch (const tribofit::InputError& error) {
-    return std::string("refused: ") + error.what();
-  }
-}
-
-int run_joins() {
-  std::map<std::pair<unsigned, double>, tribofit::Trace> traces;
-  const std::vector<Pair> all = pairs();
-  const auto trace_of = [&](unsigned seed, double rpm) -> const tribofit::Trace& {
-    tribofit::Trace& trace = traces[{seed, rpm}];
-    if (trace.size() == 0) {
-      tribofit::truth::Rig rig;
-      rig.rpm = rpm, rig.duration = kDuration, rig.rate = 10000, rig.scatter = 0.004, rig.seed = seed;
-      trace = tribofit::truth::simulate(rig).trace;
-    }
-    return trace;
-  };
-  std::map<std::string, int> counts;
-  for (const Pair& pair : all) {
-    const std::string said = join_of(pair, trace_of(pair.seed, pair.rpm), trace_of(pair.seed + 100, pair.rpm));
-    const bool belongs = !pair.strangers && std::abs(pair.late) < kLength;
-    ++counts[said.substr(0, 5) + (belongs ? " of one run" : " of no run")];
-    fmt::print("{}: {}\n", pair.name, said);
+int run_joins(const std::vector<tribofit::joined::Pair>& pairs, unsigned threads) {
+  std::vector<tribofit::joined::Judged> judged(pairs.size());
+  std::mutex mutex;
+  run_all(pairs.size(), threads, [&](std::size_t k) {
+    judged[k] = tribofit::joined::judge(pairs[k]);
+    const std::lock_guard lock(mutex);
+    fmt::print("{}: {} ({:.2f} s)\n", pairs[k].name, judged[k].text, judged[k].seconds);
     std::fflush(stdout);
+  });
+  std::map<std::string, int> counts;
+  double seconds = 0, squares = 0, inside = 0, right = 0;
+  int wrong = 0;
+  for (const auto& one : judged) {
+    const bool is_right = one.outcome == tribofit::joined::Outcome::right,
+               is_wrong = one.outcome == tribofit::joined::Outcome::wrong;
+    ++counts[std::string(is_right   ? "right"
+                         : is_wrong ? "WRONG"
+                                    : "refused") +
+             (one.belongs ? " of one run" : " of no run")];
+    seconds += one.seconds;
+    wrong += is_wrong ? 1 : 0;
+    if (!is_right) continue;
+    right += 1;
+    squares += one.error * one.error / (one.std_error * one.std_error);
+    inside += std::abs(one.error) < 1.96 * one.std_error ? 1 : 0;
   }
   for (const auto& [what, count] : counts) fmt::print("{}: {}\n", what, count);
-  return 0;
+  fmt::print("errors of those that are right: {:.2f} standard errors (root mean square), {:.0f} % inside 95 %\n",
+             std::sqrt(squares / right), 100 * inside / right);
+  fmt::print("{:.2f} s a pair\n", seconds / static_cast<double>(pairs.size()));
+  return wrong == 0 ? 0 : 1;
 }
 
 constexpr const char* kNames[] = {"right", "named", "refused", "WRONG"};
 
 }  // namespace
 
-/// usage: altered_benchmark [--joins | TEXT in the name]
+/// usage: altered_benchmark [--threads N] [--joins | --other-joins] [TEXT in the name]
 int main(int argc, char** argv) {
-  const std::string only = argc > 1 ? argv[1] : "";
-  if (only == "--joins") return run_joins();
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  unsigned threads = threads_of_machine();
+  bool joins = false, others = false;
+  std::string only;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (arguments[k] == "--threads" && k + 1 < arguments.size()) {
+      threads = static_cast<unsigned>(std::max(1, std::stoi(arguments[++k])));
+    } else if (arguments[k] == "--joins" || arguments[k] == "--other-joins") {
+      joins = true, others = arguments[k] == "--other-joins";
+    } else {
+      only = arguments[k];
+    }
+  }
+  const auto is_other = [&](const auto& one) { return one.name.find(only) == std::string::npos; };
+  if (joins) {
+    auto pairs = others ? tribofit::joined::other_pairs() : tribofit::joined::pairs();
+    std::erase_if(pairs, is_other);
+    return run_joins(pairs, threads);
+  }
   std::vector<AlteredCase> cases = altered_cases();
-  std::erase_if(cases, [&](const AlteredCase& one) { return one.name.find(only) == std::string::npos; });
-  std::atomic<std::size_t> next = 0;
+  std::erase_if(cases, is_other);
   std::mutex mutex;
   std::size_t counts[4] = {}, slow = 0, loose = 0;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < cases.size(); k = next++) {
-      const Judged judged = judge(cases[k]);
-      const std::lock_guard lock(mutex);
-      ++counts[static_cast<std::size_t>(judged.outcome)];
-      slow += judged.seconds > 10 ? 1U : 0U;
-      loose += judged.outcome == Outcome::right && !judged.strict ? 1U : 0U;
-      fmt::print("{:<7} {:5.1f} s  {}:{}\n", kNames[static_cast<std::size_t>(judged.outcome)], judged.seconds,
-                 cases[k].name, judged.text);
-      std::fflush(stdout);
-    }
-  };
-  std::vector<std::thread> threads;
-  for (unsigned k = 0; k < std::max(1U, std::thread::hardware_concurrency()); ++k) threads.emplace_back(work);
-  for (std::thread& thread : threads) thread.join();
+  run_all(cases.size(), threads, [&](std::size_t k) {
+    const Judged judged = judge(cases[k]);
+    const std::lock_guard lock(mutex);
+    ++counts[static_cast<std::size_t>(judged.outcome)];
+    slow += judged.seconds > 10 ? 1U : 0U;
+    loose += judged.outcome == Outcome::right && !judged.strict ? 1U : 0U;
+    fmt::print("{:<7} {:5.1f} s  {}:{}\n", kNames[static_cast<std::size_t>(judged.outcome)], judged.seconds,
+               cases[k].name, judged.text);
+    std::fflush(stdout);
+  });
   fmt::print(
       "{} cases: {} right ({} of them beyond three standard errors, within 2 %), {} named, {} refused, {} wrong; {} "
       "over 10 s\n",

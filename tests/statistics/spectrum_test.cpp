@@ -94,5 +94,18 @@ TEST(Spectrum, StickSlipFrequencyAgreesWithTheEvents) {
   EXPECT_NEAR(fundamental(run.trace.velocity, 1 / rig.rate).frequency, events, 0.002);
 }
 
+TEST(ProductsAtEveryLag, AreSumsOfProducts) {
+  const std::vector<double> x = {1, -2, 3, 0.5, 7}, y = {2, 4, -1};
+  const std::vector<double> products = products_at_every_lag(x, y);
+  ASSERT_EQ(products.size(), x.size() + y.size() - 1);
+  for (int lag = -2; lag < 5; ++lag) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (i + lag >= 0 && i + lag < 5) sum += x[static_cast<std::size_t>(i + lag)] * y[static_cast<std::size_t>(i)];
+    }
+    EXPECT_NEAR(products[static_cast<std::size_t>(lag + 2)], sum, 1e-12) << lag;
+  }
+}
+
 }  // namespace
 }  // namespace tribofit

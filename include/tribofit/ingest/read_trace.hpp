@@ -11,12 +11,14 @@
 
 namespace tribofit {
 
-/// How far the clock of `velocity` lags: its event at t happened at t + offset on the clock of friction.
+/// How far the clock of `velocity` lags: its event at t happened at t + offset on the clock of friction, in the middle
+/// of the time that both share.
 struct ClockOffset {
-  double offset = 0;       ///< [s]
-  double uncertainty = 0;  ///< [s], from the events' scatter
-  std::size_t events = 0;  ///< break-aways that were matched; fewer than 3: no offset was found
-  double ambiguity = 0;    ///< support of the second best offset over that of the best
+  double offset = 0;             ///< [s]
+  double uncertainty = 0;        ///< standard error [s]
+  double drift = 0;              ///< by which the offset grows over the time [1]
+  double drift_uncertainty = 0;  ///< standard error
+  std::size_t events = 0;        ///< break-aways that both share; fewer than 3: no offset was found
 };
 /// Finds the offset between the clocks of a file with friction and one with velocity; times in s from the start of
 /// each.

@@ -41,4 +41,8 @@ Spectrum averaged_spectrum(std::span<const double> signal, double step, std::siz
 /// their rate is far above the band.
 SpectralPeak fundamental(std::span<const double> signal, double step, std::size_t plain_size = 32768);
 
+/// Sums over i of x[i + lag] y[i], for every lag from 1 - y.size() to x.size() - 1 in this order. Neither is empty.
+/// Cost: n log n.
+std::vector<double> products_at_every_lag(std::span<const double> x, std::span<const double> y);
+
 }  // namespace tribofit
