@@ -24,6 +24,7 @@ Evidence evidence_of(SketchView view) {
     case SketchView::since_break_away:
     case SketchView::since_reversal:
     case SketchView::acceleration:
+    case SketchView::line:  // what is wrong in every cycle comes back with their period
       return Evidence::within_cycle;
     case SketchView::creep:
       return Evidence::in_stick;
@@ -39,7 +40,6 @@ Evidence evidence_of(SketchView view) {
     case SketchView::temperature:
     case SketchView::load_channel:
     case SketchView::ripple:
-    case SketchView::line:
       break;
   }
   return Evidence::elsewhere;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -23,36 +26,70 @@ std::size_t place_of(const Hold& hold, std::size_t sample) {
   return sample <= hold.first ? 0 : (sample - hold.first + hold.samples - 1) / hold.samples;
 }
 
+/// A stretch of a channel in which its values are looked at, and where it begins.
+std::pair<std::span<const double>, std::size_t> middle_of(std::span<const double> channel) {
+  const std::size_t n = std::min(channel.size(), kValuesForSteps), from = (channel.size() - n) / 2;
+  return {channel.subspan(from, n), from};
+}
+
+/// Squares by their place in every so many.
+std::vector<double> by_phase(std::span<const double> squares, std::size_t count) {
+  std::vector<double> sums(count, 0);
+  for (std::size_t begin = 0; begin < squares.size(); begin += count) {
+    const std::size_t some = std::min(count, squares.size() - begin);
+    for (std::size_t phase = 0; phase < some; ++phase) sums[phase] += squares[begin + phase];
+  }
+  return sums;
+}
+
+/// Whether lines bend at the knots and next to nowhere else: all of a few events may fall there by chance.
+bool bends_there(std::span<const double> squares, std::size_t count, std::size_t phase) {
+  std::vector<double> knots, others;
+  for (std::size_t i = 0; i < squares.size(); ++i) (i % count == phase ? knots : others).push_back(squares[i]);
+  return median(std::move(knots)) > kBendsMore * kBendsMore * quantile(std::move(others), 0.95);
+}
+
+/// The most samples of which one has so much of the squares and is `confirmed`, and which.
+template <typename Confirmed>
+Hold spaced(std::span<const double> squares, double part, const Confirmed& confirmed) {
+  const double all = std::reduce(squares.begin(), squares.end());
+  for (std::size_t count = kLongestHold; all > 0 && count > 1; --count) {
+    const std::vector<double> sums = by_phase(squares, count);
+    const auto most = std::ranges::max_element(sums);
+    const auto phase = static_cast<std::size_t>(most - sums.begin());
+    if (*most > part * all && confirmed(squares, count, phase)) return {count, phase};
+  }
+  return {};
+}
+
 }  // namespace
 
 Hold find_hold(std::span<const double> channel) {
-  std::vector<std::size_t> changes;
-  std::map<std::size_t, std::size_t> spacings;
-  for (std::size_t i = 1; i < channel.size(); ++i) {
-    if (channel[i] == channel[i - 1]) continue;
-    if (!changes.empty()) ++spacings[i - changes.back()];
-    changes.push_back(i);
+  const auto [x, from] = middle_of(channel);
+  if (x.size() < kFewestDistributed) return {};
+  std::vector<double> changes(x.size(), 0), bends(x.size(), 0);
+  for (std::size_t i = 1; i < x.size(); ++i) changes[i] = x[i] != x[i - 1] ? 1 : 0;
+  if (std::reduce(changes.begin(), changes.end()) < static_cast<double>(kFewestDistributed)) return {};
+  Hold hold = spaced(changes, kHeldAlike, [](auto&&...) { return true; });
+  if (hold.samples == 1) {
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) bends[i] = std::pow(x[i + 1] - 2 * x[i] + x[i - 1], 2);
+    hold = spaced(bends, kBendAlike, bends_there);
   }
-  if (changes.size() < kFewestDistributed) return {};
-  const auto most = std::ranges::max_element(spacings, {}, [](const auto& spacing) { return spacing.second; });
-  const std::size_t k = most->first;
-  if (k < 2) return {};
-  std::vector<std::size_t> phases(k, 0);
-  for (const std::size_t i : changes) ++phases[i % k];
-  const auto phase = std::ranges::max_element(phases);
-  if (static_cast<double>(*phase) < kHeldAlike * static_cast<double>(changes.size())) return {};
-  return {k, static_cast<std::size_t>(phase - phases.begin())};
+  hold.first = (hold.first + from) % hold.samples;
+  return hold;
 }
 
 void keep_fresh_values(Trace& trace, std::vector<std::string>& notes) {
   const Hold friction = find_hold(trace.friction), velocity = find_hold(trace.velocity);
   const Hold& hold = velocity.samples > friction.samples ? velocity : friction;
   if (hold.samples == 1 || trace.size() / hold.samples < kFewestDistributed) return;
-  const char* which = friction.samples == velocity.samples ? "friction and velocity hold"
-                      : &hold == &velocity                 ? "the velocity holds"
-                                                           : "friction holds";
-  notes.push_back(fmt::format("{} each value for {} samples; the first of each is used, the record is one at {}", which,
-                              hold.samples, frequency_text(trace.rate() / static_cast<double>(hold.samples))));
+  const char* which = friction.samples == velocity.samples ? "friction and velocity have"
+                      : &hold == &velocity                 ? "the velocity has"
+                                                           : "friction has";
+  notes.push_back(
+      fmt::format("{} a value of its own in one of {} samples, which is used; the others are copies or lie on straight "
+                  "lines: the record is one at {}",
+                  which, hold.samples, frequency_text(trace.rate() / static_cast<double>(hold.samples))));
   for (auto* channel :
        {&trace.time, &trace.friction, &trace.velocity, &trace.block_position, &trace.drive_position,
         &trace.friction_std_error, &trace.velocity_std_error, &trace.acceleration, &trace.velocity_variance,

@@ -9,16 +9,16 @@
 
 namespace tribofit::kinematics {
 
-/// A slower channel in a faster record: each value is repeated until the next.
+/// A slower channel in a faster record: each value is repeated until the next, or straight lines lead there.
 struct Hold {
-  std::size_t samples = 1;  ///< that hold one value
-  std::size_t first = 0;    ///< sample from which the first whole one is held
+  std::size_t samples = 1;  ///< of which one has a value of its own
+  std::size_t first = 0;    ///< that has
 };
 
-/// samples = 1 where values change at any sample, as those of a coarse converter do.
+/// samples = 1 where values change and lines bend at any sample, as those of a coarse converter do.
 Hold find_hold(std::span<const double> channel);
 
-/// Leaves the first sample of every held value: the others are late by up to samples - 1. Says so in the notes.
+/// Leaves the samples that have values of their own. Says so in the notes.
 void keep_fresh_values(Trace& trace, std::vector<std::string>& notes);
 
 }  // namespace tribofit::kinematics

@@ -53,8 +53,8 @@ inline constexpr double kQuietWindows = 0.1, kQuietNoise = 0.1;
 /// the noise by which a block at one speed is not at zero, and so carried.
 inline constexpr double kMovesWithDisc = 0.5, kCarried = 5;
 /// Of the speed of the disc, up to which a plateau off it is creep; beyond, radius or speed are wrong. Part of a record
-/// that plateaus without regard to the disc must fill.
-inline constexpr double kFarFromDisc = 0.2, kPlateausOfBlock = 0.1;
+/// that plateaus without regard to the disc must fill, so many times where those beside the disc fill less.
+inline constexpr double kFarFromDisc = 0.2, kPlateausOfBlock = 0.1, kLongerRest = 3;
 
 // ---- run-up
 
@@ -134,8 +134,8 @@ inline constexpr double kDelayReach = 0.25;
 /// none. The one time here that does not go with the record.
 inline constexpr double kLongestWindow = 0.01;
 /// The same in samples (fewer show no jump, more cost time for nothing), and slips that are looked at.
-inline constexpr double kShortestDelay = 4, kLongestDelay = 2000;
 inline constexpr std::size_t kMostDelays = 400;
+inline constexpr double kShortestDelay = 4, kLongestDelay = 2000;
 /// Of the fastest, where the velocity is at the edge of rest: above its noise, and near enough for a straight line.
 /// Change of friction from sample to sample at the jump over the others: less is a slope.
 inline constexpr double kEdgeOfRest = 0.05, kClearJump = 8;
@@ -292,13 +292,13 @@ inline constexpr double kStepPart = 0.1;
 /// Values in which steps and noise are looked for, and levels of a channel that has some: 12 bits are finer than noise.
 inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
 /// Part of the distances between levels that are whole numbers of the smallest, and how nearly; of the changes
-/// of a channel that holds its values for some samples, those that come when they should.
-inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05, kHeldAlike = 0.99;
-/// Steps of friction over its range that show in a fit.
-inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03;
-/// Steps of velocity over the fastest from which alpha is off by more than its error (at 4 % by 2 %, at 1 % by
-/// nothing).
-inline constexpr double kTooCoarse = 0.015;
+/// of a channel that holds its values for some samples, those that come when they should; most samples; and how
+/// much more lines bend where they are drawn from value to value.
+inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05, kHeldAlike = 0.99, kBendAlike = 0.9, kBendsMore = 4;
+inline constexpr std::size_t kLongestHold = 100;
+/// Steps of friction over its range that show in a fit; of velocity over the fastest, from which alpha is off by more
+/// than its error (at 4 % by 2 %, at 1 % by nothing).
+inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03, kTooCoarse = 0.015;
 
 // ---- samples that are missing
 
@@ -361,23 +361,23 @@ inline constexpr double kMuchClipped = 1e-3, kRoundingOfRange = 1e-6, kAtDeclare
 /// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
 /// machine leaves its range so far within a sample. The samples beside it lie within the second.
 inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
-/// Samples of markers that are not repeated exactly: a slip of more samples is a slip.
-inline constexpr std::size_t kWidestSpike = 2;
+/// Samples of markers that are not repeated exactly: a slip of more samples is a slip. Of a stretch that a velocity
+/// leaves as it entered it, each within a sample, over which so little of the jump is left, and of its range at least.
+inline constexpr std::size_t kWidestSpike = 2, kWidestExcursion = 64;
+inline constexpr double kExcursionQuiet = 0.25, kExcursionBack = 0.5, kExcursionDepth = 0.01;
 /// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
 /// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the noise floor.
 inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;
 /// Part of the range by which the other channel changes where a lone sample is a slip: friction falls by most of it.
 inline constexpr double kSlipOfSamples = 0.3;
 /// Samples of one value in a row that a channel with noise and fine steps cannot hold; of zeros, a loose plug's value,
-/// fewer will do.
-inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3;
-/// Samples of a fault over which the motion is not known.
-inline constexpr std::size_t kShortestStretch = 16;
+/// fewer will do; samples of a fault over which the motion is not known.
+inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3, kShortestStretch = 16;
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-/// Bins of a channel's range in which samples at its limit are looked for, and the widest crowd as a part of the range,
-/// which so many of some parts of a record reach: a first pull takes less.
+/// Bins of a channel's range, where samples at its limit crowd, and the widest crowd as a part of it, which so many of
+/// some parts of a record reach: a first pull takes less.
 inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
 inline constexpr double kReachIt = 0.25;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:

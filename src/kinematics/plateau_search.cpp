@@ -115,6 +115,24 @@ Disc disc_of(const Trace& trace) {
   return disc;
 }
 
+namespace {
+
+std::size_t blocks_in(const Plateaus& plateaus) {
+  std::size_t blocks = 0;
+  for (const StickPlateau& run : plateaus.runs) blocks += run.end - run.begin;
+  return blocks;
+}
+
+/// Where the stated speed is far off, turning points of the block may lie beside omega r, and its rest elsewhere.
+void prefer_where_it_rests(const std::vector<double>& velocity, Plateaus& plateaus) {
+  const double enough = kPlateausOfBlock * static_cast<double>(velocity.size());
+  if (plateaus.empty() || static_cast<double>(blocks_in(plateaus)) > enough) return;
+  Plateaus anywhere = find_plateaus(velocity);
+  if (static_cast<double>(blocks_in(anywhere)) > kLongerRest * enough) plateaus = std::move(anywhere);
+}
+
+}  // namespace
+
 PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step, const StickRule& stick) {
   PlateauSearch s;
   const std::span<const double> velocity(trace.velocity);
@@ -158,6 +176,7 @@ PlateauSearch search_plateaus(const Trace& trace, const Disc& disc, double step,
     const LevelRange right = stated > 0 ? LevelRange{near, far} : LevelRange{-far, -near};
     s.plateaus = find_plateaus(relative, right);
     if (s.plateaus.empty()) s.plateaus = find_plateaus(relative, LevelRange{-right.high, -right.low});
+    prefer_where_it_rests(relative, s.plateaus);
   }
   if (block && s.plateaus.empty() && disc.varying.empty()) s.plateaus = find_plateaus(relative);
   s.noise = s.plateaus.empty() ? roughness : spread_about_parabolas(velocity, s.plateaus.runs, s.blocks.length);

@@ -240,6 +240,31 @@ ChannelFaults find_channel_faults(std::span<const double> channel, std::span<con
   return faults;
 }
 
+std::vector<SampleSpan> find_excursions(std::span<const double> v, std::span<const double> friction) {
+  if (v.size() < kFewestDistributed || friction.size() != v.size()) return {};
+  const Extremes range = usual_range(friction), speeds = usual_range(v);
+  const double motion = kSlipOfSamples * (range.high - range.low);
+  std::vector<double> usual;
+  const std::size_t stride = std::max<std::size_t>(1, v.size() / 8192);
+  for (std::size_t i = 1; i + 1 < v.size(); i += stride) usual.push_back(std::abs(off_line(v, i)));
+  const double far = std::max(kSpikeSigmas * kSigmaPerMad * median(std::move(usual)),
+                              std::max(kExcursionDepth * (speeds.high - speeds.low), kSpikeSteps * find_resolution(v)));
+  std::vector<SampleSpan> excursions;
+  for (std::size_t i = 2; i + 2 < v.size(); ++i) {
+    const double jump = v[i] - v[i - 1];
+    if (!(std::abs(jump) > far) || std::abs(v[i - 1] - v[i - 2]) > kExcursionQuiet * std::abs(jump)) continue;
+    const std::size_t last = std::min(v.size() - 1, i + kWidestExcursion);
+    std::size_t end = i + 1;
+    while (end < last && std::abs(v[end] - v[end - 1]) < kExcursionQuiet * std::abs(jump)) ++end;
+    const bool returns = std::abs(v[end] - v[i - 1]) < kExcursionBack * std::abs(jump) && end > i + 1 &&
+                         std::abs(v[end] - v[end - 1]) > (1 - kExcursionBack) * std::abs(jump);
+    if (!returns || std::abs(friction[end] - friction[i - 1]) > motion) continue;
+    excursions.push_back({i, end});
+    i = end;
+  }
+  return excursions;
+}
+
 void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel) {
   for (const SampleSpan& span : spans) {
     const bool from_left = span.begin > 0, from_right = span.end < channel.size();

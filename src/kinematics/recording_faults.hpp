@@ -18,11 +18,16 @@ struct ChannelFaults {
   std::vector<SampleSpan> markers;  ///< values far beyond all others, entered and left in one sample
   std::vector<SampleSpan> spikes;   ///< lone samples far from both neighbours
   std::vector<SampleSpan> frozen;   ///< one value, again and again, of a channel that is never still (a loose plug: 0)
+  std::vector<SampleSpan> excursions;  ///< stretches that a velocity enters and leaves within a sample
 };
 
 /// Markers first: what looks for frozen stretches does not see them, nor what looks for spikes either of these.
 /// `beside`: another channel of the machine; where it moves at the same time, a lone sample is a slip of few samples.
 ChannelFaults find_channel_faults(std::span<const double> channel, std::span<const double> beside);
+
+/// Stretches that a velocity enters and leaves within a sample, to go on where it was, while friction stays: a laser
+/// without a reflection (speckle, dust on the target).
+std::vector<SampleSpan> find_excursions(std::span<const double> velocity, std::span<const double> friction);
 
 /// Puts straight lines between good neighbours in the place of spans; at an end the good neighbour's value.
 void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel);

@@ -44,6 +44,9 @@ SpoiltSamples::SpoiltSamples(Trace& trace) : size_(trace.size()) {
   const ChannelFaults velocity = made_velocity ? ChannelFaults{} : find_channel_faults(trace.velocity, trace.friction);
   clean(trace.friction, friction, "friction", SampleFault::friction);
   clean(trace.velocity, velocity, "velocity", SampleFault::velocity);
+  ChannelFaults lost;
+  if (!made_velocity) lost.excursions = find_excursions(trace.velocity, trace.friction);
+  clean(trace.velocity, lost, "velocity", SampleFault::velocity);
   const auto clean_markers = [&](std::vector<double>& channel, const char* name) {
     const std::vector<SampleSpan> markers = find_channel_faults(channel, {}).markers;
     if (markers.empty()) return;
@@ -78,7 +81,15 @@ void SpoiltSamples::clean(std::vector<double>& channel, const ChannelFaults& fau
                     faults.frozen.size() == 1 ? "a stretch" : fmt::format("{} stretches", faults.frozen.size()),
                     100 * static_cast<double>(samples) / static_cast<double>(size_)));
   }
-  for (const auto* spans : {&faults.markers, &faults.spikes, &faults.frozen}) {
+  if (!faults.excursions.empty()) {
+    const std::size_t samples = samples_of(faults.excursions);
+    frozen_ += samples;
+    sentences_.push_back(
+        fmt::format("{} jumps away and back {} times within few samples, as a laser does that loses its "
+                    "reflection ({:.3g} % of the record, left out)",
+                    name, faults.excursions.size(), 100 * static_cast<double>(samples) / static_cast<double>(size_)));
+  }
+  for (const auto* spans : {&faults.markers, &faults.spikes, &faults.frozen, &faults.excursions}) {
     bridge(*spans, channel);
     mark(*spans, kind);
     for (const SampleSpan& span : *spans) {

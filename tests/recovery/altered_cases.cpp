@@ -166,6 +166,38 @@ void add_loads(List& list) {
   }
 }
 
+void add_other_recorders(List& list) {
+  for (const Which& which : both_and_each()) {
+    for (const double corner : {150.0, 400.0, 1500.0})
+      list.add_one(fmt::format("{}: fourth order of {} Hz", which.name, corner),
+                   all_of({low_passed_twice(which.channels, corner), low_passed_twice(which.channels, corner)}),
+                   which.effects);
+    for (const std::size_t half : {1U, 3U, 10U})
+      list.add_one(fmt::format("{}: running median of {}", which.name, 2 * half + 1),
+                   running_median(which.channels, half), which.effects);
+    list.add_one(fmt::format("{}: low-pass of 60 Hz", which.name), low_passed(which.channels, 60), which.effects);
+  }
+  for (const double part : {1e-4, 1e-3, 1e-2})
+    list.add(fmt::format("velocity: speckle lost over {} %", 100 * part), speckled(part));
+  for (const double steps : {2.0, 3.0, 20.0})
+    list.add_one(fmt::format("clock in steps of {}", steps), coarse_clock(steps));
+  for (const double part : {0.3, 0.9}) list.add_one(fmt::format("clock jitters by {}", part), jittering_clock(part));
+  for (const double by : {0.01, 0.05})
+    list.add_one(fmt::format("friction: zero drifts by {}", by), drifting(kFriction, by), {"drift", "run-in"});
+  for (const double by : {2e-4, 1e-3})
+    list.add_one(fmt::format("velocity: zero drifts by {} mm/s", 1e3 * by), drifting(kVelocity, by),
+                 {"velocity-offset"});
+  list.add_one("friction: zero steps by 0.02", stepping(kFriction, 0.02), {"step"});
+  list.add_one("velocity: zero steps by 0.3 mm/s", stepping(kVelocity, 3e-4), {"velocity-offset"});
+  for (const double f : {50.0, 150.0})
+    list.add_one(fmt::format("friction: hum of {} Hz", f), humming(kFriction, 0.006, f), {"interference"});
+  list.add_one("velocity: hum of 50 Hz", humming(kVelocity, 2e-4, 50));
+  for (const double step : {2.857, 10.0, 24.3}) list.add(fmt::format("resampled by {}", step), resampled(step));
+  for (const std::size_t count : {4U, 20U})
+    for (const auto& [name, channel] : {std::pair{"friction", kFriction}, {"velocity", kVelocity}})
+      list.add_one(fmt::format("{}: drawn out over {} samples", name, count), drawn_out(channel, count));
+}
+
 }  // namespace
 
 std::vector<AlteredCase> altered_cases() {
@@ -175,6 +207,7 @@ std::vector<AlteredCase> altered_cases() {
   add_levels_and_clocks(list);
   add_faults(list);
   add_loads(list);
+  add_other_recorders(list);
   return list.list;
 }
 
