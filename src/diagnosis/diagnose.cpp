@@ -15,6 +15,7 @@
 #include "rival_laws.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "unrecorded_load.hpp"
 
 namespace tribofit {
 
@@ -332,6 +333,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
   context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
                    left_by_corrections(records, fine, floor.noise) / context.noise_squares();
+  context.swing = common_swing(records);
   context.threads = options.threads;
   context.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);

@@ -203,7 +203,7 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
   }
   if (!contains(in.ladder.withdrawn, k)) return;
   finding.status = EffectStatus::not_supported;
-  finding.reason = "the error left over its variable is larger than what it explains";
+  finding.reason = "the error that is left is larger than what it explains";
 }
 
 /// What a candidate is on the ladder: added by one of its steps, or equivalent to what a step added.

@@ -121,7 +121,8 @@ void finish(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   if (replaced) prune(context, ladder, candidates, least);
   if (replaced || ladder.steps.size() < before)
     ladder.last = judge_beside(context, ladder.steps.back(), candidates, least);
-  withdraw(ladder);
+  const double excess = ladder.top().plain_held_out - context.noise_squares();
+  withdraw(ladder, context.swing > 0 && excess > context.noise_squares() ? excess : 0);
   // What was added after all is distinguishable: both are there.
   for (LadderStep& step : ladder.steps) {
     std::erase_if(step.equivalent, [&](std::size_t k) {

@@ -138,15 +138,17 @@ bool reconsider(const DiagnosisContext& context, Ladder& ladder, const std::vect
   return false;
 }
 
-void withdraw(Ladder& ladder) {
+void withdraw(Ladder& ladder, double swinging) {
   const double left = largest_fall(ladder.steps.back());
-  if (left == 0) return;
+  if (left == 0 && swinging == 0) return;
   for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
     const double fall = ladder.steps[s - 1].trial.held_out_squares - ladder.steps[s].trial.held_out_squares;
     const double shown = largest_fall(ladder.steps[s - 1]);
     // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
-    if (ladder.steps[s].by_level || fall >= limits::kWithdrawnPart * shown || left < limits::kWithdrawnLittle * shown)
-      continue;
+    const double fall_of_all = ladder.steps[s - 1].trial.plain_held_out - ladder.steps[s].trial.plain_held_out;
+    const bool is_little = !ladder.steps[s].by_level && fall < limits::kWithdrawnPart * shown &&
+                           left >= limits::kWithdrawnLittle * shown && left > 0;
+    if (!is_little && !(fall_of_all < swinging)) continue;
     for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
     ladder.last = ladder.steps[s].judged;
     ladder.steps.resize(s);

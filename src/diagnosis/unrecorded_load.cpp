@@ -45,8 +45,8 @@ void add_levels(const Record& record, Levels& levels) {
   levels.slip.insert(levels.slip.end(), slip.begin(), slip.end());
 }
 
-/// How far friction swings in proportion [1]; 0: it does not.
-double common_swing(const Levels& levels) {
+/// Root mean square of what both do together; 0: they do not.
+double swing_of(const Levels& levels) {
   double squares = 0, others = 0, products = 0;
   const std::size_t n = levels.slip.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -62,6 +62,14 @@ double common_swing(const Levels& levels) {
 }
 
 }  // namespace
+
+double common_swing(std::span<const Record> records) {
+  const auto has_load = [](const Record& record) { return !record.motion->load.empty(); };
+  if (std::any_of(records.begin(), records.end(), has_load)) return 0;
+  Levels levels;
+  for (const Record& record : records) add_levels(record, levels);
+  return swing_of(levels);
+}
 
 void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis) {
   const auto has_load = [](const Record& record) { return !record.motion->load.empty(); };
@@ -79,9 +87,7 @@ void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis)
       finding.reason += "; a step of the load that was not recorded does the same";
   }
   if (diagnosis.verdict != Verdict::unexplained) return;
-  Levels levels;
-  for (const Record& record : records) add_levels(record, levels);
-  const double swing = common_swing(levels);
+  const double swing = common_swing(records);
   if (swing == 0) return;
   for (const Effect& effect : catalogue) {
     const EffectInfo info = describe(effect);

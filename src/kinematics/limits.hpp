@@ -74,8 +74,8 @@ inline constexpr double kBelowFinal = 0.9, kStaysSettled = 0.9, kShortestRunUp =
 inline constexpr std::size_t kFewestBins = 64;
 /// Content over the noise floor: of a bin, and of a third of an octave whose slope is looked at.
 inline constexpr double kContentOverNoise = 2, kSlopeOverNoise = 3;
-/// Power of frequency with which content falls behind a filter: stick-slip has up to two in velocity, a sensor of
-/// second order two more. Smaller: a sensor's resonance counts as a filter.
+/// Power of frequency with which content falls behind a filter: stick-slip has up to two, a sensor's resonance two
+/// more.
 inline constexpr double kSteepFall = 4.5;
 /// End of the noise floor over its beginning, below which a filter is in it.
 inline constexpr double kFilteredEnd = 0.1;
@@ -97,12 +97,10 @@ inline constexpr double kSignificance = 6;
 // ---- ripple of the disc
 
 inline constexpr int kHighestOrder = 6;
-/// Of the usual plateau, below which one is too short to show a level.
-inline constexpr double kShortestPlateau = 0.25;
-/// Fall of the plateaus over their level, and over its standard error, from which the contact creeps.
-inline constexpr double kLeastCreep = 5e-4, kCreepErrors = 4;
-/// Reciprocal condition of the fit to the levels, below which rounding decides.
-inline constexpr double kFittable = 1e-8;
+/// Of the usual plateau, below which one is too short to show a level; fall of the plateaus over their level, and over
+/// its standard error, from which the contact creeps.
+inline constexpr double kShortestPlateau = 0.25, kLeastCreep = 5e-4, kCreepErrors = 4;
+inline constexpr double kFittable = 1e-8;  // reciprocal condition of the fit to the levels: below, rounding decides
 /// Standard deviations from which a level is left out of the next fit, and part of them that must remain.
 inline constexpr double kFarLevel = 5, kLevelsKept = 0.7;
 /// Rounding of a level; correlation from plateau to plateau that some dozens can show; and of its size, by which a
@@ -121,10 +119,9 @@ inline constexpr double kLeastExplained = 0.5;
 
 // ---- plateau over omega r
 
-/// What sampling and the corner leave in the level of a restored plateau, over the level.
-inline constexpr double kErrorAfterHighPass = 1e-3;
-/// Standard error of the creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
-inline constexpr double kErrorOfCreep = 0.5;
+/// What sampling and the corner leave in the level of a restored plateau, over the level; and standard error of the
+/// creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
+inline constexpr double kErrorAfterHighPass = 1e-3, kErrorOfCreep = 0.5;
 
 // ---- clocks of the two channels
 
@@ -225,7 +222,7 @@ inline constexpr double kHeldInput = 0.75;
 /// so much of the time constant at most: more is a filter again.
 inline constexpr double kRestoredNoise = 2e-3, kRestoredSmear = 0.25;
 
-/// Samples of a slip over which v_r is straight within one: with fifteen, means make alpha 3 % less.
+/// Samples of a slip over which v_r is straight within one: with fifteen, alpha is 3 % less.
 inline constexpr double kFewSlipSamples = 24;
 
 // ---- low-pass of friction
@@ -240,10 +237,9 @@ inline constexpr double kTailFirst = 0.4, kTailDecay = 0.1;
 /// [samples, time constants]: a filter that holds its input for a sample begins half of one early.
 inline constexpr double kTailSize = 0.3, kTailOnset = 1.2, kTailOnsetPart = 0.2;
 /// Median fall over its spread from slip to slip: jumps of friction are alike to a fifth. Noise with a memory decays
-/// too, where friction is recorded early and its jump is over by re-stick, but to either side.
-inline constexpr double kTailAlike = 2;
-/// Samples beside re-stick that are not looked at, for not knowing its place better.
-inline constexpr double kTailGap = 0.4;
+/// too, where friction is recorded early and its jump is over by re-stick, but to either side. Samples beside re-stick
+/// that are not looked at, for not knowing its place better.
+inline constexpr double kTailAlike = 2, kTailGap = 0.4;
 /// Variance left while it decays over that afterwards, and beside it over the size of the decay, squared: filters of
 /// second order and contacts that ring leave more.
 inline constexpr double kTailLeft = 1.6, kTailModel = 0.01;
@@ -253,10 +249,9 @@ inline constexpr double kTailLeft = 1.6, kTailModel = 0.01;
 /// How far from zero it may rest in stick, over its largest excursion: creep stays below. alpha is off by some eight
 /// times as much.
 inline constexpr double kZeroPart = 0.005;
-/// How far its mean may be from omega r: the block is where it was but for a part of a slip length.
-inline constexpr double kGainOff = 0.1;
-/// And from where on it is worth a word: a slip more at one end than at the other makes less of a record of a minute.
-inline constexpr double kGainWarned = 0.03;
+/// How far its mean may be from omega r: the block is where it was but for a part of a slip length. And from where on
+/// it is worth a word: a slip more at one end than at the other makes less of a record of a minute.
+inline constexpr double kGainOff = 0.1, kGainWarned = 0.03;
 
 // ---- zero of v_b
 
@@ -296,6 +291,9 @@ inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLe
 /// much more lines bend where they are drawn from value to value.
 inline constexpr double kWholeSteps = 0.95, kOffWholeStep = 0.05, kHeldAlike = 0.99, kBendAlike = 0.9, kBendsMore = 4;
 inline constexpr std::size_t kLongestHold = 100;
+/// Repeats that begin in a sample, of white noise behind a running median 0.2 to 0.26; and changes over the smallest
+/// ones, below which a converter's steps repeat as often.
+inline constexpr double kUnevenRepeats = 0.15, kFineChanges = 8;
 /// Steps of friction over its range that show in a fit; of velocity over the fastest, from which alpha is off by more
 /// than its error (at 4 % by 2 %, at 1 % by nothing).
 inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03, kTooCoarse = 0.015;
@@ -376,13 +374,15 @@ inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3, kShortestS
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-/// Bins of a channel's range, where samples at its limit crowd, and the widest crowd as a part of it, which so many of
-/// some parts of a record reach: a first pull takes less.
+/// Bins of a channel's range, the widest crowd as a part of it, which so many of some parts of a record reach.
 inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
 inline constexpr double kReachIt = 0.25;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
 inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6, kQuiet = 0.7;
+/// Of its usual rise over the way of the block, by which friction at a limit goes on; standard errors below it; change
+/// of that way, with which the block still rests.
+inline constexpr double kStillRises = 0.5, kClippedErrors = 4, kCarriedOn = 0.02;
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHole = 32, kClipMargin = 8;

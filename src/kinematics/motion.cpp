@@ -53,8 +53,12 @@ void MotionStages::look_at_recording() {
   spoilt_.emplace(trace_);
   spoilt_->add_unsure(kinematics::unsure_samples(trace_));
   range_ends_ = kinematics::range_ends(trace_, chunks_of(trace_.friction), chunks_of(trace_.velocity));
-  steps_ = {kinematics::find_resolution(trace_.friction), kinematics::find_resolution(trace_.velocity),
-            range_ends_.friction[1].at - range_ends_.friction[0].at, range_ends_.largest_velocity};
+  steps_ = {kinematics::find_resolution(trace_.friction),
+            kinematics::find_resolution(trace_.velocity),
+            range_ends_.friction[1].at - range_ends_.friction[0].at,
+            range_ends_.largest_velocity,
+            kinematics::repeats_unevenly(trace_.friction),
+            kinematics::repeats_unevenly(trace_.velocity)};
 }
 
 void MotionStages::correct_declared() {

@@ -21,14 +21,28 @@ void MotionStages::undo_distortions() {
   }
   if (!trace_.velocity_std_error.empty()) return;  // the velocity was made from another channel
   if (range_ends_.velocity_slew > 0) return;       // nothing of this brings back what an amplifier did not follow
+  undo_zero_drift();
   find_zero();
   undo_zero();
-  if (search_.sticks) jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity));
+  if (search_.sticks && !steps_.velocity_repeats)
+    jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity));
   // What was lost of slips is missing in the way of the block.
   if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();
   undo_clock_drift();
   find_friction_filter();
+}
+
+void MotionStages::undo_zero_drift() {
+  const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !spoilt_->any();
+  if (!asked || !is_block() || !search_.sticks || !speed_is_constant()) return;
+  zero_drift_ = find_zero_drift(trace_, search_, steps_.velocity);
+  if (zero_drift_.value == 0) return;
+  const double middle = 0.5 * (trace_.time.front() + trace_.time.back());
+  for (std::size_t i = 0; i < trace_.size(); ++i) trace_.velocity[i] -= zero_drift_.value * (trace_.time[i] - middle);
+  motion_.notes.push_back(fmt::format("velocity: its zero drifted by {:.4g} mm/s over the record, taken off",
+                                      1e3 * zero_drift_.value * trace_.duration()));
+  find_plateau();
 }
 
 /// A block on a spring goes nowhere: what v_b is on average is an error of the reading.

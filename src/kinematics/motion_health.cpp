@@ -65,6 +65,15 @@ HealthItem MotionStages::check_band() const {
   const std::span<const double> velocity =
       velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
   HealthItem item = kinematics::check_bandwidth(motion_, velocity, low_pass_);
+  if (steps_.friction_repeats || steps_.velocity_repeats) {
+    item.status = HealthItem::Status::problem;
+    item.message += fmt::format(
+        "; {} at uneven places, as behind a running median or from a recorder with a slower clock: break-away and "
+        "re-stick are cut off or late, mu_s and the law's decay (alpha) are unreliable; record without it",
+        !steps_.friction_repeats  ? "the velocity repeats values"
+        : steps_.velocity_repeats ? "friction and velocity repeat values"
+                                  : "friction repeats values");
+  }
   const std::vector<StickPlateau>& runs = search_.plateaus.runs;
   std::vector<double> slips;
   for (std::size_t k = 1; k < runs.size(); ++k)
@@ -104,6 +113,10 @@ HealthItem MotionStages::check_level() const {
   HealthItem item = kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_,
                                                     motion_.conditions.radius.known(), recorded_);
   kinematics::add_zero(zero_, speed_was_stated_, motion_.compression.value, item);
+  if (zero_drift_.value == 0) return item;
+  item.status = std::max(item.status, HealthItem::Status::warning);
+  item.message += fmt::format("; the zero of the velocity drifts by {:.3g} mm/s over the record; corrected",
+                              1e3 * zero_drift_.value * motion_.step * static_cast<double>(motion_.size()));
   return item;
 }
 

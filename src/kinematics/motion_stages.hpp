@@ -47,6 +47,7 @@ class MotionStages {
   bool is_block() const { return trace_.velocity_kind == VelocityKind::block; }
   bool speed_is_constant() const { return disc_.varying.empty(); }
   std::optional<LevelRange> plateau_as_recorded() const;
+  void undo_zero_drift();
   void find_zero();
   void undo_zero();
   void undo_compression();
@@ -81,7 +82,8 @@ class MotionStages {
   HighPassEstimate sag_;
   double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
   std::optional<RecordedPlateau> recorded_;
-  LostSamples jumps_;  ///< of the velocity as recorded
+  LostSamples jumps_;    ///< of the velocity as recorded
+  Estimate zero_drift_;  ///< that was taken off v_b [m/s^2]
   BlockZero zero_;
   LowPass low_pass_;  ///< of the velocity as recorded
   ClockDriftEstimate clocks_;

@@ -60,6 +60,29 @@ Estimate mean_velocity(std::span<const double> time, std::span<const double> vel
   return slope_of(positions.time, positions.position);
 }
 
+Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, double step) {
+  if (search.plateaus.runs.size() < 2 * kFewestPeriods) return {};
+  const Positions positions = positions_of(trace.time, trace.velocity, search);
+  const std::span<const double> time(positions.time), position(positions.position);
+  const std::size_t half = time.size() / 2;
+  const Estimate first = slope_of(time.first(half), position.first(half)),
+                 second = slope_of(time.subspan(half), position.subspan(half));
+  const double apart = 0.5 * (time[time.size() - 1] + time[half] - time[half - 1] - time[0]);
+  const Estimate drift{(second.value - first.value) / apart, std::hypot(first.std_error, second.std_error) / apart,
+                       first.degrees_of_freedom + second.degrees_of_freedom};
+  std::vector<double> level;
+  for (const StickPlateau& run : search.plateaus.runs) level.push_back(run.level);
+  const Estimate plateaus = slope_of(time, level);
+  const double least =
+      std::max({kSignificance * plateaus.std_error,
+                std::max(kLeastZero * std::abs(search.plateaus.level), 0.5 * step) / trace.duration()});
+  const bool agree =
+      std::abs(plateaus.value - drift.value) <
+      kZeroAgrees * std::abs(plateaus.value) + kZeroErrors * std::hypot(drift.std_error, plateaus.std_error);
+  const bool moves = std::abs(drift.value) > kZeroErrors * drift.std_error;
+  return agree && moves && std::abs(plateaus.value) > least ? plateaus : Estimate{};
+}
+
 BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step) {
   BlockZero zero;
   if (search.plateaus.runs.size() < kFewestPeriods) return zero;

@@ -6,6 +6,7 @@
 
 #include "health_checks.hpp"
 #include "ingest/limits.hpp"
+#include "levelling.hpp"
 #include "limits.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -103,7 +104,7 @@ struct Units {
 bool is_held(const EndRuns& end, bool sticks) {
   const PileUp& pile = end.pile;
   if (pile.count == 0) return false;
-  if (sticks) return pile.is_quiet || pile.density >= kCrowdedAlone;
+  if (sticks) return pile.is_quiet || pile.density >= kCrowdedAlone || pile.levels_off;
   return pile.is_quiet && pile.is_still && end.is_far;
 }
 
@@ -177,7 +178,13 @@ Gaps gaps_of(std::span<const double> time, double step) {
 
 RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
   const bool recorded = trace.velocity_std_error.empty();  // not made from another channel
-  return {ends_of(trace.friction, friction, true), ends_of(trace.velocity, velocity, false),
+  std::array<EndRuns, 2> ends = ends_of(trace.friction, friction, true);
+  const bool shows_rest = recorded && trace.velocity_kind == VelocityKind::block && turns_often(trace.friction);
+  for (std::size_t k = 0; k < 2 && shows_rest; ++k) {
+    // Friction crowds at break-away too, where it is the same every time: the block slips there already.
+    if (ends[k].count == 0) ends[k].pile = find_levelling(trace.friction, trace.velocity, k == 1);
+  }
+  return {ends, ends_of(trace.velocity, velocity, false),
           std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high)),
           recorded ? find_slew_limit(trace.friction) : 0, recorded ? find_slew_limit(trace.velocity) : 0};
 }

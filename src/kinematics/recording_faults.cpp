@@ -121,25 +121,6 @@ std::vector<SampleSpan> find_frozen(std::span<const double> x) {
   return runs;
 }
 
-std::vector<SampleSpan> spans_at_limit(std::span<const double> x, double from, double to) {
-  std::vector<SampleSpan> spans;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (x[i] < from || x[i] > to) continue;
-    if (!spans.empty() && i < spans.back().end + kClipHole) {
-      spans.back().end = i + 1;
-    } else {
-      spans.push_back({i, i + 1});
-    }
-  }
-  // The samples beside a stretch at the limit were chosen by their noise.
-  for (SampleSpan& span : spans) {
-    if (span.size() < kClipMargin) continue;
-    span.begin -= std::min(span.begin, kClipMargin);
-    span.end = std::min(x.size(), span.end + kClipMargin);
-  }
-  return spans;
-}
-
 /// Of the distances from a line through both neighbours; 1 where there are too few.
 double ratio_of_noise(std::vector<double> inside, std::vector<double> elsewhere) {
   if (inside.size() < kFewestSamples || elsewhere.size() < kFewestSamples) return 1;
@@ -276,6 +257,25 @@ void bridge(const std::vector<SampleSpan>& spans, std::vector<double>& channel) 
       channel[i] = left + (right - left) * static_cast<double>(i - span.begin + 1) / steps;
     }
   }
+}
+
+std::vector<SampleSpan> spans_at_limit(std::span<const double> x, double from, double to) {
+  std::vector<SampleSpan> spans;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] < from || x[i] > to) continue;
+    if (!spans.empty() && i < spans.back().end + kClipHole) {
+      spans.back().end = i + 1;
+    } else {
+      spans.push_back({i, i + 1});
+    }
+  }
+  // The samples beside a stretch at the limit were chosen by their noise.
+  for (SampleSpan& span : spans) {
+    if (span.size() < kClipMargin) continue;
+    span.begin -= std::min(span.begin, kClipMargin);
+    span.end = std::min(x.size(), span.end + kClipMargin);
+  }
+  return spans;
 }
 
 std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {

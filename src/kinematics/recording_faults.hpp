@@ -43,9 +43,13 @@ struct PileUp {
   double density = 0;             ///< over that of three such widths below it
   double from = 0, to = 0;        ///< what the crowd lies between
   bool is_quiet = false;          ///< the noise that the channel has elsewhere is not on it
+  bool levels_off = false;        ///< see find_levelling()
   bool is_still = false;          ///< nor on the whole stretches, where what lies in the crowd was not picked for it
   std::vector<SampleSpan> spans;  ///< the stretches at the limit, with the samples between them
 };
+
+/// The stretches between two values, with the samples between them that noise took out.
+std::vector<SampleSpan> spans_at_limit(std::span<const double> channel, double from, double to);
 
 /// Lower and upper end.
 std::array<PileUp, 2> find_pile_ups(std::span<const double> channel);

@@ -11,6 +11,7 @@
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 
@@ -41,6 +42,21 @@ double find_resolution(std::span<const double> channel) {
   const auto whole = std::count_if(steps.begin(), steps.end(),
                                    [&](double s) { return std::abs(s / step - std::round(s / step)) < kOffWholeStep; });
   return static_cast<double>(whole) >= kWholeSteps * static_cast<double>(steps.size()) ? step : 0;
+}
+
+bool repeats_unevenly(std::span<const double> channel) {
+  const std::size_t n = std::min(channel.size(), kValuesForSteps);
+  const std::span<const double> x = channel.subspan((channel.size() - n) / 2, n);
+  std::vector<double> changes;
+  std::size_t begun = 0;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (x[i] != x[i - 1]) changes.push_back(std::abs(x[i] - x[i - 1]));
+    begun += x[i] == x[i - 1] && (i == 1 || x[i - 1] != x[i - 2]) ? 1U : 0U;
+  }
+  if (static_cast<double>(begun) < kUnevenRepeats * static_cast<double>(n) || changes.size() < kFewestDistributed)
+    return false;
+  const double smallest = quantile(changes, 0.01);
+  return median(std::move(changes)) > kFineChanges * smallest;
 }
 
 double rounding_of_level(double step, double spread) {

@@ -15,9 +15,14 @@ double find_resolution(std::span<const double> channel);
 /// 2008). `spread`: standard deviation of the rounded values.
 double rounding_of_level(double step, double spread);
 
+/// Whether values are repeated at uneven places, again and again, that no steps make: the channel was taken through a
+/// running median, or from a recorder with a slower clock of its own.
+bool repeats_unevenly(std::span<const double> channel);
+
 /// Steps of both channels, 0 where none show, the range of friction and the largest |velocity|.
 struct RecordedSteps {
   double friction = 0, velocity = 0, friction_range = 0, largest_velocity = 0;
+  bool friction_repeats = false, velocity_repeats = false;
 };
 
 /// `noise`: of the velocity in stick [m/s].

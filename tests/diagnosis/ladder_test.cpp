@@ -229,7 +229,7 @@ Ladder with_one_effect(double fall, double left) {
 
 TEST(Withdraw, ANameForASmallPartOfWhatAFreeFunctionExplains) {
   Ladder ladder = with_one_effect(1000, 3000);
-  withdraw(ladder);
+  withdraw(ladder, 0);
   EXPECT_EQ(ladder.steps.size(), 1u);
   EXPECT_THAT(ladder.withdrawn, ElementsAre(7u));
   EXPECT_EQ(ladder.last.size(), 3u) << "what was judged beside the base is judged last now";
@@ -240,17 +240,28 @@ TEST(Withdraw, NotWhereNearlyAllIsExplainedOrTheLevelsOfBreakAwayAreMeant) {
          by_level = with_one_effect(1000, 3000);
   by_level.steps[1].by_level = true;
   for (Ladder* ladder : {&most, &all, &rest, &by_level}) {
-    withdraw(*ladder);
+    withdraw(*ladder, 0);
     EXPECT_EQ(ladder->steps.size(), 2u);
     EXPECT_THAT(ladder->withdrawn, IsEmpty());
   }
+}
+
+TEST(Withdraw, WhatIsLessThanASwingOfFrictionAsAWhole) {
+  Ladder less = with_one_effect(3500, 0), more = with_one_effect(3500, 0);
+  for (Ladder* ladder : {&less, &more}) {
+    for (LadderStep& step : ladder->steps) step.trial.plain_held_out = step.trial.held_out_squares;
+  }
+  withdraw(less, 5000);
+  EXPECT_THAT(less.withdrawn, ElementsAre(7u));
+  withdraw(more, 2000);
+  EXPECT_THAT(more.withdrawn, IsEmpty());
 }
 
 TEST(Withdraw, TakesWhatStandsOnItToo) {
   Ladder ladder = with_one_effect(1000, 3000);
   ladder.steps.push_back(ladder.steps[1]);
   ladder.steps[2].added = 8;
-  withdraw(ladder);
+  withdraw(ladder, 0);
   EXPECT_EQ(ladder.steps.size(), 1u);
   EXPECT_THAT(ladder.withdrawn, ElementsAre(7u, 8u));
 }
@@ -341,7 +352,7 @@ TEST(Findings, AWithdrawnEffectIsNotFound) {
   ladder.withdrawn = {0};
   const std::vector<EffectFinding> found = findings_of(made.context, ladder, all, {fit_with({}, 0.010)}, 0.003);
   EXPECT_EQ(finding_of(found, "run-in").status, EffectStatus::not_supported);
-  EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("left over its variable is larger than what it explains"));
+  EXPECT_THAT(finding_of(found, "run-in").reason, HasSubstr("left is larger than what it explains"));
 }
 
 /// Beside a base law that leaves twice the squares of the noise.

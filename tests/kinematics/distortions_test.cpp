@@ -176,56 +176,6 @@ TEST(Distortions, AStatedLowPassIsUndone) {
   }
 }
 
-/// A slow channel in a fast record: of values that are repeated the first is used, those of a coarse converter all are.
-TEST(Distortions, ValuesThatAreHeldAreUsedOnce) {
-  Trace sound = silent(3);
-  add_noise(sound);
-  const double disc = sound.conditions.speed.value * sound.conditions.radius.value;
-  for (const std::size_t count : {2U, 5U, 20U}) {
-    for (const bool both : {true, false}) {
-      Trace trace = sound;
-      for (std::size_t i = 0; i < trace.size(); ++i) {
-        trace.velocity[i] = trace.velocity[i - i % count];
-        if (both) trace.friction[i] = trace.friction[i - i % count];
-      }
-      const Motion motion = compute_motion(std::move(trace));
-      ASSERT_EQ(motion.size() + motion.trimmed, sound.size() / count);
-      for (std::size_t i = 0; i < motion.size(); ++i) {
-        const std::size_t fresh = (i + motion.trimmed) * count;
-        ASSERT_DOUBLE_EQ(motion.time[i], sound.time[fresh]);
-        ASSERT_NEAR(motion.relative_velocity[i], disc - sound.velocity[fresh], 1e-12);
-      }
-      EXPECT_THAT(motion.notes,
-                  ::testing::Contains(::testing::HasSubstr("in one of " + std::to_string(count) + " samples")));
-      EXPECT_EQ(item(motion, "drop-outs").status, HealthItem::Status::ok) << item(motion, "drop-outs").message;
-    }
-  }
-  Trace coarse = sound;
-  for (double& v : coarse.velocity) v = 1e-3 * std::round(v / 1e-3);
-  EXPECT_EQ(compute_motion(std::move(coarse)).size(), sound.size());
-}
-
-/// The same where straight lines lead from value to value, as software draws them between two rates.
-TEST(Distortions, ValuesBetweenWhichLinesAreDrawnAreUsedOnce) {
-  Trace sound = silent(3);
-  add_noise(sound);
-  for (const std::size_t count : {2U, 7U, 20U}) {
-    for (const auto channel : {&Trace::velocity, &Trace::friction}) {
-      Trace trace = sound;
-      std::vector<double>& x = trace.*channel;
-      for (std::size_t i = 0; i + count < x.size(); ++i) {
-        const std::size_t knot = i - i % count;
-        const double part = static_cast<double>(i % count) / static_cast<double>(count);
-        x[i] = (sound.*channel)[knot] + part * ((sound.*channel)[knot + count] - (sound.*channel)[knot]);
-      }
-      const Motion motion = compute_motion(std::move(trace));
-      ASSERT_EQ(motion.size() + motion.trimmed, (sound.size() + count - 1) / count);
-      for (std::size_t i = 0; i < motion.size(); ++i)
-        ASSERT_DOUBLE_EQ(motion.time[i], sound.time[(i + motion.trimmed) * count]);
-    }
-  }
-}
-
 /// Behind a filter as slow as a slip nothing comes back, and that is said.
 TEST(Distortions, ALowPassThatIsTooSlowIsAProblem) {
   for (const double corner : {40.0, 50.0, 60.0}) {

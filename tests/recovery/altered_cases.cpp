@@ -52,6 +52,13 @@ const std::vector<Which>& both_and_each() {
   return all;
 }
 
+/// A filter of one channel is a lag of that channel, and the more so the higher its order is.
+std::vector<std::string> lag_too(const Which& which) {
+  std::vector<std::string> effects = which.effects;
+  if (which.channels.size() == 1) effects.emplace_back("channel-delay");
+  return effects;
+}
+
 void add_filters(List& list) {
   for (const Which& which : both_and_each()) {
     for (const double corner : {100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3000.0})
@@ -171,7 +178,7 @@ void add_other_recorders(List& list) {
     for (const double corner : {150.0, 400.0, 1500.0})
       list.add_one(fmt::format("{}: fourth order of {} Hz", which.name, corner),
                    all_of({low_passed_twice(which.channels, corner), low_passed_twice(which.channels, corner)}),
-                   which.effects);
+                   lag_too(which));
     for (const std::size_t half : {1U, 3U, 10U})
       list.add_one(fmt::format("{}: running median of {}", which.name, 2 * half + 1),
                    running_median(which.channels, half), which.effects);

@@ -1,0 +1,189 @@
+// What recorders do to a record of known truth: found, left out or undone, and absent where it is not there.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "stick_slip_truth.hpp"
+#include "tribofit/kinematics/motion.hpp"
+
+namespace tribofit::recorders {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// With noise of friction of 0.003 and of the velocity of 0.02 mm/s.
+Trace recorded(unsigned seed, double rpm = 4) {
+  truth::Rig rig;
+  rig.duration = 8;
+  rig.scatter = 0.004;
+  rig.rpm = rpm;
+  rig.friction_noise = 0.003, rig.velocity_noise = 2e-5;
+  rig.seed = seed;
+  return truth::simulate(rig).trace;
+}
+
+const HealthItem& item(const Motion& motion, const std::string& check) {
+  return *std::find_if(motion.health.begin(), motion.health.end(),
+                       [&](const HealthItem& i) { return i.check == check; });
+}
+
+/// A slow channel in a fast record: of values that are repeated the first is used, those of a coarse converter all are.
+TEST(Recorders, ValuesThatAreHeldAreUsedOnce) {
+  Trace sound = recorded(3);
+  const double disc = sound.conditions.speed.value * sound.conditions.radius.value;
+  for (const std::size_t count : {2U, 5U, 20U}) {
+    for (const bool both : {true, false}) {
+      Trace trace = sound;
+      for (std::size_t i = 0; i < trace.size(); ++i) {
+        trace.velocity[i] = trace.velocity[i - i % count];
+        if (both) trace.friction[i] = trace.friction[i - i % count];
+      }
+      const Motion motion = compute_motion(std::move(trace));
+      ASSERT_EQ(motion.size() + motion.trimmed, sound.size() / count);
+      for (std::size_t i = 0; i < motion.size(); ++i) {
+        const std::size_t fresh = (i + motion.trimmed) * count;
+        ASSERT_DOUBLE_EQ(motion.time[i], sound.time[fresh]);
+        ASSERT_NEAR(motion.relative_velocity[i], disc - sound.velocity[fresh], 1e-12);
+      }
+      EXPECT_THAT(motion.notes,
+                  ::testing::Contains(::testing::HasSubstr("in one of " + std::to_string(count) + " samples")));
+      EXPECT_EQ(item(motion, "drop-outs").status, HealthItem::Status::ok) << item(motion, "drop-outs").message;
+    }
+  }
+  Trace coarse = sound;
+  for (double& v : coarse.velocity) v = 1e-3 * std::round(v / 1e-3);
+  EXPECT_EQ(compute_motion(std::move(coarse)).size(), sound.size());
+}
+
+/// The same where straight lines lead from value to value, as software draws them between two rates.
+TEST(Recorders, ValuesBetweenWhichLinesAreDrawnAreUsedOnce) {
+  Trace sound = recorded(3);
+  for (const std::size_t count : {2U, 7U, 20U}) {
+    for (const auto channel : {&Trace::velocity, &Trace::friction}) {
+      Trace trace = sound;
+      std::vector<double>& x = trace.*channel;
+      for (std::size_t i = 0; i + count < x.size(); ++i) {
+        const std::size_t knot = i - i % count;
+        const double part = static_cast<double>(i % count) / static_cast<double>(count);
+        x[i] = (sound.*channel)[knot] + part * ((sound.*channel)[knot + count] - (sound.*channel)[knot]);
+      }
+      const Motion motion = compute_motion(std::move(trace));
+      ASSERT_EQ(motion.size() + motion.trimmed, (sound.size() + count - 1) / count);
+      for (std::size_t i = 0; i < motion.size(); ++i)
+        ASSERT_DOUBLE_EQ(motion.time[i], sound.time[(i + motion.trimmed) * count]);
+    }
+  }
+}
+
+/// A laser that loses its speckle reads about nothing for some samples, and they are left out.
+TEST(Recorders, AVelocityThatDropsOutIsLeftOutThere) {
+  Trace trace = recorded(4);
+  const Trace sound = trace;
+  std::vector<std::size_t> lost;
+  for (std::size_t begin = 1000; begin + 30 < trace.size(); begin += 1511) {
+    // Not on the steep parts of a slip: there the reading passes through nothing itself.
+    if (std::abs(sound.velocity[begin]) < 2e-3 || std::abs(sound.velocity[begin] - sound.velocity[begin + 12]) > 5e-4)
+      continue;
+    for (std::size_t i = begin; i < begin + 12; ++i) trace.velocity[i] *= 0.01, lost.push_back(i);
+  }
+  ASSERT_GT(lost.size(), 500U);
+  const double disc = trace.conditions.speed.value * trace.conditions.radius.value;
+  const Motion motion = compute_motion(std::move(trace));
+  std::size_t wrong = 0;
+  for (const std::size_t i : lost) {
+    if (i < motion.trimmed || i - motion.trimmed >= motion.size()) continue;
+    wrong += std::abs(motion.relative_velocity[i - motion.trimmed] - (disc - sound.velocity[i])) > 1e-3 ? 1U : 0U;
+  }
+  EXPECT_LT(wrong, lost.size() / 50);
+  EXPECT_THAT(item(motion, "drop-outs").message, HasSubstr("jumps away and back"));
+  for (const double rpm : {1.0, 4.0, 60.0, 200.0})
+    EXPECT_THAT(item(compute_motion(recorded(5, rpm)), "drop-outs").message, Not(HasSubstr("jumps away"))) << rpm;
+}
+
+/// Plateaus and the block's mean velocity drift alike: it is the zero. A disc that slows down moves plateaus alone.
+TEST(Recorders, AZeroThatDriftsIsTakenOff) {
+  for (const double by : {3e-4, -1e-3}) {
+    Trace zero = recorded(6);
+    const Trace sound = zero;
+    const auto n = static_cast<double>(zero.size());
+    for (std::size_t i = 0; i < zero.size(); ++i) zero.velocity[i] += by * static_cast<double>(i) / n;
+    const double disc = zero.conditions.speed.value * zero.conditions.radius.value;
+    const Motion motion = compute_motion(std::move(zero));
+    EXPECT_THAT(item(motion, "plateau-speed").message, HasSubstr("the zero of the velocity drifts"));
+    double worst = 0;
+    for (std::size_t i = 0; i < motion.size(); ++i)
+      worst = std::max(worst, std::abs(motion.relative_velocity[i] - disc + sound.velocity[i + motion.trimmed]));
+    EXPECT_LT(worst, 0.05 * std::abs(by));
+  }
+  for (const unsigned seed : {6U, 7U, 8U})
+    EXPECT_THAT(item(compute_motion(recorded(seed)), "plateau-speed").message, Not(HasSubstr("drifts")));
+  Trace slowing = recorded(6);
+  const double rate = 2e-3 / slowing.duration();  // of the disc [m/s^2]: the block follows in stick, and slips more
+  double gone = 0;
+  for (std::size_t i = 0; i < slowing.size(); ++i) {
+    const bool sticks =
+        std::abs(slowing.velocity[i] - slowing.conditions.speed.value * slowing.conditions.radius.value) < 3e-4;
+    const double off = sticks ? -rate * slowing.time[i] : 0;
+    gone += off;
+    slowing.velocity[i] += off;
+    if (!sticks) slowing.velocity[i] -= std::exchange(gone, 0.0) / 400;  // it goes nowhere all the same
+  }
+  EXPECT_THAT(item(compute_motion(std::move(slowing)), "plateau-speed").message,
+              Not(HasSubstr("zero of the velocity")));
+}
+
+/// Noise behind a running median repeats values, steps of a converter do so at its levels.
+TEST(Recorders, ARunningMedianIsAProblem) {
+  for (const std::size_t half : {1U, 3U, 10U}) {
+    Trace trace = recorded(7);
+    const std::vector<double> x = trace.friction;
+    for (std::size_t i = half; i + half < x.size(); ++i) {
+      std::vector<double> some(x.begin() + static_cast<std::ptrdiff_t>(i - half),
+                               x.begin() + static_cast<std::ptrdiff_t>(i + half + 1));
+      std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end());
+      trace.friction[i] = some[half];
+    }
+    const HealthItem band = item(compute_motion(std::move(trace)), "bandwidth");
+    EXPECT_EQ(band.status, HealthItem::Status::problem) << half;
+    EXPECT_THAT(band.message, HasSubstr("friction repeats values at uneven places"));
+  }
+  for (const double step : {1e-5, 1e-4, 1e-3, 3e-3, 1e-2}) {
+    Trace coarse = recorded(7);
+    for (double& mu : coarse.friction) mu = step * std::round(mu / step);
+    EXPECT_THAT(item(compute_motion(std::move(coarse)), "bandwidth").message, Not(HasSubstr("uneven"))) << step;
+  }
+}
+
+/// Friction that is cut off behind noise as wide as what is cut stops rising while its spring is stretched on.
+TEST(Recorders, FrictionThatLevelsOffIsClipped) {
+  std::mt19937_64 random(3);
+  for (const double rpm : {2.0, 4.0, 8.0}) {
+    for (const int sign : {1, -1}) {
+      Trace trace = recorded(8, rpm);
+      const auto dither = truth::noise(trace.size(), 0.002, 0, random);
+      for (std::size_t i = 0; i < trace.size(); ++i)
+        trace.friction[i] = sign * (std::min(trace.friction[i], 0.5) + dither[i]);
+      EXPECT_NE(item(compute_motion(std::move(trace)), "clipping").status, HealthItem::Status::ok) << rpm;
+    }
+  }
+  for (const double rpm : {0.5, 1.0, 2.0, 4.0, 8.0, 12.0}) {
+    for (const double noise : {3e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
+      for (const bool flat : {false, true}) {
+        truth::Rig rig;
+        rig.duration = 8;
+        rig.rpm = rpm;
+        rig.friction_noise = noise;
+        rig.flat_at_rest = flat;
+        const HealthItem clipping = item(compute_motion(truth::simulate(rig).trace), "clipping");
+        EXPECT_EQ(clipping.status, HealthItem::Status::ok) << rpm << ' ' << noise << ' ' << flat << clipping.message;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tribofit::recorders
