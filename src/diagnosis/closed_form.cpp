@@ -52,11 +52,24 @@ std::string swing(const Probe& probe, double level, double largest) {
       probe.value[0] * level, largest, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]);
 }
 
+/// What dies away with the distance since a reversal, as a probe found it.
+std::vector<std::string> decays(const Probe& probe, double largest) {
+  std::vector<std::string> forms;
+  const double span = 1e3 * (probe.at.back() - probe.at.front());
+  for (const double part : {0.03, 0.1, 0.3}) {
+    forms.push_back(
+        fmt::format("reversal = a*exp(-reversal_distance/L); a={:.4g}[{:.4g},{:.4g}], L={:.4g}mm[{:.4g},{:.4g}]",
+                    probe.value.front() - probe.value.back(), -largest, largest, part * span, 1e-3 * span, 3 * span));
+  }
+  return forms;
+}
+
 std::vector<std::string> forms_of(const DiagnosisContext& context, const Trial& top, const Probe& probe) {
   // A coefficient is of the order of one, a force of the order of what was recorded; probes may overshoot either.
   double largest = std::max(1.0, context.fine.observations.largest_friction);
   for (const double value : probe.value) largest = std::max(largest, 5 * std::abs(value));
   if (probe.variable == ResidualVariable::velocity && probe.at.size() > 4) return humps(probe, largest);
+  if (probe.variable == ResidualVariable::reversal_distance && probe.at.size() > 2) return decays(probe, largest);
   if (probe.variable == ResidualVariable::time && probe.period > 0 && probe.value.size() == 2) {
     const double level = kinetic_friction(top.model.law(), top.p, context.fine.observations.fastest);
     return {swing(probe, std::abs(level), largest)};

@@ -255,7 +255,9 @@ std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, con
     const auto& range = o.slips[k];
     return hats(o.reversal_distance[std::min(range.begin + i, range.end - 1)]);
   };
-  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  probe.at = hats.knots();
+  probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
 

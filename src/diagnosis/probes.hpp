@@ -15,7 +15,8 @@ struct Probe {
   double size = 0;     ///< see CandidateResult::size
   double p_value = 1;  ///< not corrected for the number of variables
   double period = 0;   ///< of the strongest swing over time [s], or 1/frequency of the strongest line; else 0
-  std::vector<double> at, value;  ///< the function found: velocity [m/s], or time [s], and what it adds to |mu|
+  std::vector<double> at, value;  ///< the function found: velocity [m/s], distance [m] or time [s], and
+                                  ///< what it adds to |mu|
 };
 
 /// Every variable that these data can distinguish: velocity, branch, time, angle, stick-time, load, reversal-distance,

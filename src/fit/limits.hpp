@@ -129,5 +129,8 @@ inline constexpr double kClearlyBetter = 0.05;
 /// Of the standard deviation of the weights by which a slider's velocity is smoothed, as standard uncertainty of its
 /// break-away: in simulated sliders (three springs, three speeds, 12 and 19 bits) it is 0.3 early to 0.8 late.
 inline constexpr double kPartOfSmoothing = 0.5;
+/// Standard uncertainty of an acceleration that is the curvature of such a pull, over it: a polynomial over a sixth of
+/// a period follows a sine to 1e-3, and where a slip begins or ends to some more.
+inline constexpr double kSmoothedAcceleration = 1.5e-3;
 
 }  // namespace tribofit

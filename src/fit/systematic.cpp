@@ -22,8 +22,10 @@ struct Shift {
   /// |friction| by offset + part |friction|, break-aways and extremes too; one per record, or empty.
   std::vector<double> offset = {}, part = {};
 
-  std::vector<double> break_away = {};  ///< by which it is late or early [s], one per record, or empty
+  std::vector<double> break_away = {};    ///< by which it is late or early [s], one per record, or empty
+  std::vector<double> acceleration = {};  ///< part of it, one per record, or empty
 
+  double acceleration_of(std::size_t record) const { return acceleration.empty() ? 0 : acceleration[record]; }
   double late_of(std::size_t record) const { return break_away.empty() ? 0 : break_away[record]; }
   double offset_of(std::size_t record) const { return offset.empty() ? 0 : offset[record]; }
   double part_of(std::size_t record) const { return part.empty() ? 0 : part[record]; }
@@ -263,6 +265,7 @@ Observations moved(const Observations& observations, const Shift& shift) {
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
       // An offset is of the sensor, not of the direction of sliding.
       out.friction[i] += offset + part * out.friction[i];
+      if (!out.acceleration.empty()) out.acceleration[i] *= 1 + shift.acceleration_of(slip.record);
     }
     slip.break_away_friction += slip.direction * offset + part * slip.break_away_friction;
     if (const double late = shift.late_of(slip.record); late > 0 && std::isfinite(slip.stick_slope))
@@ -337,6 +340,9 @@ std::vector<double> smoothing_errors(const FrictionModel& model, const std::vect
     if (!(records[r].motion->smoothing > 0)) continue;
     shifts.push_back({.break_away = std::vector<double>(records.size(), 0.0)});
     shifts.back().break_away[r] = kPartOfSmoothing * records[r].motion->smoothing;
+    if (observations.acceleration.empty()) continue;
+    shifts.push_back({.acceleration = std::vector<double>(records.size(), 0.0)});
+    shifts.back().acceleration[r] = kSmoothedAcceleration;
   }
   return errors_of(shifts, model, p, observations, free, published);
 }

@@ -87,6 +87,9 @@ class Finder {
       if (colon != std::string::npos && !exists(text)) {
         request.column = std::string(trimmed(std::string_view(text).substr(0, colon)));
         request.unit = std::string(trimmed(std::string_view(text).substr(colon + 1)));
+      } else if (const std::size_t open = text.rfind('['); open != std::string::npos && open > 0 && !exists(text)) {
+        request.column = std::string(trimmed(std::string_view(text).substr(0, open)));
+        request.unit = strip_brackets(std::string_view(text).substr(open));
       }
     }
     for (const auto& [name, text] : options.units) {

@@ -184,6 +184,7 @@ TEST(SpringSlider, TheMovingMassIsTheInertiaInThePull) {
 }
 
 TEST(SpringSlider, IntervalsHoldTheLaw) {
+  int masses = 0;  // of nine, whose interval holds the true one
   for (const double stiffness : {168.0, 420.0, 1002.0}) {
     for (const double drive : {1.1e-3, 2.2e-3, 4.3e-3}) {
       for (const bool known : {false, true}) {
@@ -207,9 +208,11 @@ TEST(SpringSlider, IntervalsHoldTheLaw) {
         }
         if (known) continue;
         EXPECT_NEAR(found.at(3).value, slider.mass, 0.005 * slider.mass) << stiffness << drive;
+        masses += found.at(3).lower95 <= slider.mass && found.at(3).upper95 >= slider.mass ? 1 : 0;
       }
     }
   }
+  EXPECT_GE(masses, 8);
 }
 
 /// Mass and spring filter friction like a slow sensor: what is named is the mass.

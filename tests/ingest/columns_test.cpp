@@ -237,6 +237,15 @@ TEST_F(Columns_, ColumnsBeyondTheHeaderAreNamedByNumber) {
   expect_error(file, options, "no column #4 for v_b", "#1 to #3", 1);
 }
 
+TEST_F(Columns_, AUnitInBracketsIsThatOfTheColumn) {
+  ReadOptions options;
+  const std::string file = write("time_s,mu,laser,belt [mm/s]\n0,0.3,1,4\n1,0.3,2,5\n2,0.3,3,6\n");
+  for (const auto& [text, last] : {std::pair{"laser[mm/s]", 3e-3}, {"laser [um/s]", 3e-6}, {"belt [mm/s]", 6e-3}}) {
+    options.columns = {{"v_b", text}};
+    EXPECT_DOUBLE_EQ(read_trace(file, options).velocity[2], last) << text;
+  }
+}
+
 TEST_F(Columns_, AColumnHoldsOneChannel) {
   ReadOptions options;
   options.columns = {{"force", "F_N"}, {"load", "F_N"}, {"v_r", "v_r [m/s]"}};

@@ -136,6 +136,26 @@ TEST(PositionMemory, SoftContactsAreNamed) {
   }
 }
 
+/// What no effect of the catalogue is: friction that is higher after a reversal and falls with the distance slid.
+TEST(PositionMemory, WhatDiesAwayWithTheDistanceHasAFormula) {
+  const double higher = 0.05, length = 0.006;
+  double slid = 0, before = 0;
+  const auto trace = record(
+      [&](double law, double v, double dx) {
+        slid = v * before < 0 ? 0 : slid + std::abs(dx);
+        before = v;
+        return law + std::copysign(higher * std::exp(-slid / length), v);
+      },
+      3);
+  const Diagnosis found = diagnosis_of(trace).diagnosis;
+  EXPECT_EQ(found.verdict, Verdict::unexplained) << rungs_of(found);
+  const std::size_t a = found.formula.find("; a="), l = found.formula.find("L=");
+  ASSERT_NE(found.formula.find("a*exp(-reversal_distance/L)"), std::string::npos) << found.formula;
+  ASSERT_TRUE(a != std::string::npos && l != std::string::npos) << found.formula;
+  EXPECT_NEAR(std::stod(found.formula.substr(a + 4)), higher, 0.1 * higher) << found.formula;
+  EXPECT_NEAR(std::stod(found.formula.substr(l + 2)), 1e3 * length, 0.1 * 1e3 * length) << found.formula;
+}
+
 TEST(PositionMemory, PlayIsNamed) {
   const double loss = 0.2, play = 0.011, give = 0.0006;
   for (const std::uint64_t seed : {3u, 4u}) {
