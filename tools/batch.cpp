@@ -22,6 +22,7 @@
 #include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
+#include "tribofit/campaign/plan.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -246,7 +247,7 @@ bool is_batch(const Settings& s, const Campaign& campaign) {
   return !s.out.empty() || !s.shard.empty() || (!campaign.folder.empty() && campaign.runs.size() > 1);
 }
 
-ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const IdentifyOptions& options,
+ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOptions& options,
                         const std::vector<std::string>& arguments) {
   BatchOptions batch;
   batch.identify = options;
@@ -265,7 +266,8 @@ ExitStatus run_as_batch(const Settings& s, const Campaign& campaign, const Ident
   try {
     claim_results(campaign, batch);
     remove_abandoned_files(batch.results);
-    write_campaign(campaign, batch);
+    const bool is_planned = !s.shard.empty() && !batch.again && follow_plan(batch, campaign);
+    if (!is_planned) write_campaign(campaign, batch);
     outcome = fit_runs(campaign, batch);
     print_problems(campaign, outcome);
     if (s.shard.empty()) {

@@ -118,8 +118,8 @@ ExitStatus run_identify(const Settings& s, const std::vector<std::string>& argum
   FindOptions find;
   find.errors = ManifestErrors::collect;
   if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
-  const Campaign campaign = find_runs(s.traces, options.read, find);
-  if (is_batch(s, campaign)) return run_as_batch(s, campaign, options, arguments);
+  Campaign campaign = find_runs(s.traces, options.read, find);
+  if (is_batch(s, campaign)) return run_as_batch(s, std::move(campaign), options, arguments);
   find.errors = ManifestErrors::refuse;
   const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
   if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");

@@ -259,7 +259,7 @@ ResultReader::ResultReader(std::string folder) : folder_(std::move(folder)) {
 }
 
 std::optional<RunResult> ResultReader::read(std::size_t k) const {
-  const Listed& run = runs_.at(k);
+  const PlannedRun& run = runs_.at(k);
   try {
     const auto json = object_in(result_path(folder_, run.name));
     if (!json || text(json->at("run"), "settings") != run.settings) return std::nullopt;

@@ -83,14 +83,10 @@ class Finder {
     for (const auto& [name, text] : options.columns) {
       Request& request = slot(name, "--columns");
       request.column = text.empty() ? "none" : text;
-      const std::size_t colon = text.rfind(':');
-      if (colon != std::string::npos && !exists(text)) {
-        request.column = std::string(trimmed(std::string_view(text).substr(0, colon)));
-        request.unit = std::string(trimmed(std::string_view(text).substr(colon + 1)));
-      } else if (const std::size_t open = text.rfind('['); open != std::string::npos && open > 0 && !exists(text)) {
-        request.column = std::string(trimmed(std::string_view(text).substr(0, open)));
-        request.unit = strip_brackets(std::string_view(text).substr(open));
-      }
+      const std::size_t colon = text.rfind(':'), open = text.rfind('['), at = colon != text.npos ? colon : open;
+      if (at == text.npos || at == 0 || exists(text)) continue;
+      request.column = std::string(trimmed(std::string_view(text).substr(0, at)));
+      request.unit = strip_brackets(std::string_view(text).substr(at == colon ? at + 1 : at));
     }
     for (const auto& [name, text] : options.units) {
       const bool is_channel = std::find(known.begin(), known.end(), name) != known.end();

@@ -59,10 +59,30 @@ TEST_F(Shards, TheMergeSaysWhatIsMissing) {
   EXPECT_EQ(files_in(shop_ / "res"), files_in(shop_ / "local"));
 }
 
-TEST_F(Shards, ResultsOfOtherOptionsCountAsMissing) {
+TEST_F(Shards, OfOtherOptionsAreRefused) {
   ASSERT_EQ(shop_.identify("runs --out res --shard 1/2 --law exponential --quiet").status, 0);
-  ASSERT_EQ(shop_.identify("runs --out res --shard 2/2 --quiet").status, 0);
-  EXPECT_THAT(shop_.identify("merge res").out, HasSubstr("3 fitted, 0 failed, 4 missing"));
+  const Outcome other = shop_.identify("runs --out res --shard 2/2 --quiet");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.err, HasSubstr("campaign.json: another shard planned a1.csv with other options"));
+  EXPECT_THAT(shop_.identify("merge res").out, HasSubstr("4 fitted, 0 failed, 3 missing"));
+}
+
+/// A run that comes, or goes, between two shards moves none of the others from one to the other.
+TEST_F(Shards, WorkToThePlanOfTheFirst) {
+  ASSERT_EQ(shop_.identify("runs --out local --quiet").status, 0);
+  ASSERT_EQ(shop_.identify("runs --out res --shard 1/2 --quiet").status, 0);
+  const std::string manifest = contents(shop_ / "runs/manifest.csv");
+  const std::size_t first = manifest.find('\n') + 1;
+  shop_.write("runs/new.csv", contents(shop_ / "runs/a1.csv"));
+  shop_.write("runs/manifest.csv", manifest.substr(0, first) + "new.csv,15mm,50N,1,L\n" + manifest.substr(first));
+  const Outcome second = shop_.identify("runs --out res --shard 2/2");
+  EXPECT_EQ(second.status, 0);
+  EXPECT_THAT(second.out, HasSubstr("1 run is left out, new.csv the first"));
+  EXPECT_EQ(shop_.identify("merge res --quiet").status, 0);
+  EXPECT_EQ(files_in(shop_ / "res"), files_in(shop_ / "local"));
+  for (const char* shard : {"1/2", "2/2"})  // all that was planned is done: it is planned anew
+    EXPECT_EQ(shop_.identify(std::string("runs --out res --quiet --shard ") + shard).status, 0);
+  EXPECT_THAT(shop_.identify("merge res").out, HasSubstr("8 fitted, 0 failed, 0 missing"));
 }
 
 TEST_F(Shards, AFolderWithoutACampaignIsNamed) {

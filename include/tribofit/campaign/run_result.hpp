@@ -127,6 +127,11 @@ std::optional<std::string> folder_of_campaign(const std::string& results);
 /// throws.
 std::optional<RunRecord> read_record(const std::string& path);
 
+/// A run in campaign.json: name and file as in Run, hash of its settings as in RunRecord.
+struct PlannedRun {
+  std::string name, file, settings;
+};
+
 /// The results of a campaign one after the other, so that memory does not grow with what they hold.
 class ResultReader {
  public:
@@ -137,6 +142,7 @@ class ResultReader {
   const std::string& traces() const { return traces_; }  ///< see CampaignResults::folder
   const std::vector<std::string>& problems() const { return problems_; }
   std::size_t size() const { return runs_.size(); }  ///< runs of the campaign
+  const std::vector<PlannedRun>& plan() const { return runs_; }
   /// The result of the k-th run, without its order in time; nothing where it is missing.
   std::optional<RunResult> read(std::size_t k) const;
   /// The figures kept with the result that read() returns; nothing where it could not be analysed.
@@ -146,13 +152,9 @@ class ResultReader {
   MissingRun missing(std::size_t k) const;
 
  private:
-  struct Listed {
-    std::string name, file, settings;
-  };
-
   std::string folder_, traces_;
   std::vector<std::string> problems_;
-  std::vector<Listed> runs_;
+  std::vector<PlannedRun> runs_;
 };
 
 /// Reads all results of a campaign; `order` comes from the first further condition that is called order, run
