@@ -51,7 +51,7 @@ bool imitates(std::string_view check, Evidence evidence) {
   if (check == kDropOuts) return evidence == Evidence::in_time;
   if (check == kClipping || check == kBandwidth) return evidence != Evidence::in_time;
   // What explains a plateau that is not at omega r, as creep does, is not imitated by it.
-  if (check == kPlateauSpeed) return evidence == Evidence::within_cycle;
+  if (check == kPlateauSpeed || check == kFrictionZero) return evidence == Evidence::within_cycle;
   const bool distorts = check == kResolution || check == kChannelDelay;
   return distorts && evidence != Evidence::at_break_away && evidence != Evidence::in_time;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
@@ -142,7 +143,18 @@ void settle_friction_sign(Motion& motion, double scale) {
     agreement += v > 0 ? motion.friction[i] : -motion.friction[i];
     total += std::abs(motion.friction[i]);
   }
-  if (agreement >= -0.5 * total || total == 0) return;
+  // At rest the spring pulls the more the further the block is carried: where friction rises there the sign is right.
+  double rise = 0, fast = 0;
+  std::size_t rests = 0;  // samples before this one
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const double v = motion.relative_velocity[i];
+    if (std::abs(v) > 0.5 * scale) fast += v > 0 ? motion.friction[i] : -motion.friction[i];
+    if (rests > kShortestStretch)  // beyond the jump at re-stick
+      rise += motion.disc_velocity_at(i) * (motion.friction[i] - motion.friction[i - 1]);
+    rests = std::abs(v) < 0.05 * scale ? rests + 1 : 0;
+  }
+  motion.friction_drives = motion.sticks && rise > 0 && fast < 0;
+  if (agreement >= -0.5 * total || total == 0 || motion.friction_drives) return;
   for (double& mu : motion.friction) mu = -mu;
   motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");
 }

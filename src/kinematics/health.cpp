@@ -197,6 +197,14 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
   return item;
 }
 
+HealthItem check_friction_zero(const Motion& motion) {
+  if (!motion.friction_drives) return {health_check::kFrictionZero, Status::ok, "friction brakes what slides"};
+  return {
+      health_check::kFrictionZero, Status::problem,
+      "friction is negative in slip, as if it drove the block: the zero of its sensor is wrong, or the channel passes "
+      "no constant (AC coupling); mu_s, mu_k and the law's decay (alpha) are unreliable, record it with DC coupling"};
+}
+
 HealthItem check_revolutions(const Motion& motion) {
   HealthItem item{health_check::kRevolutions, Status::ok, "the disc's speed is not known"};
   double angle = 0;

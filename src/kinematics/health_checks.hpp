@@ -64,6 +64,9 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
 /// of `factor` samples of `relative_velocity`.
 HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
 
+/// Friction brakes what slides: where it is negative though its sign is right, its zero is wrong.
+HealthItem check_friction_zero(const Motion& motion);
+
 HealthItem check_revolutions(const Motion& motion);
 
 /// What became of the search for a ripple of the disc's speed.

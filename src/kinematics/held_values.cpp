@@ -42,22 +42,31 @@ std::vector<double> by_phase(std::span<const double> squares, std::size_t count)
   return sums;
 }
 
-/// Whether lines bend at the knots and next to nowhere else: all of a few events may fall there by chance.
-bool bends_there(std::span<const double> squares, std::size_t count, std::size_t phase) {
+/// Whether there is much at the knots and next to nothing elsewhere: all of a few events may fall there by chance.
+bool only_there(std::span<const double> squares, const Hold& hold, std::size_t beside) {
   std::vector<double> knots, others;
-  for (std::size_t i = 0; i < squares.size(); ++i) (i % count == phase ? knots : others).push_back(squares[i]);
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const std::size_t after = (i + hold.samples - hold.first) % hold.samples;
+    (std::min(after, hold.samples - after) <= beside ? knots : others).push_back(squares[i]);
+  }
   return median(std::move(knots)) > kBendsMore * kBendsMore * quantile(std::move(others), 0.95);
 }
 
-/// The most samples of which one has so much of the squares and is `confirmed`, and which.
-template <typename Confirmed>
-Hold spaced(std::span<const double> squares, double part, const Confirmed& confirmed) {
+/// The most samples of which one, with so many to either side, has so much of the squares, and which; of events that
+/// are few not by chance.
+Hold spaced(std::span<const double> squares, double part, std::size_t beside, bool few) {
   const double all = std::reduce(squares.begin(), squares.end());
-  for (std::size_t count = kLongestHold; all > 0 && count > 1; --count) {
+  for (std::size_t count = kLongestHold; all > 0 && count > 2 * beside + 1; --count) {
     const std::vector<double> sums = by_phase(squares, count);
-    const auto most = std::ranges::max_element(sums);
-    const auto phase = static_cast<std::size_t>(most - sums.begin());
-    if (*most > part * all && confirmed(squares, count, phase)) return {count, phase};
+    const auto about = [&](std::size_t phase) {
+      double sum = sums[phase];
+      for (std::size_t k = 1; k <= beside; ++k) sum += sums[(phase + k) % count] + sums[(phase + count - k) % count];
+      return sum;
+    };
+    Hold best{count, 0};
+    for (std::size_t phase = 1; phase < count; ++phase)
+      best.first = about(phase) > about(best.first) ? phase : best.first;
+    if (about(best.first) > part * all && (!few || only_there(squares, best, beside))) return best;
   }
   return {};
 }
@@ -70,10 +79,16 @@ Hold find_hold(std::span<const double> channel) {
   std::vector<double> changes(x.size(), 0), bends(x.size(), 0);
   for (std::size_t i = 1; i < x.size(); ++i) changes[i] = x[i] != x[i - 1] ? 1 : 0;
   if (std::reduce(changes.begin(), changes.end()) < static_cast<double>(kFewestDistributed)) return {};
-  Hold hold = spaced(changes, kHeldAlike, [](auto&&...) { return true; });
+  Hold hold = spaced(changes, kHeldAlike, 0, false);
   if (hold.samples == 1) {
     for (std::size_t i = 1; i + 1 < x.size(); ++i) bends[i] = std::pow(x[i + 1] - 2 * x[i] + x[i - 1], 2);
-    hold = spaced(bends, kBendAlike, bends_there);
+    hold = spaced(bends, kBendAlike, 0, true);
+  }
+  if (hold.samples == 1) {  // cubic from knot to knot: the fourth difference is not zero there and beside it
+    std::ranges::fill(bends, 0);
+    for (std::size_t i = 2; i + 2 < x.size(); ++i)
+      bends[i] = std::pow(x[i - 2] + x[i + 2] - 4 * (x[i - 1] + x[i + 1]) + 6 * x[i], 2);
+    hold = spaced(bends, kBendAlike, 1, true);
   }
   hold.first = (hold.first + from) % hold.samples;
   return hold;
@@ -87,8 +102,8 @@ void keep_fresh_values(Trace& trace, std::vector<std::string>& notes) {
                       : &hold == &velocity                 ? "the velocity has"
                                                            : "friction has";
   notes.push_back(
-      fmt::format("{} a value of its own in one of {} samples, which is used; the others are copies or lie on straight "
-                  "lines: the record is one at {}",
+      fmt::format("{} a value of its own in one of {} samples, which is used; the others are copies or lie on lines or "
+                  "curves: the record is one at {}",
                   which, hold.samples, frequency_text(trace.rate() / static_cast<double>(hold.samples))));
   for (auto* channel :
        {&trace.time, &trace.friction, &trace.velocity, &trace.block_position, &trace.drive_position,

@@ -9,7 +9,8 @@
 
 namespace tribofit::kinematics {
 
-/// A slower channel in a faster record: each value is repeated until the next, or straight lines lead there.
+/// A slower channel in a faster record: each value is repeated until the next, or straight lines or
+/// cubics (splines) lead there.
 struct Hold {
   std::size_t samples = 1;  ///< of which one has a value of its own
   std::size_t first = 0;    ///< that has

@@ -33,8 +33,7 @@ inline constexpr double kPasses = 0.25;
 inline constexpr double kSwings = 0.25, kSwingsOverNoise = 5;
 /// Blocks of a plateau: a middle and its two shoulders need as many.
 inline constexpr std::size_t kFewestBlocks = 4;
-/// A plateau has settled, and agrees with what is stated, within this part of its level.
-inline constexpr double kSettled = kSpeedKnownTo;
+inline constexpr double kSettled = kSpeedKnownTo;  // a plateau has settled, and agrees with what is stated, within
 
 /// Standard deviations of v_r within which its plateau is at zero, and the least where there is no noise, over the
 /// largest excursion: what creep before break-away makes of a rest. Wider: the lowest speed of a programme is a stick.
@@ -243,6 +242,8 @@ inline constexpr double kTailAlike = 2, kTailGap = 0.4;
 /// Variance left while it decays over that afterwards, and beside it over the size of the decay, squared: filters of
 /// second order and contacts that ring leave more.
 inline constexpr double kTailLeft = 1.6, kTailModel = 0.01;
+/// Samples from which a jump is drawn out, what noise may leave of it, and rise times the corner of a low-pass.
+inline constexpr double kDrawnOut = 4, kDrawnNoise = 0.05, kRiseOfLowPass = 0.35;
 
 // ---- v_r as measured
 
@@ -269,15 +270,14 @@ inline constexpr double kHalvesAgree = 0.3, kHalfOfMean = 0.5;
 /// Part of the gain that may be lost at the fastest, and how nearly the plateau is omega r where slips alone are read
 /// wrongly, over what the block would move on average.
 inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
-/// Above this part what another characteristic would do to alpha and mu_k is some per cent of them.
-inline constexpr double kSureOfCompression = 0.12;
+inline constexpr double kSureOfCompression = 0.12;  // above it another characteristic moves alpha by some per cent
 /// Of the part, its standard error for not knowing the characteristic: of third order it may be or of any other.
 inline constexpr double kOtherCharacteristic = 0.1;
 
 // ---- steps of the disc's speed
 
-/// A step over the speed, which the settled disc does not exceed; over the scatter of the plateaus on either side, and
-/// over their trend (a ripple or a drift moves within either side by half of what it moves between them).
+/// A step over the speed; over the scatter of the plateaus on either side, and over their trend (a ripple or a drift
+/// moves within either side by half of what it moves between them).
 inline constexpr double kLeastStep = 2 * kSettled, kClearStep = 8, kSteepStep = 4;
 /// Part of the record beside the plateaus of one level in which others are looked for.
 inline constexpr double kStepPart = 0.1;

@@ -149,6 +149,7 @@ void MotionStages::find_friction_filter() {
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step);
   motion_.friction_low_pass = found.tau;
+  friction_fall_ = found.fall;
   // A filter that holds its input for a sample is half of one early.
   const bool holds = found.tau.any() && std::abs(found.early) < kHeldInput;
   if (holds) follow_clock(trace_.velocity, 0, -found.early, low_pass_.resticks);

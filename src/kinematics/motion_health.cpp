@@ -7,6 +7,7 @@
 #include "limits.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -54,6 +55,7 @@ void MotionStages::check_health() {
       kinematics::check_run_up(motion_, options_.trim, run_up_),
       check_level(),
       kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
+      kinematics::check_friction_zero(motion_),
   };
 }
 
@@ -73,6 +75,13 @@ HealthItem MotionStages::check_band() const {
         !steps_.friction_repeats  ? "the velocity repeats values"
         : steps_.velocity_repeats ? "friction and velocity repeat values"
                                   : "friction repeats values");
+  }
+  if (friction_fall_ > 0) {
+    item.status = std::max(item.status, HealthItem::Status::warning);
+    item.message += fmt::format(
+        "; friction takes {:.2g} ms to fall at re-stick: behind a low-pass at about {}, or from a contact that yields; "
+        "what a filter of higher order rounds off (mu_s, alpha) is not corrected but for its delay",
+        1e3 * friction_fall_, frequency_text(kRiseOfLowPass / friction_fall_));
   }
   const std::vector<StickPlateau>& runs = search_.plateaus.runs;
   std::vector<double> slips;

@@ -85,7 +85,8 @@ class MotionStages {
   LostSamples jumps_;    ///< of the velocity as recorded
   Estimate zero_drift_;  ///< that was taken off v_b [m/s^2]
   BlockZero zero_;
-  LowPass low_pass_;  ///< of the velocity as recorded
+  LowPass low_pass_;          ///< of the velocity as recorded
+  double friction_fall_ = 0;  ///< see FrictionLowPass::fall
   ClockDriftEstimate clocks_;
   std::vector<SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
   RippleEstimate ripple_;

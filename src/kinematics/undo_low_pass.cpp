@@ -114,6 +114,28 @@ Evidence evidence_of(const std::vector<Tail>& tails, double tau) {
   return {onset, holds};
 }
 
+/// From a tenth to nine tenths of the jump at re-stick, of the mean over the slips [samples]; 0: less than kDrawnOut,
+/// or noise hides it.
+double fall_at_restick(const std::vector<Tail>& tails) {
+  const std::size_t length = tails.front().friction.size(), half = length / 2;
+  std::vector<double> left(length, 0);  // of the jump
+  for (const Tail& tail : tails) {
+    const StraightLine line = fit_line(tail.friction.subspan(half));
+    for (std::size_t i = 0; i < length; ++i) {
+      const double after = line.at(static_cast<double>(i) - static_cast<double>(half));
+      left[i] += (tail.friction[i] - after) / (tail.before - after) / static_cast<double>(tails.size());
+    }
+  }
+  double noise = 0;
+  for (std::size_t i = half; i < length; ++i) noise = std::max(noise, std::abs(left[i]));
+  if (!(noise < kDrawnNoise)) return 0;
+  std::size_t from = 0, to = length;
+  while (to > 0 && left[to - 1] < 0.1) --to;
+  while (from < to && left[from] > 0.9) ++from;
+  const auto fall = static_cast<double>(to - from);
+  return fall > kDrawnOut ? fall : 0;
+}
+
 }  // namespace
 
 std::size_t undo_low_pass(std::span<double> velocity, double tau, double step, double noise, double fastest) {
@@ -144,7 +166,7 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   };
   const double tau = refined([&](double t) { return squares_left(tails, t); });
   const Evidence evidence = evidence_of(tails, tau);
-  if (best == kTailFirst || !evidence.is_first_order) return {};
+  if (best == kTailFirst || !evidence.is_first_order) return {{}, 0, fall_at_restick(tails) * step};
   std::vector<double> taus;
   for (const Tail& tail : tails) taus.push_back(refined([&](double t) { return fit_decay(tail, t).squares; }));
   const double scatter = kSigmaPerMad * median_absolute_deviation(taus, median(taus));

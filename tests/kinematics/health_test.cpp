@@ -36,7 +36,7 @@ truth::Rig long_rig() {
   return rig;
 }
 
-TEST(Health, SoundRecordHasTenChecksAndNoComplaint) {
+TEST(Health, SoundRecordHasElevenChecksAndNoComplaint) {
   const Motion motion = compute_motion(truth::simulate(long_rig()).trace);
   std::vector<std::string> names;
   for (const HealthItem& i : motion.health) {
@@ -44,8 +44,9 @@ TEST(Health, SoundRecordHasTenChecksAndNoComplaint) {
     EXPECT_EQ(i.status, Status::ok) << i.check << ": " << i.message;
     EXPECT_FALSE(i.message.empty());
   }
-  EXPECT_THAT(names, ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay",
-                                 "revolutions", "speed-ripple", "run-up", "plateau-speed", "resolution"));
+  EXPECT_THAT(names,
+              ElementsAre("clipping", "drop-outs", "sagging-plateau", "bandwidth", "channel-delay", "revolutions",
+                          "speed-ripple", "run-up", "plateau-speed", "resolution", "friction-zero"));
 }
 
 TEST(Health, ClippedVelocity) {

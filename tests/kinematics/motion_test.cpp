@@ -248,7 +248,7 @@ TEST(Motion, DegenerateRecordsAreNoAccident) {
       trace.conditions.speed = {0.4, "file"};
       const Motion motion = compute_motion(trace);
       EXPECT_EQ(motion.size(), n);
-      EXPECT_EQ(motion.health.size(), 10u);
+      EXPECT_EQ(motion.health.size(), 11u);
       EXPECT_NEAR(motion.relative_velocity.back(), 0.006 - v, 1e-15);
     }
   }

@@ -185,5 +185,55 @@ TEST(Recorders, FrictionThatLevelsOffIsClipped) {
   }
 }
 
+/// Cubics from value to value, as splines are.
+TEST(Recorders, ValuesBetweenWhichSplinesAreDrawnAreUsedOnce) {
+  const Trace sound = recorded(3);
+  for (const std::size_t count : {5U, 10U}) {
+    Trace trace = sound;
+    for (std::size_t i = count; i + 2 * count < trace.size(); ++i) {  // Catmull and Rom's
+      const std::size_t knot = i - i % count;
+      const double u = static_cast<double>(i % count) / static_cast<double>(count);
+      for (const auto channel : {&Trace::velocity, &Trace::friction}) {
+        const std::vector<double>& x = sound.*channel;
+        const double a = x[knot - count], b = x[knot], c = x[knot + count], d = x[knot + 2 * count];
+        (trace.*channel)[i] = b + 0.5 * u * (c - a + u * (2 * a - 5 * b + 4 * c - d + u * (3 * (b - c) + d - a)));
+      }
+    }
+    const Motion motion = compute_motion(std::move(trace));
+    EXPECT_NEAR(static_cast<double>(motion.size() + motion.trimmed),
+                static_cast<double>(sound.size()) / static_cast<double>(count), 2)
+        << count;
+  }
+}
+
+/// Friction behind four poles takes its time at re-stick, where a contact's jumps; a delay does not draw it out.
+TEST(Recorders, AFilterOfHigherOrderDrawsTheJumpOut) {
+  Trace trace = recorded(5), late = recorded(5);
+  for (int pole = 0; pole < 4; ++pole) {
+    double y = trace.friction[0];
+    for (double& mu : trace.friction) mu = y += 0.1 * (mu - y);  // 300 Hz each
+  }
+  std::rotate(late.friction.begin(), late.friction.end() - 20, late.friction.end());
+  const std::string text = "to fall at re-stick";
+  EXPECT_THAT(item(compute_motion(std::move(trace)), "bandwidth").message, HasSubstr(text));
+  EXPECT_THAT(item(compute_motion(std::move(late)), "bandwidth").message, Not(HasSubstr(text)));
+  for (const double rpm : {1.0, 4.0, 20.0})
+    EXPECT_THAT(item(compute_motion(recorded(5, rpm)), "bandwidth").message, Not(HasSubstr(text))) << rpm;
+}
+
+/// A friction channel that passes no constant: negative in slip, while its sign is right.
+TEST(Recorders, FrictionThatIsNegativeInSlipIsAProblem) {
+  for (const int sign : {1, -1}) {
+    Trace trace = recorded(8, 20);
+    double mean = 0;
+    for (const double mu : trace.friction) mean += mu / static_cast<double>(trace.size());
+    for (double& mu : trace.friction) mu = sign * mu;
+    EXPECT_EQ(item(compute_motion(trace), "friction-zero").status, HealthItem::Status::ok);
+    if (sign < 0) continue;
+    for (double& mu : trace.friction) mu -= mean;
+    EXPECT_EQ(item(compute_motion(std::move(trace)), "friction-zero").status, HealthItem::Status::problem);
+  }
+}
+
 }  // namespace
 }  // namespace tribofit::recorders

@@ -9,11 +9,11 @@ namespace tribofit {
 /// Offset between the clocks of two instruments, one of which recorded friction and the other the velocity of the
 /// block.
 ///
-/// It is the offset at which friction is best balanced by the motion, N mu = m a + c v + k x, which holds for any law of
-/// friction in stick and in slip, and for either sign of a channel. First every offset is compared, of means over a few
-/// samples; then the time that both share is divided into parts, each with its own offset, and a straight line through
-/// them gives the offset in the middle of that time and the drift of one clock against the other (to 300 ppm); their
-/// scatter about the line gives the standard errors, with a part of a sample of friction, between two of which it
+/// It is the offset at which friction is best balanced by the motion, N mu = m a + c v + k x, which holds for any law
+/// of friction in stick and in slip, and for either sign of a channel. First every offset is compared, of means over a
+/// few samples; then the time that both share is divided into parts, each with its own offset, and a straight line
+/// through them gives the offset in the middle of that time and the drift of one clock against the other (to 300 ppm);
+/// their scatter about the line gives the standard errors, with a part of a sample of friction, between two of which it
 /// jumps. A lag or delay of friction behind velocity is not distinguishable from an offset and is absorbed in it.
 ///
 /// An offset is taken where it leaves clearly less of friction than any other a period or more beside: the scatter of

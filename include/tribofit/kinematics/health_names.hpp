@@ -18,11 +18,12 @@ inline constexpr const char* kSpeedRipple = "speed-ripple";
 inline constexpr const char* kRunUp = "run-up";
 inline constexpr const char* kPlateauSpeed = "plateau-speed";
 inline constexpr const char* kResolution = "resolution";
+inline constexpr const char* kFrictionZero = "friction-zero";
 inline constexpr const char* kCopies = "copies";  ///< of points
 
 /// Whether the values of a fit depend on what this check says: it bears on velocity or friction themselves.
 constexpr bool bears_on_values(std::string_view check) {
-  constexpr std::array<std::string_view, 6> kBearing = {kPlateauSpeed, kSpeedRipple, kChannelDelay,
+  constexpr std::array<std::string_view, 7> kBearing = {kPlateauSpeed, kSpeedRipple, kChannelDelay, kFrictionZero,
                                                         kClipping,     kDropOuts,    kResolution};
   return std::find(kBearing.begin(), kBearing.end(), check) != kBearing.end();
 }

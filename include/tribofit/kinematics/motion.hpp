@@ -85,6 +85,7 @@ struct Motion {
   double plateau_velocity = 0;  ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
   double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
   double high_pass_std_error = 0;      ///< [Hz]
+  bool friction_drives = false;        ///< it is negative in slip though its sign is right: its zero is not
   UndoneDistortion velocity_zero;      ///< that was taken off v_b [m/s]
   UndoneDistortion velocity_low_pass;  ///< time constant of a first-order low-pass that was undone [s]
   /// The same of friction [s], which stays as it was read: a law is evaluated and then filtered.
