@@ -239,7 +239,10 @@ std::vector<SampleSpan> find_excursions(std::span<const double> v, std::span<con
     while (end < last && std::abs(v[end] - v[end - 1]) < kExcursionQuiet * std::abs(jump)) ++end;
     const bool returns = std::abs(v[end] - v[i - 1]) < kExcursionBack * std::abs(jump) && end > i + 1 &&
                          std::abs(v[end] - v[end - 1]) > (1 - kExcursionBack) * std::abs(jump);
-    if (!returns || std::abs(friction[end] - friction[i - 1]) > motion) continue;
+    if (!returns) continue;
+    const std::size_t after = std::min(friction.size(), end + 3);
+    const auto [low, high] = std::ranges::minmax(friction.subspan(i - 2, after - i + 2));
+    if (high - low > motion) continue;  // a slip of few samples
     excursions.push_back({i, end});
     i = end;
   }
