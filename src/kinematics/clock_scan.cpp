@@ -111,7 +111,7 @@ std::vector<std::size_t> lowest_of(const std::vector<double>& left, std::size_t 
 }  // namespace
 
 TimedChannel binned(const TimedChannel& channel, double width) {
-  const auto& [time, value] = channel;
+  const std::vector<double>&time = channel.time, &value = channel.value;
   const auto place = [&](double t) { return static_cast<std::size_t>((t - time.front()) / width + 0.5); };
   const std::size_t n = place(time.back()) + 1;
   std::vector<double> sums(n), counts(n);
@@ -138,7 +138,9 @@ double evidence_of(double unbalanced, double usual, std::size_t cycles) {
 }
 
 ClockScan scan_clocks(const ScannedChannels& channels, std::size_t from, std::size_t to) {
-  const auto& [width, friction, velocity, jumps, period] = channels;
+  const TimedChannel &friction = channels.friction, &velocity = channels.velocity;
+  const std::vector<double>& jumps = channels.jumps;
+  const double width = channels.width, period = channels.period;
   std::vector<double> deviation(friction.value.begin() + static_cast<std::ptrdiff_t>(from),
                                 friction.value.begin() + static_cast<std::ptrdiff_t>(to));
   const double level = mean_of(deviation);

@@ -170,8 +170,8 @@ TEST(Recorders, FrictionThatLevelsOffIsClipped) {
       EXPECT_NE(item(compute_motion(std::move(trace)), "clipping").status, HealthItem::Status::ok) << rpm;
     }
   }
-  for (const double rpm : {0.5, 1.0, 2.0, 4.0, 8.0, 12.0}) {
-    for (const double noise : {3e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
+  for (const double rpm : {1.0, 4.0, 12.0}) {
+    for (const double noise : {3e-5, 3e-4, 3e-3}) {
       for (const bool flat : {false, true}) {
         truth::Rig rig;
         rig.duration = 8;
