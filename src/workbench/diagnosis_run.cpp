@@ -45,11 +45,13 @@ bool DiagnosisRun::begin(const TraceInput& input, const IdentifyOptions& options
   if (status_.state == WorkbenchDiagnosis::State::running) return false;
   if (thread_.joinable()) thread_.join();  // it has said its last word
   status_ = {};
+  cancelled_ = false;
+  // May throw where the machine gives no more threads: then nothing runs. The thread waits for the mutex before it
+  // reports.
+  thread_ = std::thread([this, input, options, part] { run(input, options, part); });
   status_.state = WorkbenchDiagnosis::State::running;
   status_.command = command;
   status_.doing = "reading slips";
-  cancelled_ = false;
-  thread_ = std::thread([this, input, options, part] { run(input, options, part); });
   return true;
 }
 
