@@ -143,9 +143,11 @@ void claim_results(const Campaign& campaign, const BatchOptions& batch) {
                      "name another folder with --out, or recompute them with --again", {batch.results, 0, ""});
   }
   for (const Run& run : campaign.runs) {
-    if (!fs::exists(result_path(batch.results, run.name), ignored)) continue;
-    throw InputError("exists and is not a result of a campaign", "name another folder with --out",
-                     {result_path(batch.results, run.name), 0, ""});
+    const std::string path = result_path(batch.results, run.name);
+    if (!fs::exists(path, ignored)) continue;
+    const auto known = read_record(path);  // of a batch that ran on while its folder was being removed
+    if (known && known->file == run.file) continue;
+    throw InputError("exists and is not a result of a campaign", "name another folder with --out", {path, 0, ""});
   }
 }
 

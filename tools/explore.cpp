@@ -1,4 +1,5 @@
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -146,13 +148,31 @@ sigset_t hold_back_signals() {
   return set;
 }
 
+/// Many connections at a time need as many descriptors, of which most systems allow more than they give unasked.
+void allow_many_connections() {
+  constexpr rlim_t kDescriptors = 4096;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kDescriptors) return;
+  limit.rlim_cur = std::min(limit.rlim_max, kDescriptors);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+template <class Work>
+std::thread started(Work&& work) {
+  try {
+    return std::thread(std::forward<Work>(work));
+  } catch (const std::system_error&) {
+    throw std::runtime_error("the system starts no further thread; end other programs, or allow more (ulimit -u)");
+  }
+}
+
 /// Serves until a signal comes. Throws where the server ends by itself.
 void serve(WorkbenchServer& server) {
   const sigset_t signals = hold_back_signals();
   std::mutex mutex;
   std::condition_variable over;
   bool ended = false;
-  std::thread answering([&] {
+  std::thread answering = started([&] {
     server.run();
     {
       const std::lock_guard lock(mutex);
@@ -191,6 +211,7 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   }
   WorkbenchSession session(options_for(s, arguments));
   if (!saved.empty()) session.load(saved, s.session);
+  allow_many_connections();
   WorkbenchServer server(session, s.port);
   print("The workbench for " + session.trace().path + " is at\n\n  " + server.address() +
         "\n\nOpen it in a browser on this machine. Ctrl-C ends it.\n");

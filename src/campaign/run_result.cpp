@@ -191,6 +191,9 @@ auto read_line(const std::string& path, std::string_view begins, Read&& read) ->
 Json campaign_object(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / campaign_name).string();
   std::error_code ignored;
+  // On a network file system this asks the server what is there now: without, what was looked for in vain a moment ago
+  // stays missing for a while.
+  const std::filesystem::directory_iterator asked_anew(folder, ignored);
   if (!std::filesystem::exists(path, ignored)) {
     throw InputError("holds no results of a campaign (there is no campaign.json)",
                      "name the folder given to --out, or make it: identify runs/ --out " + folder, {folder, 0, ""});

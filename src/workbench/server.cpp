@@ -1,20 +1,18 @@
 #include "tribofit/workbench/server.hpp"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "answers.hpp"
 #include "choice_json.hpp"
+#include "connections.hpp"
 #include "guard.hpp"
 #include "served_page.hpp"
 #include "tribofit/report/page.hpp"
@@ -29,7 +27,7 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kJson = "application/json";
 /// What the library does not compress: on loopback that takes a second and saves nothing.
 constexpr const char* kUncompressed = "application/json; charset=utf-8";
-constexpr std::size_t kLargestBody = 256 * 1024, kThreads = 16, kMostPages = 256, kLongestName = 64;
+constexpr std::size_t kLargestBody = 256 * 1024, kMostPages = 256, kLongestName = 64;
 enum Status {
   kDone = 200,
   kForbidden = 403,
@@ -62,11 +60,11 @@ struct WorkbenchServer::State {
   explicit State(WorkbenchSession& given) : session(given) {}
 
   WorkbenchSession& session;
-  httplib::Server http;
+  LoopbackServer http;
   std::string token = fresh_token();
   int port = 0;
   ServedPage page;
-  std::atomic<bool> running{false}, stopping{false};
+  std::atomic<bool> stopping{false};
   std::mutex mutex;
   std::map<std::string, double> newest;  ///< turn of each page
 
@@ -178,13 +176,7 @@ void WorkbenchServer::State::add_handlers() {
 WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(std::make_unique<State>(session)) {
   State& s = *state_;
   s.page = served_page(session.trace().path);
-  s.http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };  // owned by the server
-  s.http.set_keep_alive_max_count(1);  // idle connections would hold a thread each
-  s.http.set_keep_alive_timeout(1);
-  s.http.set_read_timeout(1);
-  s.http.set_write_timeout(5);
   s.http.set_payload_max_length(kLargestBody);
-  s.http.set_tcp_nodelay(true);
   s.http.set_socket_options([](socket_t) {});  // by default it would share its port
   s.http.set_default_headers({{"Content-Security-Policy", s.page.policy},
                               {"X-Content-Type-Options", "nosniff"},
@@ -238,19 +230,14 @@ const std::string& WorkbenchServer::token() const {
 }
 
 void WorkbenchServer::run() {
-  State& s = *state_;
-  s.running = true;
-  if (!s.stopping) s.http.listen_after_bind();
-  s.running = false;
+  state_->http.serve();
 }
 
 void WorkbenchServer::stop() {
   State& s = *state_;
   if (s.stopping.exchange(true)) return;
   s.session.cancel_diagnosis();
-  // What has not begun to listen does not hear that it shall stop.
-  while (s.running && !s.http.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  s.http.stop();
+  s.http.end();
 }
 
 }  // namespace tribofit

@@ -85,6 +85,21 @@ TEST_F(Shards, WorkToThePlanOfTheFirst) {
   EXPECT_THAT(shop_.identify("merge res").out, HasSubstr("8 fitted, 0 failed, 0 missing"));
 }
 
+/// Who removes a folder while a batch writes into it may leave results without the list of runs.
+TEST_F(Shards, ResultsThatLostTheirPlanAreTakenUp) {
+  ASSERT_EQ(shop_.identify("runs --out local --quiet").status, 0);
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  std::filesystem::remove(shop_ / "res/campaign.json");
+  EXPECT_THAT(shop_.identify("runs --out res").out, HasSubstr("0 fitted, 7 already there"));
+  EXPECT_EQ(files_in(shop_ / "res"), files_in(shop_ / "local"));
+  std::filesystem::remove(shop_ / "res/campaign.json");
+  shop_.write("res/a3.json", "{\"mine\": 1}\n");
+  const Outcome other = shop_.identify("runs --out res");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.err, HasSubstr("a3.json: exists and is not a result of a campaign"));
+  EXPECT_EQ(contents(shop_ / "res/a3.json"), "{\"mine\": 1}\n");
+}
+
 TEST_F(Shards, AFolderWithoutACampaignIsNamed) {
   const Outcome outcome = shop_.identify("merge runs");
   EXPECT_EQ(outcome.status, 3);

@@ -24,5 +24,6 @@ void read_session_bytes(std::string_view bytes);
 void read_earlier_bytes(std::string_view bytes);
 void read_results_bytes(std::string_view bytes);  ///< of one run
 void read_campaign_bytes(std::string_view bytes);
+void read_map_bytes(std::string_view bytes);  ///< rows of a map that was interrupted
 
 }  // namespace tribofit::fuzz

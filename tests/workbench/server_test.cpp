@@ -1,11 +1,7 @@
 #include "tribofit/workbench/server.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +13,7 @@
 #include <thread>
 
 #include "lagging.hpp"
+#include "running_server.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/page.hpp"
 #include "workbench/guard.hpp"
@@ -27,69 +24,9 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::json;
+using workbench_test::kType;
 using workbench_test::lagging;
-
-constexpr const char* kType = "application/json";
-
-/// A server with its session and a thread that runs it.
-class Server : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!has_report_page()) GTEST_SKIP() << "this build has no page";
-    session.emplace(lagging().options());
-    server.emplace(*session, 0);
-    thread = std::thread([this] { server->run(); });
-    for (int k = 0; k < 100 && !client().Get(page()); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  void TearDown() override {
-    if (!server) return;
-    server->stop();
-    thread.join();
-  }
-
-  httplib::Client client() const {
-    httplib::Client made("127.0.0.1", server->port());
-    made.set_read_timeout(60);
-    return made;
-  }
-  std::string page() const { return "/?token=" + server->token(); }
-  httplib::Headers headers(httplib::Headers more = {}) const {
-    more.emplace("X-Workbench-Token", server->token());
-    return more;
-  }
-  int status_of(const std::string& path, const httplib::Headers& sent) const {
-    const auto answer = client().Get(path, sent);
-    return answer ? answer->status : 0;
-  }
-  static std::string asked(const std::string& choice, int turn = 1, const std::string& name = "p") {
-    return R"({"page":")" + name + R"(","turn":)" + std::to_string(turn) + R"(,"choice":)" + choice + "}";
-  }
-  httplib::Result show(const std::string& choice, int turn = 1, const std::string& name = "p") const {
-    return client().Post("/api/show", headers(), asked(choice, turn, name), kType);
-  }
-  /// Sends bytes as they are, for what no client would send; the first line of the answer.
-  std::string raw(const std::string& request) const {
-    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(server->port()));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    std::string answer;
-    if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-      [[maybe_unused]] const auto sent = ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
-      char buffer[4096];
-      for (ssize_t n = 0; (n = ::recv(socket, buffer, sizeof buffer, 0)) > 0;) {
-        answer.append(buffer, static_cast<std::size_t>(n));
-      }
-    }
-    ::close(socket);
-    return answer.substr(0, answer.find("\r\n"));
-  }
-
-  std::optional<WorkbenchSession> session;
-  std::optional<WorkbenchServer> server;
-  std::thread thread;
-};
+using Server = workbench_test::RunningServer;
 
 TEST_F(Server, shows_a_model_and_its_error) {
   const auto bare = show(R"({"law":"exponential"})"),
