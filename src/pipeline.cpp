@@ -17,6 +17,12 @@ namespace tribofit {
 
 namespace {
 
+Trace read_file(const TraceInput& input, const IdentifyOptions& options) {
+  ReadOptions read = with_declared_conditions(input.read, options.instruments);
+  read.clock_offset = estimate_clock_offset;
+  return read_trace(input.path, read);
+}
+
 /// What a trace is read for.
 enum class Purpose { law, rig };
 
@@ -25,7 +31,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
                        Purpose purpose) {
   Identification out;
   out.path = input.path;
-  Trace trace = *read_input(input, options);
+  Trace trace = input.trace ? *input.trace : read_file(input, options);
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
@@ -62,10 +68,7 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
 }
 
 std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options) {
-  if (input.trace) return input.trace;
-  ReadOptions read = with_declared_conditions(input.read, options.instruments);
-  read.clock_offset = estimate_clock_offset;
-  return std::make_shared<const Trace>(read_trace(input.path, read));
+  return input.trace ? input.trace : std::make_shared<const Trace>(read_file(input, options));
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {

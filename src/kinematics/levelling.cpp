@@ -70,11 +70,15 @@ struct Crowd {
   double density = 0, from = 0;
 };
 
-Crowd find_crowd(std::span<const double> x, const Extremes& range) {
+/// sign: -1 looks at the lower end, of a range that is turned over, too.
+Crowd find_crowd(std::span<const double> x, const Extremes& range, double sign) {
   std::vector<std::size_t> counts(kClipBins, 0);  // from the end of the range inwards
   const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
-  for (const double value : x)
-    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((range.high - value) * scale))];
+  const double looked_at = (5 * static_cast<double>(kClipBins / kNarrowestRange) + 1) / scale;
+  for (const double value : x) {
+    const double below = range.high - sign * value;
+    if (below < looked_at) ++counts[std::min(kClipBins - 1, static_cast<std::size_t>(below * scale))];
+  }
   Crowd best;
   const auto sum = [&](std::size_t from, std::size_t to) {
     return std::accumulate(counts.begin() + static_cast<std::ptrdiff_t>(from),
@@ -96,12 +100,12 @@ Crowd find_crowd(std::span<const double> x, const Extremes& range) {
 PileUp find_levelling(std::span<const double> friction, std::span<const double> velocity, bool upper) {
   PileUp pile;
   if (friction.size() < kFewestDistributed || friction.size() != velocity.size()) return pile;
+  const Extremes whole = extremes(friction), range = upper ? whole : Extremes{-whole.high, -whole.low};
+  if (!(range.high > range.low)) return pile;
+  const Crowd crowd = find_crowd(friction, range, upper ? 1 : -1);
+  if (crowd.density < kCrowdedQuiet) return pile;
   std::vector<double> x(friction.begin(), friction.end());
   if (!upper) std::ranges::transform(x, x.begin(), std::negate());
-  const Extremes range = extremes(x);
-  if (!(range.high > range.low)) return pile;
-  const Crowd crowd = find_crowd(x, range);
-  if (crowd.density < kCrowdedQuiet) return pile;
   const std::vector<SampleSpan> spans = spans_at_limit(x, crowd.from, range.high);
   if (!levels_off(x, velocity, spans)) return pile;
   pile.levels_off = true;

@@ -132,10 +132,11 @@ double noise_within(std::span<const double> x, double from, double to) {
   std::vector<double> inside, outside;
   const auto is_inside = [&](std::size_t i) { return x[i] >= from && x[i] <= to; };
   const std::size_t stride = std::max<std::size_t>(1, x.size() / kValuesForSteps);
+  std::size_t next = stride;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
-    const bool in = is_inside(i) && is_inside(i - 1) && is_inside(i + 1);
-    if (in ? inside.size() < kValuesForSteps : i % stride == 0)
-      (in ? inside : outside).push_back(std::abs(off_line(x, i)));
+    const bool in = is_inside(i) && is_inside(i - 1) && is_inside(i + 1), is_next = i == next;
+    if (is_next) next += stride;
+    if (in ? inside.size() < kValuesForSteps : is_next) (in ? inside : outside).push_back(std::abs(off_line(x, i)));
   }
   return ratio_of_noise(std::move(inside), std::move(outside));
 }
@@ -152,31 +153,46 @@ double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stre
   return ratio_of_noise(std::move(inside), std::move(all));
 }
 
-/// What a good part of the parts of a record reach. The first pull on a rig that was slack passes through the rest of
-/// the range once: beside that, all of a small drop of friction looks like one level.
-Extremes often_reached(std::span<const double> x) {
+struct Reach {
+  Extremes all, often;
+};
+
+/// What a record reaches, and what a good part of its parts do. The first pull on a rig that was slack passes through
+/// the rest of the range once: beside that, all of a small drop of friction looks like one level.
+Reach reach_of(std::span<const double> x) {
   std::vector<double> low, high;
   const std::size_t length = x.size() / kPartsOfRange;
+  Extremes all{x[0], x[0]};
+  const auto look_at = [&](std::span<const double> part) {
+    const Extremes reached = extremes(part);
+    all = {std::min(all.low, reached.low), std::max(all.high, reached.high)};
+    return reached;
+  };
   for (std::size_t k = 0; k < kPartsOfRange; ++k) {
-    const Extremes part = extremes(x.subspan(k * length, length));
+    const Extremes part = look_at(x.subspan(k * length, length));
     low.push_back(part.low), high.push_back(part.high);
   }
-  return {quantile(std::move(low), kReachIt), quantile(std::move(high), 1 - kReachIt)};
+  if (const auto rest = x.subspan(kPartsOfRange * length); !rest.empty()) look_at(rest);
+  return {all, {quantile(std::move(low), kReachIt), quantile(std::move(high), 1 - kReachIt)}};
 }
 
-/// What crowds at an end of a range, counted from there inwards.
-PileUp pile_up(std::span<const double> x, const Extremes& range, bool upper) {
+/// What crowds at an end of a range, counted from there inwards; without its noise and where it is.
+PileUp crowd_at(std::span<const double> x, const Extremes& range, bool upper) {
   if (!(range.high > range.low)) return {};
   std::vector<std::size_t> counts(kClipBins, 0);
   const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
+  const double bin = (range.high - range.low) / static_cast<double>(counts.size());
+  constexpr std::size_t kWidest = kClipBins / kNarrowestRange;
+  // Most values are in bins that are not looked at.
+  const double looked_at = (4 * static_cast<double>(kWidest) + 1) * bin;
+  const double first = upper ? range.high - looked_at : range.low, last = upper ? range.high : range.low + looked_at;
   for (const double value : x) {
-    if (value < range.low || value > range.high) continue;
-    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((value - range.low) * scale))];
+    if (value < first || value > last) continue;
+    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>(std::max(0.0, value - range.low) * scale))];
   }
   PileUp best;
-  const double bin = (range.high - range.low) / static_cast<double>(counts.size());
   double width = 0;
-  for (std::size_t w = 1; w <= counts.size() / kNarrowestRange; w *= 2) {
+  for (std::size_t w = 1; w <= kWidest; w *= 2) {
     std::size_t within = 0, below = 0;
     for (std::size_t k = 0; k < 4 * w; ++k) (k < w ? within : below) += counts[upper ? counts.size() - 1 - k : k];
     if (within < std::max(kFewestClipped, x.size() / kOneClippedIn)) continue;
@@ -190,10 +206,14 @@ PileUp pile_up(std::span<const double> x, const Extremes& range, bool upper) {
   const double from = upper ? range.high - width : range.low, to = upper ? range.high : range.low + width;
   best.level = 0.5 * (from + to);
   best.from = from, best.to = to;
-  best.is_quiet = noise_within(x, from, to) < kQuiet;
-  best.spans = spans_at_limit(x, from, to);
-  best.is_still = noise_over(x, best.spans) < kQuiet;
   return best;
+}
+
+/// At the low and the high end.
+std::array<PileUp, 2> find_crowds(std::span<const double> x) {
+  if (x.size() < kFewestDistributed) return {};
+  const auto [all, often] = reach_of(x);
+  return {crowd_at(x, {all.low, often.high}, false), crowd_at(x, {often.low, all.high}, true)};
 }
 
 }  // namespace
@@ -282,9 +302,15 @@ std::vector<SampleSpan> spans_at_limit(std::span<const double> x, double from, d
 }
 
 std::array<PileUp, 2> find_pile_ups(std::span<const double> channel) {
-  if (channel.size() < kFewestDistributed) return {};
-  const Extremes all = extremes(channel), often = often_reached(channel);
-  return {pile_up(channel, {all.low, often.high}, false), pile_up(channel, {often.low, all.high}, true)};
+  std::array<PileUp, 2> piles = find_crowds(channel);
+  for (PileUp& pile : piles) {
+    if (pile.count == 0) continue;
+    pile.is_quiet = noise_within(channel, pile.from, pile.to) < kQuiet;
+    if (!pile.is_quiet && pile.density < kCrowdedAlone) continue;  // nothing holds it
+    pile.spans = spans_at_limit(channel, pile.from, pile.to);
+    pile.is_still = noise_over(channel, pile.spans) < kQuiet;
+  }
+  return piles;
 }
 
 namespace {
@@ -306,7 +332,7 @@ std::vector<SampleSpan> runs_within(std::span<const double> x, double from, doub
 std::array<PileUp, 2> find_smoothed_pile_ups(std::span<const double> channel) {
   std::array<PileUp, 2> found;
   const std::vector<double> means = block_means(channel, kSmoothedOver, 1).mean;
-  const std::array<PileUp, 2> piles = find_pile_ups(means);
+  const std::array<PileUp, 2> piles = find_crowds(means);
   for (std::size_t k = 0; k < 2; ++k) {
     if (piles[k].density < kCrowdedSmoothed) continue;
     PileUp pile = piles[k];
@@ -329,7 +355,7 @@ double find_slew_limit(std::span<const double> channel) {
   std::vector<double> changes(channel.size() - 1);
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i] = channel[i + 1] - channel[i];
   const double step = find_resolution(channel);
-  for (const PileUp& pile : find_pile_ups(changes)) {
+  for (const PileUp& pile : find_crowds(changes)) {
     if (pile.density < kCrowdedAlone || std::abs(pile.level) < kSlewSteps * step) continue;
     const double reach = kSlewWidth * std::abs(pile.level);
     std::size_t samples = 0;

@@ -7,12 +7,10 @@
 #include <condition_variable>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
-
-#include "fccp.hpp"
 
 #include "ingest/huge_pages.hpp"
 #include "ingest/limits.hpp"
@@ -49,32 +47,26 @@ struct Chunk {
   }
 };
 
-/// Feeds a stretch of a file to io::LineReader, which reads it straight into its own buffer.
-class ChunkSource : public io::ByteSourceBase {
+/// The lines of a text in memory, each ended by NUL in place of its line end.
+class TextLines {
  public:
-  ChunkSource(const InputFile& file, std::uint64_t begin, std::uint64_t end, Chunk& chunk)
-      : file_(file), at_(begin), end_(end), chunk_(chunk) {}
+  /// `text` has a byte more than `size`.
+  TextLines(char* text, std::size_t size) : at_(text), end_(text + size) {}
 
-  int read(char* buffer, int size) override {
-    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(static_cast<std::uint64_t>(size), end_ - at_));
-    const std::size_t count = file_.read(at_, {buffer, wanted});
-    // io::LineReader ends its lines with NUL, so that one in the file would cut a line unseen.
-    if (const void* zero = std::memchr(buffer, '\0', count)) {
-      const char* at = static_cast<const char*>(zero);
-      chunk_.wrong_line = 1 + static_cast<std::size_t>(std::count<const char*>(buffer, at, '\n'));
-      chunk_.defect =
-          RowParser::Defect{"the line holds a NUL byte", "the file is damaged here or binary; export it again", ""};
-      at_ = end_;
-      return static_cast<int>(at - buffer);  // the lines before may hold an earlier defect
-    }
-    at_ += count;
-    return static_cast<int>(count);
+  /// Null at the end.
+  char* next() {
+    if (at_ >= end_) return nullptr;
+    char* const line = at_;
+    char* end = static_cast<char*>(std::memchr(line, '\n', static_cast<std::size_t>(end_ - line)));
+    if (end == nullptr) end = end_;
+    at_ = end + 1;
+    if (end > line && end[-1] == '\r') --end;
+    *end = '\0';
+    return line;
   }
 
  private:
-  const InputFile& file_;
-  std::uint64_t at_, end_;
-  Chunk& chunk_;
+  char *at_, *end_;
 };
 
 class RowReader {
@@ -107,11 +99,12 @@ class RowReader {
 
  private:
   void work() {
-    Chunk chunk;  // reused: its memory is touched once
+    Chunk chunk;  // reused, as the text is: their memory is touched once
+    std::vector<char> text;
     for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
       chunk.clear(wanted_.size());
       try {
-        parse(i, chunk);
+        parse(i, text, chunk);
       } catch (...) {
         chunk.failure = std::current_exception();
       }
@@ -134,7 +127,7 @@ class RowReader {
     return i == 0 ? nominal : file_.line_start(std::min(nominal, dialect_.data_end), dialect_.data_end);
   }
 
-  void parse(std::size_t i, Chunk& chunk) const {
+  void parse(std::size_t i, std::vector<char>& text, Chunk& chunk) const {
     const std::uint64_t begin = chunk_begin(i);
     std::uint64_t end = begin;
     try {
@@ -144,7 +137,22 @@ class RowReader {
       return;
     }
     if (begin >= end) return;
-    parse_lines(begin, end, chunk);
+    const std::size_t size = read_text(begin, end, text, chunk);
+    parse_lines(text.data(), size, chunk);
+  }
+
+  /// The bytes of a chunk, up to a NUL that would cut a line unseen.
+  std::size_t read_text(std::uint64_t begin, std::uint64_t end, std::vector<char>& text, Chunk& chunk) const {
+    const auto wanted = static_cast<std::size_t>(end - begin);
+    if (text.size() < wanted + 1) text.resize(wanted + 1);
+    const std::size_t count = file_.read(begin, std::span(text).first(wanted));
+    const void* zero = std::memchr(text.data(), '\0', count);
+    if (zero == nullptr) return count;
+    const char* at = static_cast<const char*>(zero);
+    chunk.wrong_line = 1 + static_cast<std::size_t>(std::count<const char*>(text.data(), at, '\n'));
+    chunk.defect =
+        RowParser::Defect{"the line holds a NUL byte", "the file is damaged here or binary; export it again", ""};
+    return static_cast<std::size_t>(at - text.data());  // the lines before may hold an earlier defect
   }
 
   /// A line too long to be found the end of begins after the last line end of the chunk.
@@ -154,15 +162,14 @@ class RowReader {
     return 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
-  void parse_lines(std::uint64_t begin, std::uint64_t end, Chunk& chunk) const {
+  void parse_lines(char* text, std::size_t size, Chunk& chunk) const {
     RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal, dialect_.blocks_apart);
-    const auto estimate =
-        static_cast<std::size_t>(1.2 * static_cast<double>(end - begin) / std::max(2.0, dialect_.row_bytes));
+    const auto estimate = static_cast<std::size_t>(1.2 * static_cast<double>(size) / std::max(2.0, dialect_.row_bytes));
     for (auto& values : chunk.values) values.reserve(estimate);
-    io::LineReader lines("", std::make_unique<ChunkSource>(file_, begin, end, chunk));
+    TextLines lines(text, size);
     std::vector<double> row(wanted_.size());
     bool follows = false;  // the line before gave a row too
-    while (char* line = lines.next_line()) {
+    while (char* line = lines.next()) {
       ++chunk.lines;
       const RowParser::Outcome outcome = parser.parse(line, row.data());
       if (outcome == RowParser::Outcome::numbers) {

@@ -33,7 +33,7 @@ struct Rows {
 
 /// Reads the rows of the table in chunks of a megabyte, in parallel; only the `wanted` cells are converted.
 ///
-/// Lines are read by fast-cpp-csv-parser; cells are taken as text and converted exactly rounded. Blank lines are
+/// Cells are taken as text, quoted ones by fast-cpp-csv-parser, and converted exactly rounded. Blank lines are
 /// skipped; comments and lines of text are dropped, counted and, up to some thousands, kept. Cells that are empty, no
 /// number or not finite are NaN. Rows with too few or too many cells are refused with an InputError: the first one in
 /// the file, whatever the number of threads. The result does not depend on it either.
