@@ -188,7 +188,7 @@ PileUp crowd_at(std::span<const double> x, const Extremes& range, bool upper) {
   const double first = upper ? range.high - looked_at : range.low, last = upper ? range.high : range.low + looked_at;
   for (const double value : x) {
     if (value < first || value > last) continue;
-    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>(std::max(0.0, value - range.low) * scale))];
+    ++counts[std::min(kClipBins - 1, static_cast<std::size_t>((value - range.low) * scale))];
   }
   PileUp best;
   double width = 0;
@@ -344,7 +344,6 @@ std::array<PileUp, 2> find_smoothed_pile_ups(std::span<const double> channel) {
     }
     if (2 * blocks < pile.count) continue;
     pile.count = blocks * kSmoothedOver;
-    pile.is_quiet = false;
     found[k] = pile;
   }
   return found;

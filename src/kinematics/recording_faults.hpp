@@ -45,7 +45,8 @@ struct PileUp {
   bool is_quiet = false;          ///< the noise that the channel has elsewhere is not on it
   bool levels_off = false;        ///< see find_levelling()
   bool is_still = false;          ///< nor on the whole stretches, where what lies in the crowd was not picked for it
-  std::vector<SampleSpan> spans;  ///< the stretches at the limit, with the samples between them
+  std::vector<SampleSpan> spans;  ///< the stretches at the limit, with the samples between them; of a crowd that noise
+                                  ///< explains, none
 };
 
 /// The stretches between two values, with the samples between them that noise took out.

@@ -17,7 +17,7 @@ namespace {
 
 using workbench_test::kType;
 
-class AttackedServer : public workbench_test::RunningServer {};
+using AttackedServer = workbench_test::RunningServer;
 
 /// Megabytes of this process in memory.
 double resident() {
