@@ -12,6 +12,7 @@
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -41,7 +42,9 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
 
   out.motion = compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects));
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
+  stop_point();
   out.segmentation = find_cycles(out.motion);
+  stop_point();
   exclude(options.selection, out.motion, out.segmentation);
   if (out.motion.kind == RecordKind::force_only) out.force_statistics = force_statistics(out.motion);
   if (out.motion.kind == RecordKind::motion_only) out.friction_levels = friction_levels(out.motion, out.segmentation);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,8 +12,10 @@
 #include "inputs.hpp"
 #include "options.hpp"
 #include "results.hpp"
+#include "stated_value.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
@@ -129,6 +133,17 @@ Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& le
   return split;
 }
 
+/// The moment at which a time that begins now is over.
+std::optional<std::chrono::steady_clock::time_point> end_of(const std::string& time_limit) {
+  using Clock = std::chrono::steady_clock;
+  if (time_limit.empty()) return std::nullopt;
+  constexpr double kLongest = 1e8;  // s, three years
+  const double seconds = stated_value(time_limit, Quantity::time, "--time-limit");
+  if (!(seconds > 0 && seconds < kLongest))
+    throw InputError("--time-limit: '" + time_limit + "' is no time to work in", "give a time such as 10s or 2min");
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   if (s.traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
@@ -141,6 +156,7 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
   }
   DiagnoseOptions more;
   more.diagnosis.threads = s.threads;
+  more.diagnosis.until = end_of(s.time_limit);
   more.confirm = traces_of(split.kept);
   DiagnosedTraces result;
   {
@@ -177,6 +193,8 @@ void add_diagnose(const Command& app) {
                   "A run held back from the diagnosis to confirm the finding (repeatable)")
       .one_value_each()
       .group(section::kReading);
+  verb.add_option("--time-limit", settings->time_limit,
+                  "End the search for effects after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
   add_selection_options(verb, *settings);

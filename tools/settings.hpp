@@ -12,6 +12,7 @@ struct Settings {
   std::vector<std::string> second_columns, second_units;
   std::vector<std::string> continued_in;
   std::vector<std::string> confirm;               // diagnose: runs held back
+  std::string time_limit;                         // diagnose
   std::string kind;                               // of the record; empty: found
   std::string stiffness, mass, damping, rubs_on;  // of a mass on a spring
   bool trim = true;

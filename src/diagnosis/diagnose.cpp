@@ -123,10 +123,11 @@ Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, c
   for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});
   Limits least;
   least.least_size = std::max(least.least_size, context.shared);
-  std::vector<Ladder> ladders =
-      climb(context, laws, from_the_start, all, least, options.most_effects,
-            [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
-  return std::move(ladders[reported_ladder(context, ladders)]);
+  Climb climbed = climb(context, laws, from_the_start, all, least, {options.most_effects, options.until},
+                        [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
+  Ladder reported = std::move(climbed.ladders[reported_ladder(context, climbed.ladders)]);
+  reported.out_of_time = climbed.out_of_time;
+  return reported;
 }
 
 /// A fit of a model as `identify` makes it, from where the ladder found it. A search that ends on a bound may have gone
@@ -287,6 +288,8 @@ std::string_view to_string(Verdict verdict) {
       return "unexplained";
     case Verdict::unconfirmed:
       return "unconfirmed";
+    case Verdict::unfinished:
+      return "unfinished";
     case Verdict::not_enough_data:
       break;
   }
@@ -305,6 +308,8 @@ std::string_view to_string(EffectStatus status) {
       return "superseded";
     case EffectStatus::not_supported:
       return "unsupported";
+    case EffectStatus::untried:
+      return "untried";
     case EffectStatus::untestable:
       break;
   }
@@ -313,6 +318,7 @@ std::string_view to_string(EffectStatus status) {
 
 std::string_view status_text(EffectStatus status) {
   if (status == EffectStatus::found) return "found";
+  if (status == EffectStatus::untried) return "not tried";
   return status == EffectStatus::not_supported ? "not supported by the data" : to_string(status);
 }
 
@@ -335,7 +341,6 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
                    left_by_corrections(records, fine, floor.noise) / context.noise_squares();
   context.swing = common_swing(records);
   context.threads = options.threads;
-  context.cancelled = options.cancelled;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
@@ -356,6 +361,10 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
   diagnosis.ladder = rungs_of(ladder, all, out.fits);
+  if (ladder.out_of_time) {
+    diagnosis.verdict = Verdict::unfinished;
+    return out;
+  }
   diagnosis.rival_laws = rival_laws(context, laws.all(), ladder.steps.back().coarse, out.fits.back(), instruments, fit);
   decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);

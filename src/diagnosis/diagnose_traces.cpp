@@ -223,7 +223,8 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
       return diagnose(records_of(traces), options.laws, effects.candidates, options.instruments, options.fit, inner);
     };
     Diagnosed diagnosed = diagnose_all();
-    if (undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
+    const bool finished = diagnosed.diagnosis.verdict != Verdict::unfinished;
+    if (finished && undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
     out.diagnosis = std::move(diagnosed.diagnosis);
     std::optional<Fit> uncorrected;
     if (traces.size() == 1 && !diagnosed.fits.empty())

@@ -201,6 +201,11 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
             : finding.reason + ": something that acts like it remains (p = " +
                   fmt::format("{:.2g}); to decide: {}", last.judged->p_value, in.all[k].info.experiment);
   }
+  if (in.ladder.out_of_time && (last.judged == nullptr || last.step + 1 != in.ladder.steps.size())) {
+    finding.status = EffectStatus::untried;
+    finding.reason = in.ladder.steps.size() > 1 ? "the time was over before it was tried beside what was found"
+                                                : "the time was over first";
+  }
   if (!contains(in.ladder.withdrawn, k)) return;
   finding.status = EffectStatus::not_supported;
   finding.reason = "the error that is left is larger than what it explains";

@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "rival_laws.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -214,13 +215,32 @@ bool does_as_well(const DiagnosisContext& context, const Law& law, const Ladder&
   return false;
 }
 
+/// Whether a round of climbing comes to its end; where it does not, the ladder is as it was before.
+template <class Round>
+bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& until, Ladder& ladder, Round&& round) {
+  if (!until) {
+    round();
+    return true;
+  }
+  Ladder before = ladder;
+  try {
+    const StopScope scope([&until] { return std::chrono::steady_clock::now() >= *until; });
+    round();
+    return true;
+  } catch (const Stopped&) {
+    stop_point();  // it may have been stopped from outside
+    ladder = std::move(before);
+    return false;
+  }
+}
+
 }  // namespace
 
-std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& laws,
-                          const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
-                          const Limits& least, int most_effects,
-                          const std::function<void(std::string_view, double)>& progress) {
-  std::vector<Ladder> ladders;
+Climb climb(const DiagnosisContext& context, const CompetingLaws& laws, const std::vector<Candidate>& from_the_start,
+            const std::vector<Candidate>& candidates, const Limits& least, const ClimbLimits& limits,
+            const std::function<void(std::string_view, double)>& progress) {
+  Climb out;
+  std::vector<Ladder>& ladders = out.ladders;
   double rounds = 0;
   const auto start_all = [&](const std::vector<Law>& from) {
     std::vector<Ladder> started(from.size());
@@ -232,15 +252,19 @@ std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& 
     // Beside Coulomb friction the better ladder need not be the one to report (see reported_ladder): all are climbed.
     const bool all_matter =
         std::any_of(ladders.begin(), ladders.end(), [](const Ladder& ladder) { return constant_in_slip(ladder.law); });
-    while (Ladder* next = next_to_climb(context, ladders, all_matter)) {
+    Ladder* next = nullptr;
+    while (!out.out_of_time && (next = next_to_climb(context, ladders, all_matter)) != nullptr) {
       if (progress) progress(next->top().model.name(), rounds / (rounds + 3));
       ++rounds;
-      extend(context, *next, candidates, least, most_effects);
-      if (next->finished) finish(context, *next, candidates, least);
+      out.out_of_time = !ends_in_time(limits.until, *next, [&] {
+        extend(context, *next, candidates, least, limits.most_effects);
+        if (next->finished) finish(context, *next, candidates, least);
+      });
     }
   };
   start_all(laws.first);
   climb_all();
+  if (out.out_of_time) return out;
   const Ladder& best = ladders[better_ladder(context, ladders)];
   std::vector<Law> instead;
   for (const Law& law : laws.others) {
@@ -248,7 +272,7 @@ std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& 
   }
   start_all(instead);
   climb_all();
-  return ladders;
+  return out;
 }
 
 std::size_t better_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ struct Ladder {
   std::vector<std::size_t> withdrawn;  ///< candidates that were added at first, and explain too little of what is wrong
   std::vector<CandidateResult> last;   ///< candidates judged beside the last rung: none of them passes
   bool finished = false;               ///< nothing more passes
+  bool out_of_time = false;            ///< the time was over before that could be said of all ladders
   const Trial& top() const { return steps.back().trial; }
 };
 
@@ -45,15 +47,26 @@ struct CompetingLaws {
   }
 };
 
+/// The ladders from every base law.
+struct Climb {
+  std::vector<Ladder> ladders;
+  bool out_of_time = false;  ///< not every one is finished that might be the one to report
+};
+
+/// How long and how high.
+struct ClimbLimits {
+  int most_effects = 4;
+  std::optional<std::chrono::steady_clock::time_point> until = {};  ///< the ladders then stand where they are
+};
+
 /// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.
 ///
 /// The ladder that predicts best so far is climbed first. Once one is finished that leaves nothing unexplained, another
 /// that is as long and no better is given up where it stands: only with more rungs could it do as well.
 /// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
-std::vector<Ladder> climb(const DiagnosisContext& context, const CompetingLaws& laws,
-                          const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
-                          const Limits& least, int most_effects,
-                          const std::function<void(std::string_view, double)>& progress = {});
+Climb climb(const DiagnosisContext& context, const CompetingLaws& laws, const std::vector<Candidate>& from_the_start,
+            const std::vector<Candidate>& candidates, const Limits& least, const ClimbLimits& limits,
+            const std::function<void(std::string_view, double)>& progress = {});
 
 /// The ladder that predicts held-out cycles better, or the shorter one where that cannot be said.
 std::size_t better_ladder(const DiagnosisContext& context, const std::vector<Ladder>& ladders);

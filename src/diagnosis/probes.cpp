@@ -13,6 +13,7 @@
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -62,6 +63,7 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
 /// Judges a probe and returns its coefficients.
 Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level, const Trial& trial,
                             const Columns& columns, double places, Probe& probe) {
+  stop_point();
   const Observations& observations = level.observations;
   const std::vector<std::size_t> all = all_slips(observations);
   ModelResiduals residuals(trial.model, observations, all);

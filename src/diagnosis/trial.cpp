@@ -13,6 +13,7 @@
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/solver.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -156,7 +157,7 @@ double noise_of(const Level& level, const Trial& trial) {
 
 Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
                 std::vector<double> start) {
-  if (context.cancelled && context.cancelled()) throw DiagnosisCancelled();
+  stop_point();
   Trial trial;
   trial.model = model;
   const Observations& observations = level.observations;

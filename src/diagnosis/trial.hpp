@@ -59,8 +59,7 @@ struct DiagnosisContext {
   double shared = 0;   ///< of its squares, what sampling and corrections leave: no chance, and no structure either
   double swing = 0;    ///< see common_swing()
 
-  int threads = 1;                       ///< over candidates
-  std::function<bool()> cancelled = {};  ///< asked before each trial, which then throws DiagnosisCancelled
+  int threads = 1;  ///< over candidates
 
   DiagnosisContext(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
                    double sensor_noise, double break_away_scatter);

@@ -30,12 +30,12 @@ class PartCost : public ceres::CostFunction {
     Eigen::VectorXd residual(rows);
     std::fill_n(residuals, num_residuals(), 0.0);
     if (jacobians == nullptr) {
-      if (!part_.residuals->evaluate(p.data(), residual.data(), nullptr)) return false;
+      if (!evaluate_unless_stopped(*part_.residuals, p.data(), residual.data(), nullptr)) return false;
       residuals[0] = part_.root_weight * residual.norm();
       return true;
     }
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, n);
-    if (!part_.residuals->evaluate(p.data(), residual.data(), jacobian.data())) return false;
+    if (!evaluate_unless_stopped(*part_.residuals, p.data(), residual.data(), jacobian.data())) return false;
     Eigen::MatrixXd all(rows, n + 1);
     all << jacobian, residual;
     const Eigen::MatrixXd kept = part_.root_weight * triangular_factor(all);
@@ -150,6 +150,7 @@ SolverResult minimize(std::span<const ResidualPart> parts, std::span<const doubl
   if (blocks.any_own()) solver.linear_solver_ordering = order;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  stop_point();
   result.p = blocks.values(parts);
   result.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
   result.converged = summary.termination_type == ceres::CONVERGENCE;

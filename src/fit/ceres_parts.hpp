@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tribofit/fit/solver.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 // How least squares are asked of Ceres.
 
@@ -42,6 +43,17 @@ inline std::string explain(const ceres::Solver::Summary& summary) {
       return "did not converge within " + std::to_string(summary.iterations.size()) + " iterations";
     default:
       return "the solver failed: " + summary.message;
+  }
+}
+
+/// Ceres takes no exceptions. Work that is to stop is to it an evaluation that fails, after which it soon gives up;
+/// then stop_point() throws.
+inline bool evaluate_unless_stopped(const Residuals& problem, const double* p, double* residual, double* jacobian) {
+  try {
+    stop_point();
+    return problem.evaluate(p, residual, jacobian);
+  } catch (const Stopped&) {
+    return false;
   }
 }
 

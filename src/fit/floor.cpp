@@ -14,6 +14,7 @@
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/slow_noise.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -221,7 +222,9 @@ Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
     floor.noise = floor.sampling = noise.between;
     floor.source = "sampling";
   }
+  stop_point();
   floor.scatter = break_away_scatter(motion, segmentation);
+  stop_point();
   floor.rmse = floor.noise;
   return floor;
 }

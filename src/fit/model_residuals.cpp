@@ -9,6 +9,7 @@
 #include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/friction/creep.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -120,6 +121,7 @@ bool ModelResiduals::differentiate(const Observations::SlipObservation& range, c
 
 bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivatives, Workspace& workspace, Block& block,
                           bool plain) const {
+  stop_point();
   const bool whitens = whitening_ != nullptr && whitening_->any() && !plain;
   const double level = whitens && own_levels_ ? whitening_->level[slips_[k]] : 0;
   const auto& range = observations_.slips[slips_[k]];

@@ -11,6 +11,7 @@
 #include "slip_ranges.hpp"
 #include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -366,6 +367,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
     slip.end = values;
   }
   add_earlier_slips(out.slips);
+  stop_point();
   const Reducer reduce(motion, out.slips, out.samples_per_value);
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
@@ -378,7 +380,9 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   });
   weigh_points(motion, out);
   if (out.samples_per_value > 1 || !motion.velocity_variance.empty()) add_velocity_variance(motion, reduce, out);
+  stop_point();
   add_channels(motion, segmentation, needs, reduce, out);
+  stop_point();
   set_extent(out);
   add_slow_noise(motion, segmentation, out);
   out.scales = scales_of({&out, 1});

@@ -28,8 +28,8 @@ class Cost : public ceres::CostFunction {
     for (std::size_t k = 0; k < free_.size(); ++k) p_[free_[k]] = blocks[0][k];
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
     const bool all_free = free_.size() == p_.size();
-    if (!problem_.evaluate(p_.data(), residuals, jacobian == nullptr || all_free ? jacobian : all_.data()))
-      return false;
+    double* derivatives = jacobian == nullptr || all_free ? jacobian : all_.data();
+    if (!evaluate_unless_stopped(problem_, p_.data(), residuals, derivatives)) return false;
     if (jacobian == nullptr) return true;
     for (std::size_t i = 0; !all_free && i < problem_.count(); ++i) {
       for (std::size_t k = 0; k < free_.size(); ++k) jacobian[i * free_.size() + k] = all_[i * p_.size() + free_[k]];
@@ -120,6 +120,7 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
   solver.linear_solver_type = ceres::DENSE_QR;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres_problem, &summary);
+  stop_point();
 
   for (std::size_t j = 0; j < free.size(); ++j) result.p[free[j]] = x[j];
   result.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();

@@ -11,6 +11,7 @@
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -156,6 +157,7 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
     std::pair<double, double> best = {-1, coarse};
     for (double f = coarse - width; f <= coarse + width; f += fine) {
+      stop_point();
       best = std::max(best, {strength(observations, residual, f), f});
     }
     found.push_back(best);

@@ -14,6 +14,7 @@
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -37,6 +38,7 @@ constexpr std::array<Variable, 9> kVariables = {{{"v", "mm/s", 1e3},
 
 /// A parameter of this name is the frequency of a line.
 constexpr std::string_view kLineFrequency = "f";
+constexpr std::size_t kBetweenStops = 32;  // values of a formula, of which a long one takes its time
 
 /// Parts between separators that stand in no bracket.
 std::vector<std::string> split_outside_brackets(std::string_view text, char separator) {
@@ -317,6 +319,7 @@ void Formula::evaluate(std::span<const double> values, const Slip& slip, std::sp
   for (std::size_t k = 0; k < values.size(); ++k) p.value[k] = values[k] / p.parameters[k].si;
   try {
     for (std::size_t i = 0; i < slip.size(); ++i) {
+      if (i % kBetweenStops == 0) stop_point();
       const SlidingState<double> at = slip.at(i, speed[i]);
       const std::array<double, kVariables.size()> si = {speed[i],      at.acceleration, at.time,
                                                         at.angle,      at.distance,     at.reversal_distance,

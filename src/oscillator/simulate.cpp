@@ -8,6 +8,7 @@
 #include "simulation.hpp"
 #include "simulation_checks.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -85,7 +86,10 @@ SimulatedMotion Simulation::run() {
 }
 
 void Simulation::advance(double until) {
-  while (time_ < until) sticking_ ? stick(until) : slip(until);
+  while (time_ < until) {
+    stop_point();
+    sticking_ ? stick(until) : slip(until);
+  }
 }
 
 /// From here on samples are taken.

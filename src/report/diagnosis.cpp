@@ -214,10 +214,11 @@ void add_experiment(const Diagnosis& d, TerminalText& text) {
   if (!d.next_experiment.empty()) text.line((same.empty() ? "" : "Discriminating experiment: ") + d.next_experiment);
 }
 
-void add_untestable(const Diagnosis& d, TerminalText& text) {
+/// Effects of a status by their reason.
+void add_by_reason(const Diagnosis& d, EffectStatus status, const std::string& heading, TerminalText& text) {
   std::vector<std::pair<std::string, std::string>> reasons;  // reason, keys
   for (const EffectFinding& e : d.effects) {
-    if (e.status != EffectStatus::untestable) continue;
+    if (e.status != status) continue;
     const auto at = std::find_if(reasons.begin(), reasons.end(), [&](const auto& r) { return r.first == e.reason; });
     if (at == reasons.end()) {
       reasons.emplace_back(e.reason, e.key);
@@ -225,7 +226,7 @@ void add_untestable(const Diagnosis& d, TerminalText& text) {
       at->second += ", " + e.key;
     }
   }
-  if (!reasons.empty()) text.heading("What these data cannot show");
+  if (!reasons.empty()) text.heading(heading);
   for (const auto& [reason, keys] : reasons) text.line(keys + (reason.empty() ? "" : ": " + reason));
 }
 
@@ -240,7 +241,8 @@ std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOption
   add_verdict(result, text);
   add_found(result, text);
   add_experiment(d, text);
-  add_untestable(d, text);
+  add_by_reason(d, EffectStatus::untried, "Not tried", text);
+  add_by_reason(d, EffectStatus::untestable, "What these data cannot show", text);
   if (!d.confirmations.empty()) text.heading("On runs not used in the fit");
   for (const Confirmation& c : d.confirmations) text.line(confirmation_sentence(c, result));
   if (!d.formula.empty()) text.heading("A closed form of what remains");

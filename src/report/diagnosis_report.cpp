@@ -71,6 +71,7 @@ Chart where_chart(const Diagnosis& d) {
 }
 
 /// Of the effects that were fitted, by the value of EffectStatus.
+/// Of what was fitted, in the order of EffectStatus.
 constexpr std::array<Stroke, 5> kStatusStrokes = {
     dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
     dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
@@ -98,8 +99,9 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
   }
   for (const EffectFinding* finding : sorted_findings(d)) {
-    if (finding->status == EffectStatus::untestable || !std::isfinite(finding->held_out_rmse)) continue;
-    ChartLine& line = chart.lines[static_cast<std::size_t>(finding->status)];
+    const auto status = static_cast<std::size_t>(finding->status);
+    if (status >= kStatusStrokes.size() || !std::isfinite(finding->held_out_rmse)) continue;
+    ChartLine& line = chart.lines[status];
     line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
     chart.x.names.push_back(finding->key);
   }

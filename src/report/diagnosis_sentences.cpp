@@ -62,6 +62,8 @@ class Sentences {
         return unexplained();
       case Verdict::unconfirmed:
         return unconfirmed();
+      case Verdict::unfinished:
+        return unfinished();
       case Verdict::not_enough_data:
         break;
     }
@@ -146,6 +148,13 @@ class Sentences {
         law_text(d_), level(last()), floor_clause());
   }
 
+  std::string unfinished() const {
+    const std::string why = "The time was over before every effect was tried.";
+    if (!found_effects(d_).empty()) return fmt::format("{} So far: {} {}.", why, found_sentence(result_), fall());
+    return fmt::format("{} So far nothing is added to the {}: its held-out error is {}, {}.", why, law_text(d_),
+                       level(last()), floor_clause());
+  }
+
   std::string unexplained() const {
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (const std::vector<std::string> keys = keys_of(EffectStatus::possible); !keys.empty()) {
@@ -183,7 +192,7 @@ bool must_name_law(const Law& law, const ReportOptions& options) {
 std::string final_model_command(const DiagnosedTraces& result, const ReportOptions& options,
                                 const std::vector<std::string>& more = {}) {
   // Options that only `diagnose` knows go, and effects that the command names itself.
-  std::vector<std::string> dropped = {"--confirm", "--effect", "--formula"}, words;
+  std::vector<std::string> dropped = {"--confirm", "--time-limit", "--effect", "--formula"}, words;
   if (!result.fits.empty()) {
     const FrictionModel& model = result.fits[result.best].model;
     const std::vector<std::string> names = model.effect_names();
@@ -274,6 +283,10 @@ Suggestion next_after_diagnosis(const DiagnosedTraces& result, const ReportOptio
   const Verdict verdict = result.diagnosis.verdict;
   const bool one = result.traces.size() == 1;
   const std::vector<std::string> csv = {"--csv", one ? csv_folder_for(result.traces.front().path) : "diagnosis-csv"};
+  if (verdict == Verdict::unfinished) {
+    return {"to search to the end",
+            command(words_of({"diagnose"}, options.arguments, {}, {"--time-limit"}), options, result)};
+  }
   if (one) {
     const bool added = !result.fits.empty() && !result.fits[result.best].model.effects().empty();
     if (verdict == Verdict::unexplained && !result.diagnosis.formula.empty()) {

@@ -8,6 +8,7 @@
 #include "report/diagnosis_sentences.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::workbench {
 
@@ -62,7 +63,6 @@ WorkbenchDiagnosis DiagnosisRun::status() const {
 
 void DiagnosisRun::run(const TraceInput& input, const IdentifyOptions& options, const WorkbenchChoice& part) {
   DiagnoseOptions more;
-  more.diagnosis.cancelled = [this] { return cancelled_.load(); };
   more.diagnosis.progress = [this](std::string_view doing, double done) {
     const std::lock_guard lock(mutex_);
     status_.doing = doing;
@@ -74,6 +74,7 @@ void DiagnosisRun::run(const TraceInput& input, const IdentifyOptions& options, 
     status_.state = state;
   };
   try {
+    const StopScope scope([this] { return cancelled_.load(); });
     const DiagnosedTraces result = diagnose({input}, options, more);
     {
       const std::lock_guard lock(mutex_);
@@ -85,7 +86,7 @@ void DiagnosisRun::run(const TraceInput& input, const IdentifyOptions& options, 
       status_.part = 1;
     }
     end_as(WorkbenchDiagnosis::State::done, diagnosis_verdict(result));
-  } catch (const DiagnosisCancelled&) {
+  } catch (const Stopped&) {
     end_as(WorkbenchDiagnosis::State::cancelled, "the diagnosis was cancelled");
   } catch (const std::exception& error) {
     end_as(WorkbenchDiagnosis::State::failed, error.what());

@@ -16,6 +16,7 @@
 #include "guard.hpp"
 #include "served_page.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -121,7 +122,7 @@ void WorkbenchServer::State::post(const char* path, Do&& what) {
       what(parsed(request.body, "the request"), response);
     } catch (const InputError& error) {
       answer(response, problem_json("this cannot be done", error.problem(), error.advice()), kUnfit);
-    } catch (const WorkbenchSession::Superseded&) {
+    } catch (const Stopped&) {
       answer(response, {{"superseded", true}});
     } catch (const Json::exception&) {
       answer(response, problem_json("this cannot be done", "the request is incomplete", "use the page"), kUnfit);

@@ -16,6 +16,7 @@
 #include "report/report_parts.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/statistics/stop.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -90,6 +91,18 @@ const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<Workben
     if (bare && same_part(other.choice.selection, rung.choice.selection)) return &other;
   }
   return nullptr;
+}
+
+/// The lock, once it is free; who waits for it can be stopped.
+std::unique_lock<std::mutex> turn_in(std::mutex& mutex) {
+  std::unique_lock lock(mutex, std::try_to_lock);
+  while (!lock) {
+    stop_point();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    lock.try_lock();
+  }
+  stop_point();
+  return lock;
 }
 
 }  // namespace
@@ -228,8 +241,8 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
                                         const std::function<bool()>& wanted, bool keep) {
   State& s = *state_;
   State::Lane& lane = detail == FitDetail::full ? s.full : s.quick;
-  const std::lock_guard lock(lane.fitting);
-  if (wanted && !wanted()) throw Superseded();
+  const StopScope scope(wanted ? [&wanted] { return !wanted(); } : std::function<bool()>());
+  const std::unique_lock lock = turn_in(lane.fitting);
   const IdentifyOptions identify = s.identify_options(choice, detail);
   const std::optional<WorkbenchRung> known = s.visited_rung(choice);
   Identification& trace = s.fresh(identify, lane);

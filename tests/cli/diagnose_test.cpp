@@ -45,6 +45,25 @@ TEST(Diagnose, NothingIsNamedWhereNothingIsHidden) {
   EXPECT_EQ(j["trace"]["path"], "trace.csv");
 }
 
+TEST(Diagnose, ATimeLimitLeavesWhatIsKnown) {
+  const Workshop shop;
+  shop.write("trace.csv", viscous_trace());
+  const Outcome cut = shop.identify("diagnose --radius 15mm --time-limit 1us --json d.json trace.csv");
+  EXPECT_EQ(cut.status, 0) << cut.err;
+  EXPECT_THAT(cut.out, HasSubstr("The time was over before every effect was"));
+  EXPECT_THAT(cut.out, HasSubstr("identify diagnose --radius 15mm trace.csv\n")) << "the next command has no limit";
+  const json j = json::parse(contents(shop / "d.json"), nullptr, false);
+  EXPECT_EQ(j["diagnosis"]["verdict"], "unfinished");
+  bool untried = false;
+  for (const json& effect : j["diagnosis"]["effects"]) untried = untried || effect["status"] == "untried";
+  EXPECT_TRUE(untried);
+  for (const char* limit : {"0s", "-1s", "soon", "1e300s"}) {
+    const Outcome bad = shop.identify(std::string("diagnose --radius 15mm --time-limit ") + limit + " trace.csv");
+    EXPECT_EQ(bad.status, 3) << limit;
+    EXPECT_THAT(bad.err, HasSubstr("--time-limit")) << limit;
+  }
+}
+
 TEST(Diagnose, AHiddenEffectIsNamedAndTheNextCommandRuns) {
   const Workshop shop;
   shop.write("trace.csv", viscous_trace());

@@ -16,6 +16,7 @@
 #include "running_server.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/statistics/stop.hpp"
 #include "workbench/guard.hpp"
 
 namespace tribofit {
@@ -150,6 +151,24 @@ TEST_F(Server, serves_two_pages_at_once) {
   EXPECT_EQ(session->rungs().size(), 2u);
 }
 
+TEST_F(Server, stops_a_fit_that_a_page_no_longer_wants) {
+  std::string powers = "k*(v/w)^.1";
+  for (int k = 11; k < 99; ++k) powers += "+k*(v/w)^." + std::to_string(k);
+  const std::string slow =
+      R"({"law":"exponential","effects":["rate-state"],"formulas":["a = )" + powers + R"(; k=0.001, w=6"]})";
+  std::string given_up;
+  std::thread asker([&] {
+    if (const auto answer = show(slow, 1)) given_up = answer->body;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const auto next = show(R"({"law":"fractional"})", 2);
+  asker.join();  // without waiting for a fit that takes minutes
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->status, 200) << next->body;
+  EXPECT_THAT(given_up, HasSubstr("superseded"));
+  EXPECT_EQ(session->rungs().size(), 1u) << "what was given up is no rung";
+}
+
 TEST_F(Server, gives_up_what_a_page_no_longer_wants) {
   // Another fit holds the lane until all have asked.
   std::promise<void> held, all_asked;
@@ -159,7 +178,7 @@ TEST_F(Server, gives_up_what_a_page_no_longer_wants) {
       all_asked.get_future().wait();
       return false;
     };
-    EXPECT_THROW(session->show({}, FitDetail::quick, hold), WorkbenchSession::Superseded);
+    EXPECT_THROW(session->show({}, FitDetail::quick, hold), Stopped);
   });
   held.get_future().wait();
   std::vector<std::thread> askers;
@@ -245,7 +264,7 @@ TEST(Explore, ends_in_the_middle_of_a_fit) {
                     R"({"page":"p","turn":1,"full":true,"choice":{"law":"exponential","effects":["rate-state",)"
                     R"("contact-spin","runout"],"formulas":["a = k*exp(-v/w)*sin(t*f); k=0.01, w=6, f=3"]}})",
                     kType);
-    answered = answer && answer->status > 0;
+    answered = answer && answer->body.find("superseded") == std::string::npos;
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_FALSE(answered);  // it fits

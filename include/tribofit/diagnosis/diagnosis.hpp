@@ -1,9 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
-#include <exception>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,13 +20,9 @@ struct DiagnosisOptions {
   std::vector<Effect> from_the_start = {};  ///< of the catalogue, in every model beside the base law
   /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
   std::function<void(std::string_view, double)> progress;
-  /// Asked between trials, from any thread; once it says yes, diagnose() throws DiagnosisCancelled. Empty: never.
-  std::function<bool()> cancelled = {};
-};
-
-/// The diagnosis was given up because DiagnosisOptions::cancelled said so.
-struct DiagnosisCancelled : std::exception {
-  const char* what() const noexcept override { return "the diagnosis was cancelled"; }
+  /// When the search for effects ends where it stands. What is known by then is fitted and reported (a moment more),
+  /// and the verdict is Verdict::unfinished.
+  std::optional<std::chrono::steady_clock::time_point> until = {};
 };
 
 /// What the diagnosis says in one word.
@@ -35,8 +32,9 @@ enum class Verdict {
   unexplained,      ///< structure remains that no effect explains, or that one may explain but is not proven to
   unconfirmed,      ///< a run that was held back does not bear out the law or the effects that were added
   not_enough_data,  ///< too few cycles to hold any out
+  unfinished,       ///< the time was over before every effect was tried (DiagnosisOptions::until)
 };
-/// "sufficient", "effect-found", "unexplained", "unconfirmed", "not-enough-data".
+/// "sufficient", "effect-found", "unexplained", "unconfirmed", "not-enough-data", "unfinished".
 std::string_view to_string(Verdict verdict);
 
 /// What became of one effect of the catalogue.
@@ -47,10 +45,12 @@ enum class EffectStatus {
   superseded,     ///< it would help alone, but not beside what was added
   not_supported,  ///< the data do not ask for it
   untestable,     ///< the data cannot show it; `reason` says why
+  untried,        ///< the time was over before it was tried beside the last rung
 };
-/// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable".
+/// The words of the JSON: "missing" (for found), "equivalent", "possible", "superseded", "unsupported", "untestable",
+/// "untried".
 std::string_view to_string(EffectStatus status);
-/// The same as people read it: "found", "not supported by the data".
+/// The same as people read it: "found", "not supported by the data", "not tried".
 std::string_view status_text(EffectStatus status);
 
 /// A share of the error above the noise floor that goes with one variable.
@@ -153,7 +153,7 @@ struct DiagnosedTraces {
 
 /// Diagnoses one record, or several together with all parameters shared.
 /// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.
-/// Cost: about 1 s for 100 slips, on two threads.
+/// Cost: about 1 s for 100 slips, on two threads. Throws Stopped within a StopScope that says so.
 Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& laws, const std::vector<Effect>& own = {},
                    const Instruments& instruments = {}, const FitOptions& fit = {},
                    const DiagnosisOptions& options = {});

@@ -38,6 +38,7 @@ struct SolverResult {
 
 /// Least squares by Levenberg-Marquardt (Ceres, dense QR), within bounds where they are given.
 /// Parameters with lower == upper are held. A problem that cannot be solved is a result with converged == false.
+/// Throws Stopped within a StopScope that says so, and so does the other.
 SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
                       std::span<const double> upper = {}, const SolverOptions& options = {});
 

@@ -5,17 +5,23 @@
 #include <thread>
 #include <vector>
 
+#include "tribofit/statistics/stop.hpp"
+
 namespace tribofit {
 
-/// Threads that do the same work beside the caller's, and are joined at the end of its life. One that the system does
-/// not start is one thread less.
+/// Threads that do the same work beside the caller's, under its StopScope, and are joined at the end of its life. One
+/// that the system does not start is one thread less.
 class HelperThreads {
  public:
   template <class Work>
   HelperThreads(std::size_t count, Work work) {
     threads_.reserve(count);
+    const auto help = [work, scope = StopScope::current()] {
+      StopScope::take_over(scope);
+      work();
+    };
     try {
-      while (threads_.size() < count) threads_.emplace_back(work);
+      while (threads_.size() < count) threads_.emplace_back(help);
     } catch (const std::system_error&) {  // the caller works in any case
     }
   }

@@ -8,12 +8,13 @@
 #include <thread>
 
 #include "tribofit/statistics/helper_threads.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
 /// Runs task(0) ... task(count-1) on up to `threads` threads (0: as many as there are).
 /// Every task writes its own result, so results do not depend on the number of threads. The exception of the lowest
-/// failing task is thrown on.
+/// failing task is thrown on; Stopped, where the work is to stop.
 template <class Task>
 void run_tasks(std::size_t count, int threads, Task&& task) {
   const std::size_t available =
@@ -25,6 +26,7 @@ void run_tasks(std::size_t count, int threads, Task&& task) {
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
+        stop_point();
         task(i);
       } catch (...) {
         const std::lock_guard lock(mutex);

@@ -90,11 +90,10 @@ class WorkbenchSession {
 
   /// Fits a choice and adds it to the rungs; one that was visited is not fitted again unless more detail is asked for.
   /// Throws InputError that says why it cannot be fitted; the session goes on.
-  /// wanted: asked when its turn has come; where it says no, nothing is done and Superseded thrown. Empty: yes.
+  /// wanted: asked while it waits for its turn and while it fits; where it says no, Stopped is thrown. Empty: yes.
   /// keep: false for what is passed by on the way, as a slider is dragged: it becomes no rung.
   WorkbenchPicture show(const WorkbenchChoice& choice, FitDetail detail, const std::function<bool()>& wanted = {},
                         bool keep = true);
-  struct Superseded {};
 
   /// Every rung visited, without pictures.
   std::vector<WorkbenchRung> rungs() const;

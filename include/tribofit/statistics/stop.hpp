@@ -1,0 +1,47 @@
+#pragma once
+
+#include <exception>
+#include <functional>
+
+namespace tribofit {
+
+/// Thrown where work is given up because a StopScope said so. What it was to make is not made.
+struct Stopped : std::exception {
+  const char* what() const noexcept override { return "the work was stopped before its end"; }
+};
+
+/// While it lives, the work of its thread, and of the threads that help it (HelperThreads), can be stopped: fits,
+/// diagnoses and simulations ask it every few milliseconds, and throw Stopped once it says yes. Scopes are nested as
+/// blocks are; each of them can stop the work within.
+///
+///     const StopScope scope([&] { return cancelled.load(); });
+///     diagnose(...);  // throws Stopped soon after cancelled became true
+class StopScope {
+ public:
+  /// asked: called from any thread that works within; once it has said yes it must not say no. Empty: never.
+  explicit StopScope(std::function<bool()> asked);
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+  bool says_stop() const { return (asked_ && asked_()) || (outer_ != nullptr && outer_->says_stop()); }
+
+  /// The innermost scope of this thread; nullptr: nothing stops it.
+  static const StopScope* current();
+  /// Puts a thread that helps another under the scope of that other, which outlives it.
+  static void take_over(const StopScope* scope);
+
+ private:
+  std::function<bool()> asked_;
+  const StopScope* outer_;
+};
+
+/// Whether the work of this thread is to stop.
+bool stop_asked();
+
+/// Throws Stopped where it is.
+inline void stop_point() {
+  if (stop_asked()) throw Stopped();
+}
+
+}  // namespace tribofit
