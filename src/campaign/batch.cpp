@@ -86,8 +86,7 @@ class Batch {
       progress_.left_bytes += bytes_.back();
     }
     progress_.total = outcome_.ends.size();
-    threads_ = options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+    threads_ = static_cast<std::size_t>(options.threads > 0 ? options.threads : available_threads());
   }
 
   BatchOutcome run() {

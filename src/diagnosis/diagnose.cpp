@@ -147,8 +147,9 @@ Fit fit_as_identify(const FrictionModel& model, std::span<const Record> records,
 /// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
 /// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that held-out errors at full
 /// resolution do not bear out, ends the ladder below it.
-std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, const FitOptions& options,
+std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, FitOptions options,
                            Ladder& ladder) {
+  options.threads = context.threads;  // the last rung takes most of the time
   std::vector<Fit> fits(ladder.steps.size());
   run_tasks(ladder.steps.size(), context.threads, [&](std::size_t k) {
     const Trial& trial = ladder.steps[k].trial;

@@ -34,13 +34,15 @@ void put_in_order(const DiagnosisContext& context, Ladder& ladder, const std::ve
                   Trial top) {
   const auto key = [&](const LadderStep& step) { return candidates[*step.added].info.key; };
   for (std::size_t last = ladder.steps.size() - 1; last > 0; --last) {
+    std::vector<Trial> without(last > 1 ? last : 0);  // each of the effects
+    run_tasks(without.size(), context.threads,
+              [&](std::size_t k) { without[k] = try_without(context, context.fine, top, key(ladder.steps[k + 1])); });
     std::size_t least = last;
     Trial below;
-    for (std::size_t k = 1; k <= last && last > 1; ++k) {
-      Trial without = try_without(context, context.fine, top, key(ladder.steps[k]));
-      if (!without.usable || (below.usable && without.held_out_squares >= below.held_out_squares)) continue;
-      below = std::move(without);
-      least = k;
+    for (std::size_t k = 0; k < without.size(); ++k) {
+      if (!without[k].usable || (below.usable && without[k].held_out_squares >= below.held_out_squares)) continue;
+      below = std::move(without[k]);
+      least = k + 1;
     }
     std::swap(ladder.steps[least], ladder.steps[last]);
     ladder.steps[last].trial = std::move(top);
@@ -98,41 +100,52 @@ double largest_fall(const LadderStep& step) {
 
 void prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
            const Limits& least) {
-  for (std::size_t s = 1; s < ladder.steps.size();) {
-    const Candidate& candidate = candidates[*ladder.steps[s].added];
+  struct Without {
+    Trial trial;
+    bool is_needed = false;
+  };
+  while (true) {
     const Trial& full = ladder.top();
-    Trial without = try_without(context, context.fine, full, candidate.info.key);
-    const CandidateResult needed = compare(context, context.fine, without, full, candidate, 1, least);
-    if (!without.usable || needed.passes) {
-      ++s;
-      continue;
-    }
-    ladder.steps.erase(ladder.steps.begin() + static_cast<std::ptrdiff_t>(s));
-    put_in_order(context, ladder, candidates, std::move(without));
-    s = 1;
+    std::vector<Without> all(ladder.steps.size() - 1);  // without each of the effects
+    run_tasks(all.size(), context.threads, [&](std::size_t k) {
+      const Candidate& candidate = candidates[*ladder.steps[k + 1].added];
+      all[k].trial = try_without(context, context.fine, full, candidate.info.key);
+      all[k].is_needed =
+          !all[k].trial.usable || compare(context, context.fine, all[k].trial, full, candidate, 1, least).passes;
+    });
+    const auto first = std::find_if(all.begin(), all.end(), [](const Without& without) { return !without.is_needed; });
+    if (first == all.end()) return;
+    ladder.steps.erase(ladder.steps.begin() + 1 + (first - all.begin()));
+    put_in_order(context, ladder, candidates, std::move(first->trial));
   }
 }
 
 bool reconsider(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
                 const Limits& least) {
-  for (std::size_t s = 1; s < ladder.steps.size() && ladder.steps.size() > 2; ++s) {
-    LadderStep& step = ladder.steps[s];
+  if (ladder.steps.size() <= 2) return false;
+  std::vector<std::vector<CandidateResult>> judged(ladder.steps.size() - 1);  // beside all effects but one
+  run_tasks(judged.size(), context.threads, [&](std::size_t k) {
+    const LadderStep& step = ladder.steps[k + 1];
     const Trial& full = ladder.top();
     std::vector<const CandidateResult*> rivals = rivals_of(step, full, candidates);
-    if (rivals.empty()) continue;
+    if (rivals.empty()) return;
     const Trial without = try_without(context, context.fine, full, candidates[*step.added].info.key);
-    if (!without.usable) continue;
+    if (!without.usable) return;
     std::erase_if(rivals,
                   [&](const CandidateResult* r) { return !without.model.acts_with(candidates[r->candidate].effect); });
-    if (rivals.empty()) continue;
-    std::vector<CandidateResult> judged = judge_anew(context, step, full, without, rivals, candidates, least);
-    const Choice choice = choose(context, judged, candidates);
+    if (!rivals.empty()) judged[k] = judge_anew(context, step, full, without, rivals, candidates, least);
+  });
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (judged[k].empty()) continue;
+    const Choice choice = choose(context, judged[k], candidates);
     if (!choice.leader) continue;
+    LadderStep& step = ladder.steps[k + 1];
     step.equivalent = choice.group;
     if (*choice.leader == 0) continue;
-    step.added = judged[*choice.leader].candidate;
-    step.by_level = judged[*choice.leader].by_level;
-    put_in_order(context, ladder, candidates, std::move(judged[*choice.leader].trial));
+    CandidateResult& leader = judged[k][*choice.leader];
+    step.added = leader.candidate;
+    step.by_level = leader.by_level;
+    put_in_order(context, ladder, candidates, std::move(leader.trial));
     return true;
   }
   return false;

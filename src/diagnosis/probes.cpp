@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "hats.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/stop.hpp"
 
@@ -345,22 +347,24 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
 std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual) {
   const ProbeInputs inputs = probe_inputs(context.coarse.observations, coarse);
-  std::vector<Probe> out;
-  const auto add = [&](std::optional<Probe> probe) {
-    if (probe) out.push_back(std::move(*probe));
-  };
-  add(over_velocity(context, coarse));
-  if (are_points(context.records)) {
-    add(over_load(context, coarse, inputs));
-    return out;
+  std::vector<std::function<std::optional<Probe>()>> all = {[&] { return over_velocity(context, coarse); },
+                                                            [&] { return over_load(context, coarse, inputs); }};
+  if (!are_points(context.records)) {
+    all = {[&] { return over_velocity(context, coarse); },
+           [&] { return over_branch(context, coarse); },
+           [&] { return over_time(context, coarse, inputs); },
+           [&] { return over_angle(context, coarse, inputs); },
+           [&] { return over_stick_time(context, coarse); },
+           [&] { return over_load(context, coarse, inputs); },
+           [&] { return over_reversal_distance(context, coarse); },
+           [&] { return over_frequency(context, fine, residual); }};
   }
-  add(over_branch(context, coarse));
-  add(over_time(context, coarse, inputs));
-  add(over_angle(context, coarse, inputs));
-  add(over_stick_time(context, coarse));
-  add(over_load(context, coarse, inputs));
-  add(over_reversal_distance(context, coarse));
-  add(over_frequency(context, fine, residual));
+  std::vector<std::optional<Probe>> found(all.size());
+  run_tasks(all.size(), context.threads, [&](std::size_t k) { found[k] = all[k](); });
+  std::vector<Probe> out;
+  for (std::optional<Probe>& probe : found) {
+    if (probe) out.push_back(std::move(*probe));
+  }
   return out;
 }
 

@@ -110,7 +110,7 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   Bounds held = context.bounds;
   // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
   // is most of what a law leaves, three passes still hold something of the start.
-  const ModelResiduals plain(context.model, context.observations, all, context.loss);
+  const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
   constexpr int kFewestPasses = 3, kMostPasses = 20;
   const int most = look ? kFewestPasses : kMostPasses;
   bool is_settled = false;

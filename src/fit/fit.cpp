@@ -50,7 +50,11 @@ FitContext context_of(const FrictionModel& model, std::span<const Record> record
   context.bounds = bounds_of(model, observations);
   apply_given(model, options.given, context.bounds);
   context.given = context.bounds;
-  if (options.loss != Loss::squares) context.loss = {options.loss, options.loss_scale * mean_floor(records).noise};
+  context.evaluation.threads = options.threads;
+  if (options.loss != Loss::squares) {
+    context.evaluation.loss = options.loss;
+    context.evaluation.loss_width = options.loss_scale * mean_floor(records).noise;
+  }
   return context;
 }
 

@@ -17,14 +17,14 @@ struct FitContext {
   const Observations& observations;
   const Instruments& instruments;
   const FitOptions& options;
-  Bounds given{};   ///< with what the user said of them
-  Bounds bounds{};  ///< `given`, but for what the protocol holds
-  ModelResiduals::Options loss{};
+  Bounds given{};                         ///< with what the user said of them
+  Bounds bounds{};                        ///< `given`, but for what the protocol holds
+  ModelResiduals::Options evaluation{};   ///< loss and threads
   ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
   bool by_extremes() const { return options.protocol == Protocol::published; }
   ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
-    ModelResiduals out(model, observations, slips, loss);
+    ModelResiduals out(model, observations, slips, evaluation);
     if (whitening.any()) out.whiten(whitening, own_levels);
     return out;
   }

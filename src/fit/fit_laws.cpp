@@ -82,12 +82,13 @@ void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail d
     return;
   }
   const Record record = {&trace.motion, &trace.segmentation};
-  const auto fits = planned_fits(options, effects, !trace.motion.is_points());
+  auto fits = planned_fits(options, effects, !trace.motion.is_points());
   trace.fits.resize(fits.size());
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
-    const Observations observations = observations_for(fits[k].first, {&record, 1}, detail);
-    trace.fits[k] =
-        fit_model(fits[k].first, trace.motion, trace.segmentation, observations, options.instruments, fits[k].second);
+    auto& [model, fit] = fits[k];
+    fit.threads = options.threads;  // one of them may take most of the time
+    const Observations observations = observations_for(model, {&record, 1}, detail);
+    trace.fits[k] = fit_model(model, trace.motion, trace.segmentation, observations, options.instruments, fit);
   });
   trace.best = best_of(trace.fits);
   share_floor(trace.fits, trace.best);

@@ -9,6 +9,7 @@
 #include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/friction/creep.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
@@ -151,9 +152,31 @@ bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivative
 bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                                 const FurtherColumns& further) const {
   blocks.resize(slips_.size());
+  const std::size_t count = parts();
+  if (count == 1) return compress(0, slips_.size(), p, with_jacobian, blocks, further);
+  std::vector<unsigned char> finite(count);
+  run_tasks(count, options_.threads, [&](std::size_t part) {
+    const ModelResiduals own(*this);  // its formulas must not be shared between threads
+    const std::size_t begin = part * slips_.size() / count, end = (part + 1) * slips_.size() / count;
+    finite[part] = own.compress(begin, end, p, with_jacobian, blocks, further) ? 1 : 0;
+  });
+  return std::find(finite.begin(), finite.end(), 0) == finite.end();
+}
+
+std::size_t ModelResiduals::parts() const {
+  constexpr std::size_t kWorthAThread = 10000;  // values: about a millisecond of work, many times what a thread costs
+  if (options_.threads == 1) return 1;
+  std::size_t values = 0;
+  for (const std::size_t k : slips_) values += observations_.slips[k].end - observations_.slips[k].begin;
+  const auto threads = static_cast<std::size_t>(options_.threads > 0 ? options_.threads : available_threads());
+  return std::clamp<std::size_t>(values / kWorthAThread, 1, std::min(threads, std::max<std::size_t>(1, slips_.size())));
+}
+
+bool ModelResiduals::compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian,
+                              std::vector<Block>& blocks, const FurtherColumns& further) const {
   Workspace workspace;
   Block block;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
+  for (std::size_t k = begin; k < end; ++k) {
     if (!fill(k, p, with_jacobian ? parameter_count() : 0, workspace, block)) return false;
     if (further) {
       Block more = further(slips_[k]);

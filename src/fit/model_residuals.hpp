@@ -48,6 +48,7 @@ class ModelResiduals final : public Residuals {
   struct Options {
     Loss loss = Loss::squares;
     double loss_width = 0;  ///< where the loss turns from squares to a line, for a single sample [1 or N]
+    int threads = 1;        ///< that share the slips, where they hold many values; 0: as many as there are
   };
 
   /// How break-away scatter is taken out.
@@ -65,7 +66,7 @@ class ModelResiduals final : public Residuals {
 
   /// slips: indices into observations.slips.
   ModelResiduals(const FrictionModel& model, const Observations& observations, std::vector<std::size_t> slips,
-                 const Options& options = {Loss::squares, 0});
+                 const Options& options = {Loss::squares, 0, 1});
 
   std::size_t count() const override { return slips_.size() * rows_per_slip(); }
   std::size_t parameter_count() const override { return model_.parameters().size(); }
@@ -149,6 +150,11 @@ class ModelResiduals final : public Residuals {
             bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
+  /// The same of the slips [begin, end).
+  bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
+                const FurtherColumns& further) const;
+  /// Into how many parts the slips are best split.
+  std::size_t parts() const;
   /// What noise that raises all of a slip alike does to its rows of friction.
   Eigen::VectorXd level_column(const Observations::SlipObservation& range) const;
   /// Takes out of the rows of a slip what that noise is expected to do.

@@ -51,6 +51,8 @@ struct FitOptions {
   bool profile = false;       ///< profile likelihood intervals beside the others
   std::vector<double> start;  ///< values (SI) to begin with, instead of several starts; empty: from the data
   std::vector<GivenParameter> given;
+  int threads = 1;  ///< that evaluate the model on long records (0: as many as there are); the result does not depend
+                    ///< on it
 };
 
 /// Rise of the squares where a parameter is held at a value [SI] and all others are refitted, in units of the rise at

@@ -12,13 +12,17 @@
 
 namespace tribofit {
 
+/// Processors of this machine, of which there is at least one.
+inline int available_threads() {
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 /// Runs task(0) ... task(count-1) on up to `threads` threads (0: as many as there are).
 /// Every task writes its own result, so results do not depend on the number of threads. The exception of the lowest
 /// failing task is thrown on; Stopped, where the work is to stop.
 template <class Task>
 void run_tasks(std::size_t count, int threads, Task&& task) {
-  const std::size_t available =
-      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+  const auto available = static_cast<std::size_t>(threads > 0 ? threads : available_threads());
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::size_t failed = count;

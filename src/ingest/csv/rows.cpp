@@ -16,7 +16,7 @@
 #include "ingest/limits.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/helper_threads.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {
@@ -86,8 +86,7 @@ class RowReader {
   }
 
   Rows read(int threads) {
-    const std::size_t available =
-        threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t available = static_cast<std::size_t>(threads > 0 ? threads : available_threads());
     const std::size_t helpers = std::min(available, chunks_) - (chunks_ > 0 ? 1 : 0);
     {
       const HelperThreads others(helpers, [this] { work(); });

@@ -15,7 +15,7 @@
 #include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/helper_threads.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 // After "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements. An element is a tag of type
 // and size, its bytes, and zeros up to a multiple of eight. A variable is an element "matrix": flags, sizes, name,
@@ -283,8 +283,7 @@ class Version5 : public MatContents {
         }
       }
     };
-    const std::size_t most =
-        threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t most = static_cast<std::size_t>(threads > 0 ? threads : available_threads());
     {
       const HelperThreads others(std::max<std::size_t>(1, std::min(most, jobs.size())) - 1, work);
       work();
