@@ -97,7 +97,8 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
     std::vector<double>& q = fit.fold_parameters[fold];
     const Eigen::VectorXd step = step_without(context, solution, equations, free, fit, fold);
     const bool is_long = take_step(context.bounds, free, step, q);
-    if (is_long && !context.by_extremes()) q = context.solve(kept, p, quick_search()).p;
+    if (is_long && !context.by_extremes())
+      q = context.solve(kept, p, context.is_look() ? short_search() : quick_search()).p;
     set_squares_of_fold(context, held, p, q, fit);
   }
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);

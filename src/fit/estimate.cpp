@@ -21,14 +21,6 @@ std::vector<std::size_t> sample_of_slips(const Observations& observations, std::
   return slips;
 }
 
-/// Good enough for a look: what has not been found by then is far away.
-SolverOptions short_search() {
-  SolverOptions look = quick_search();
-  look.max_iterations = 12;
-  look.relative_cost = 1e-6;
-  return look;
-}
-
 /// The last digits; along a flat valley nothing is gained by going on.
 SolverOptions careful_search() {
   SolverOptions careful;
@@ -100,7 +92,7 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
 /// that scatter taken out.
 Solution joint_estimate(FitContext& context, Fit& fit) {
   Solution out;
-  const bool look = context.options.starts == 0;
+  const bool look = context.is_look();
   const SolverOptions search = look ? short_search() : quick_search();
   const std::vector<std::vector<double>> starts = different_starts(context);
   out.start = starts[0];
@@ -169,6 +161,13 @@ SolverOptions quick_search() {
   quick.relative_step = 1e-7;
   quick.careful = false;
   return quick;
+}
+
+SolverOptions short_search() {
+  SolverOptions look = quick_search();
+  look.max_iterations = 12;
+  look.relative_cost = 1e-6;
+  return look;
 }
 
 Solution estimate(FitContext& context, Fit& fit) {

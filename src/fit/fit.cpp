@@ -255,7 +255,7 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   if (!context.by_extremes()) {
     const Eigen::MatrixXd inverse = inverse_over(equations.total, freedom.inside);
     widen_by_sampling(inverse, fit);
-    open_whole_ranges(residuals, context.given, inverse, fit);
+    if (!context.is_look()) open_whole_ranges(residuals, context.given, inverse, fit);
     if (options.profile) add_profiles(residuals, context.given, inverse, fit);
   }
   add_messages(freedom.unconstrained, freedom.groups, fit);

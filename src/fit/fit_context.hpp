@@ -23,6 +23,7 @@ struct FitContext {
   ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
   bool by_extremes() const { return options.protocol == Protocol::published; }
+  bool is_look() const { return options.starts == 0; }
   ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
     ModelResiduals out(model, observations, slips, evaluation);
     if (whitening.any()) out.whiten(whitening, own_levels);
@@ -40,6 +41,9 @@ struct FitContext {
 
 /// A search that is good enough to compare.
 SolverOptions quick_search();
+
+/// Good enough for a look: what has not been found by then is far away.
+SolverOptions short_search();
 
 /// Two ends of quick searches, which stop at steps of 1e-7: no further apart than ten of those.
 bool are_alike(const std::vector<double>& a, const std::vector<double>& b);

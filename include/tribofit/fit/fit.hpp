@@ -45,7 +45,8 @@ struct FitOptions {
   Protocol protocol = Protocol::joint;
   Loss loss = Loss::squares;
   double loss_scale = 3;  ///< where the robust losses turn from squares to straight lines, in units of Floor::noise
-  int starts = 5;         ///< starting points; the first comes from the data, the others are seeded; 0: a short look
+  int starts = 5;         ///< starting points; the first comes from the data, the others are seeded; 0: a short look,
+                          ///< whose intervals may be finite where those of a fit are open
   std::uint64_t seed = 1;
   int folds = 5;              ///< contiguous blocks of cycles held out in turn
   bool profile = false;       ///< profile likelihood intervals beside the others
