@@ -95,11 +95,13 @@ void Simulation::advance(double until) {
 /// From here on samples are taken.
 void Simulation::reserve_samples() {
   samples_ = static_cast<std::size_t>(std::llround(options_.duration * options_.rate));
-  for (auto* channel :
-       {&motion_.time, &motion_.displacement, &motion_.velocity, &motion_.acceleration, &motion_.relative_velocity,
-        &motion_.friction, &motion_.disc_speed, &motion_.disc_angle, &motion_.distance}) {
+  for (auto* channel : {&motion_.time, &motion_.velocity, &motion_.relative_velocity, &motion_.friction})
     channel->reserve(samples_);
-  }
+  const SimulatedChannels& kept = options_.channels;
+  if (kept.displacement) motion_.displacement.reserve(samples_);
+  if (kept.acceleration) motion_.acceleration.reserve(samples_);
+  if (kept.disc) motion_.disc_speed.reserve(samples_), motion_.disc_angle.reserve(samples_);
+  if (kept.distance) motion_.distance.reserve(samples_);
   motion_.sticks.reserve(samples_);
 }
 
@@ -109,8 +111,7 @@ void Simulation::sample_stick(double until) {
     if (t > until) return;
     const double x = stuck_position(t);
     write_sample(t, x, setup_.disc_velocity(t), spring_pull(x, t) / setup_.load(t), true);
-    motion_.distance.push_back(slid_);
-    if (setup_.needs_strokes) motion_.reversal_distance.push_back(flow_.strokes().gone(slid_));
+    write_distance(slid_);
   }
 }
 
@@ -120,22 +121,30 @@ void Simulation::sample_slip(double h) {
     if (t > time_ + h) return;
     const BlockState y = dense(t, h);
     write_sample(t, y[0] / setup_.natural_frequency, y[1], flow_.friction(t, y), false);
-    motion_.distance.push_back(flow_.slid(t, y));
-    if (setup_.needs_strokes) motion_.reversal_distance.push_back(flow_.strokes().gone(motion_.distance.back()));
+    write_distance(flow_.slid(t, y));
   }
+}
+
+void Simulation::write_distance(double slid) {
+  if (options_.channels.distance) motion_.distance.push_back(slid);
+  if (setup_.needs_strokes) motion_.reversal_distance.push_back(flow_.strokes().gone(slid));
 }
 
 void Simulation::write_sample(double t, double x, double v, double friction, bool sticks) {
   const Rig& rig = setup_.rig;
   const double load = setup_.load(t);
   motion_.time.push_back(t);
-  motion_.displacement.push_back(x);
+  const SimulatedChannels& kept = options_.channels;
+  if (kept.displacement) motion_.displacement.push_back(x);
   motion_.velocity.push_back(v);
-  motion_.acceleration.push_back((load * friction - rig.damping * v - rig.stiffness * x) / rig.mass);
+  if (kept.acceleration)
+    motion_.acceleration.push_back((load * friction - rig.damping * v - rig.stiffness * x) / rig.mass);
   motion_.relative_velocity.push_back(sticks ? 0 : setup_.disc_velocity(t) - v);
   motion_.friction.push_back(friction);
-  motion_.disc_speed.push_back(setup_.drive.speed.speed(t));
-  motion_.disc_angle.push_back(setup_.drive.speed.angle(t));
+  if (kept.disc) {
+    motion_.disc_speed.push_back(setup_.drive.speed.speed(t));
+    motion_.disc_angle.push_back(setup_.drive.speed.angle(t));
+  }
   if (setup_.drive.load) motion_.load.push_back(load);
   if (setup_.drive.temperature) motion_.temperature.push_back(setup_.temperature(t));
   motion_.sticks.push_back(sticks || friction_.acts_in_stick() ? 1 : 0);

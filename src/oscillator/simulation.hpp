@@ -60,6 +60,7 @@ class Simulation {
   void sample_stick(double until);
   void sample_slip(double h);
   void write_sample(double t, double x, double v, double friction, bool sticks);
+  void write_distance(double slid);
 
   const SimulationOptions options_;
   Setup setup_;

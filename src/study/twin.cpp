@@ -15,6 +15,7 @@
 #include "motion_measures.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
@@ -101,9 +102,15 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
   options.scatter = scatter;
   options.seed = seed;
   if (drive.speed.constant) options.settle = settling_time(machine.rig, drive, machine.parameters);
-  const SimulatedMotion simulated = simulate(machine.rig, drive, machine.model, machine.parameters, options);
+  const Channels needs = machine.model.needs();  // what neither sensors nor effects ask for would fill the memory
+  options.channels = {.displacement = true_sensors(sensors, machine.model, machine.parameters).velocity_high_pass > 0,
+                      .acceleration = needs.acceleration || sensors.mass_below > 0,
+                      .disc = needs.angle || !drive.speed.constant,
+                      .distance = needs.distance};
   sensors.seed = seed + 0x9e3779b97f4a7c15u;
-  Trace trace = record(simulated, machine.model, machine.parameters, sensors).trace;
+  Trace trace = record(simulate(machine.rig, drive, machine.model, machine.parameters, options), machine.model,
+                       machine.parameters, sensors)
+                    .trace;
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
   const Motion twin = compute_motion(std::move(trace), {},

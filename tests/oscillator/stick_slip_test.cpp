@@ -8,6 +8,7 @@
 
 #include "rigs.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/oscillator/sensors.hpp"
 
 namespace tribofit {
 namespace {
@@ -234,4 +235,25 @@ TEST(StickSlip, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
+TEST(StickSlip, ChannelsThatAreLeftOutChangeNothingElse) {
+  const Case c = published_case(0.015, ExponentialLaw{});
+  SimulationOptions options;
+  options.duration = 2;
+  const SimulatedMotion whole = simulate(c, options);
+  options.channels = {.displacement = false, .acceleration = false, .disc = false, .distance = false};
+  const SimulatedMotion part = simulate(c, options);
+  ASSERT_EQ(part.size(), whole.size());
+  EXPECT_EQ(part.velocity, whole.velocity);
+  EXPECT_EQ(part.friction, whole.friction);
+  EXPECT_EQ(part.relative_velocity, whole.relative_velocity);
+  EXPECT_EQ(part.slips.size(), whole.slips.size());
+  EXPECT_TRUE(part.displacement.empty() && part.acceleration.empty() && part.disc_speed.empty());
+  EXPECT_TRUE(part.disc_angle.empty() && part.distance.empty());
+  EXPECT_FALSE(whole.displacement.empty() || whole.acceleration.empty() || whole.disc_speed.empty());
+  // Sensors that ask for none of them read the same.
+  EXPECT_EQ(record(part, c.model, c.p).trace.friction, record(whole, c.model, c.p).trace.friction);
+  EXPECT_EQ(record(part, c.model, c.p).trace.conditions.speed.value,
+            record(whole, c.model, c.p).trace.conditions.speed.value);
+}
+
 }  // namespace tribofit

@@ -25,6 +25,14 @@ struct BlockStart {
   double displacement = 0, velocity = 0;  ///< [m, m/s]
 };
 
+/// Channels of a simulated motion that can be left out, for the memory they take; load, temperature and the distance
+/// since a reversal are there only where something varies or needs them.
+struct SimulatedChannels {
+  bool displacement = true, acceleration = true;  ///< of the block
+  bool disc = true;                               ///< its speed and angle
+  bool distance = true;                           ///< slid
+};
+
 struct SimulationOptions {
   double duration = 1;  ///< of the record [s], > 0
   double rate = 20000;  ///< samples per second [Hz]; 0: no samples, events only
@@ -36,6 +44,7 @@ struct SimulationOptions {
   /// Where the block begins; nothing: unloaded (x = 0) and carried by the disc. At another speed than the disc's it
   /// begins in slip, with the memories of the law as in steady sliding at its v_r.
   std::optional<BlockStart> start = {};
+  SimulatedChannels channels = {};  ///< that simulate() keeps
 };
 
 /// One slip of a simulated motion, with the stick before it.
@@ -56,7 +65,8 @@ struct TurningPoint {
   bool is_maximum = false;
 };
 
-/// A simulated motion on a uniform grid, SI, before any sensor. All channels have the same length.
+/// A simulated motion on a uniform grid, SI, before any sensor. All channels have the same length, but for those that
+/// were left out (SimulatedChannels), which are empty.
 struct SimulatedMotion {
   double rate = 0;  ///< [Hz]
   bool settled = false;
