@@ -9,9 +9,11 @@
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "ingest/declared_conditions.hpp"
+#include "kinematics/side_by_side.hpp"
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
@@ -40,16 +42,19 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   out.notes = trace.notes;
   out.warnings = trace.warnings;
 
-  out.motion = compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects));
+  out.motion =
+      compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects), options.threads);
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   stop_point();
-  out.segmentation = find_cycles(out.motion);
+  const bool has_spectrum = !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
+  run_tasks(2, options.threads, [&](std::size_t k) {
+    if (k == 0) out.segmentation = find_cycles(out.motion);
+    if (k == 1 && has_spectrum) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
+  });
   stop_point();
   exclude(options.selection, out.motion, out.segmentation);
   if (out.motion.kind == RecordKind::force_only) out.force_statistics = force_statistics(out.motion);
   if (out.motion.kind == RecordKind::motion_only) out.friction_levels = friction_levels(out.motion, out.segmentation);
-  if (!out.motion.is_points() && !out.force_statistics)
-    out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
   out.notes.insert(out.notes.end(), out.segmentation.notes.begin(), out.segmentation.notes.end());
 

@@ -52,10 +52,10 @@ struct Sources {
   std::span<const Record> records;
   const Observations& observations;
   const Instruments& instruments;
-  std::vector<Place> places;  ///< of every value
+  mutable std::vector<Place> places = {};  ///< of every value, once something asks for them
 
-  Sources(std::span<const Record> of_records, const Observations& of_values, const Instruments& declared)
-      : records(of_records), observations(of_values), instruments(declared), places(of_values.size()) {
+  void find_places() const {
+    places.resize(observations.size());
     for (const auto& slip : observations.slips) {
       const Motion& motion = *records[slip.record].motion;
       for (std::size_t i = slip.begin; i < slip.end; ++i) {
@@ -69,6 +69,7 @@ struct Sources {
   /// change(place, index) of every value.
   template <class Change>
   std::vector<double> values(Change&& change) const {
+    if (places.empty()) find_places();
     std::vector<double> out(places.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(places[i], i);
     return out;
@@ -171,8 +172,8 @@ void add_vibrometer_shifts(const Sources& s, std::vector<Shift>& shifts) {
     })});
   }
   std::vector<std::vector<double>> x;
-  for (const Record& record : s.records) x.push_back(displacement(*record.motion));
   const auto shift_of = [&](double corner, std::size_t only) {
+    for (std::size_t r = x.size(); r < s.records.size(); ++r) x.push_back(displacement(*s.records[r].motion));
     return Shift{s.values([&](const Place& at, std::size_t) {
       return at.record == only || only == s.records.size() ? -2 * std::numbers::pi * corner * x[at.record][at.sample]
                                                            : 0.0;
@@ -323,7 +324,7 @@ std::vector<double> systematic_errors(const FrictionModel& model, const std::vec
                                       std::span<const Record> records, const Observations& observations,
                                       const Instruments& instruments, const std::vector<bool>& free, bool published) {
   std::vector<Shift> shifts;
-  const Sources sources(records, observations, instruments);
+  const Sources sources{records, observations, instruments};
   add_disc_shifts(sources, shifts);
   add_vibrometer_shifts(sources, shifts);
   add_undone_shifts(sources, shifts);

@@ -84,6 +84,10 @@ inline constexpr std::size_t kLongestText = 400, kMostTextLines = 4096;
 
 /// Numbers are smaller than this: they stay finite when they are turned into SI and divided by a load.
 inline constexpr double kLargestValue = 1e100;
+/// Memory that a record takes while it is looked at, over its values; and a size that is not compared with what is free
+/// [bytes].
+inline constexpr double kMemoryOverValues = 1.5;
+inline constexpr std::uint64_t kMemoryNotAsked = std::uint64_t{1} << 28;
 /// Columns of a file; more are no channels of a trace.
 inline constexpr std::size_t kMostColumns = 4096;
 /// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is found

@@ -13,6 +13,7 @@
 #include "gaps.hpp"
 #include "join.hpp"
 #include "limits.hpp"
+#include "memory.hpp"
 #include "points.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -88,7 +89,12 @@ std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, c
 
 void load_columns(RawTable& table, const std::vector<Column>& used, int threads) {
   std::vector<std::size_t> wanted;
-  for (const Column& column : used) wanted.push_back(column.index);
+  std::size_t values = 0;
+  for (const Column& column : used) {
+    wanted.push_back(column.index);
+    values += table.columns[column.index].count;
+  }
+  refuse_beyond_memory(static_cast<double>(values), 1, table.path);
   if (table.load) table.load(table, wanted, threads);
   for (const std::size_t index : wanted) {
     if (table.columns[index].refusal) throw *table.columns[index].refusal;

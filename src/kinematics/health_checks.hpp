@@ -11,6 +11,7 @@
 #include "low_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
+#include "range_crowds.hpp"
 #include "recording_faults.hpp"
 #include "ripple.hpp"
 #include "spoilt_samples.hpp"
@@ -35,7 +36,7 @@ struct RangeEnds {
   double largest_velocity = 0;                  ///< [m/s]
   double friction_slew = 0, velocity_slew = 0;  ///< largest change in a sample, where changes crowd at it; 0: none
 };
-RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity);
+RangeEnds range_ends(const Trace& trace, const ChannelOutlines& channels, int threads);
 
 /// Where the velocity rests in stick, as recorded.
 struct Resting {
@@ -44,14 +45,14 @@ struct Resting {
 };
 
 /// A converter or an amplifier at its limit. A record without noise repeats its plateau, and that is no clipping. Nor
-/// is a lowest friction that is above zero. Adds the samples to those that are not used.
+/// is a lowest friction that is above zero. Adds the samples to those that are not used. step: sampling interval [s].
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
-                          const Resting& resting, SpoiltSamples& spoilt);
+                          const Resting& resting, double step, SpoiltSamples& spoilt);
 
 /// Gaps in time, what was spoilt, and stretches in which both channels stand still.
-/// plateaus: of stick.
+/// plateaus: of stick; step: sampling interval [s].
 HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, const LostSamples& lost,
-                           std::size_t plateaus);
+                           std::size_t plateaus, double step);
 
 /// What became of the high-pass search. `declared` is the declared corner, if any.
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks);

@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -32,12 +33,32 @@ std::pair<std::span<const double>, std::size_t> middle_of(std::span<const double
   return {channel.subspan(from, n), from};
 }
 
-/// Squares by their place in every so many.
-std::vector<double> by_phase(std::span<const double> squares, std::size_t count) {
+/// The sum at a place in every so many, with so many places to either side.
+double sum_about(const std::vector<double>& sums, std::size_t phase, std::size_t beside) {
+  const std::size_t count = sums.size();
+  double sum = sums[phase];
+  for (std::size_t k = 1; k <= beside; ++k) sum += sums[(phase + k) % count] + sums[(phase + count - k) % count];
+  return sum;
+}
+
+std::size_t largest_about(const std::vector<double>& sums, std::size_t beside) {
+  std::size_t best = 0;
+  for (std::size_t phase = 1; phase < sums.size(); ++phase)
+    best = sum_about(sums, phase, beside) > sum_about(sums, best, beside) ? phase : best;
+  return best;
+}
+
+/// Squares by their place in every so many; nothing once more than `apart` is not about one place, wherever that is.
+std::vector<double> by_phase(std::span<const double> squares, std::size_t count, std::size_t beside, double apart) {
+  constexpr std::size_t kLookEvery = 2048;
   std::vector<double> sums(count, 0);
-  for (std::size_t begin = 0; begin < squares.size(); begin += count) {
+  for (std::size_t begin = 0, next = kLookEvery; begin < squares.size(); begin += count) {
     const std::size_t some = std::min(count, squares.size() - begin);
     for (std::size_t phase = 0; phase < some; ++phase) sums[phase] += squares[begin + phase];
+    if (begin < next) continue;
+    next = begin + kLookEvery;
+    const double seen = std::reduce(sums.begin(), sums.end());
+    if (seen - sum_about(sums, largest_about(sums, beside), beside) > apart) return {};
   }
   return sums;
 }
@@ -55,18 +76,14 @@ bool only_there(std::span<const double> squares, const Hold& hold, std::size_t b
 /// The most samples of which one, with so many to either side, has so much of the squares, and which; of events that
 /// are few not by chance.
 Hold spaced(std::span<const double> squares, double part, std::size_t beside, bool few) {
+  constexpr double kRounding = 1e-9;  // of the sums
   const double all = std::reduce(squares.begin(), squares.end());
   for (std::size_t count = kLongestHold; all > 0 && count > 2 * beside + 1; --count) {
-    const std::vector<double> sums = by_phase(squares, count);
-    const auto about = [&](std::size_t phase) {
-      double sum = sums[phase];
-      for (std::size_t k = 1; k <= beside; ++k) sum += sums[(phase + k) % count] + sums[(phase + count - k) % count];
-      return sum;
-    };
-    Hold best{count, 0};
-    for (std::size_t phase = 1; phase < count; ++phase)
-      best.first = about(phase) > about(best.first) ? phase : best.first;
-    if (about(best.first) > part * all && (!few || only_there(squares, best, beside))) return best;
+    const std::vector<double> sums = by_phase(squares, count, beside, (1 - part + kRounding) * all);
+    if (sums.empty()) continue;
+    const Hold best{count, largest_about(sums, beside)};
+    const bool enough = sum_about(sums, best.first, beside) > part * all;
+    if (enough && (!few || only_there(squares, best, beside))) return best;
   }
   return {};
 }
@@ -94,8 +111,11 @@ Hold find_hold(std::span<const double> channel) {
   return hold;
 }
 
-void keep_fresh_values(Trace& trace, std::vector<std::string>& notes) {
-  const Hold friction = find_hold(trace.friction), velocity = find_hold(trace.velocity);
+void keep_fresh_values(Trace& trace, int threads, std::vector<std::string>& notes) {
+  Hold friction, velocity;
+  run_tasks(2, threads, [&](std::size_t k) {
+    (k == 0 ? friction : velocity) = find_hold(k == 0 ? trace.friction : trace.velocity);
+  });
   const Hold& hold = velocity.samples > friction.samples ? velocity : friction;
   if (hold.samples == 1 || trace.size() / hold.samples < kFewestDistributed) return;
   const char* which = friction.samples == velocity.samples ? "friction and velocity have"

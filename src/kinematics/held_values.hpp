@@ -20,6 +20,6 @@ struct Hold {
 Hold find_hold(std::span<const double> channel);
 
 /// Leaves the samples that have values of their own. Says so in the notes.
-void keep_fresh_values(Trace& trace, std::vector<std::string>& notes);
+void keep_fresh_values(Trace& trace, int threads, std::vector<std::string>& notes);
 
 }  // namespace tribofit::kinematics

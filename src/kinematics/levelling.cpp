@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "limits.hpp"
+#include "range_crowds.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -71,13 +73,19 @@ struct Crowd {
 };
 
 /// sign: -1 looks at the lower end, of a range that is turned over, too.
-Crowd find_crowd(std::span<const double> x, const Extremes& range, double sign) {
+Crowd find_crowd(const ChannelOutline& channel, const Extremes& range, double sign) {
+  const std::span<const double> x = channel.x;
   std::vector<std::size_t> counts(kClipBins, 0);  // from the end of the range inwards
   const double scale = static_cast<double>(kClipBins) / (range.high - range.low);
   const double looked_at = (5 * static_cast<double>(kClipBins / kNarrowestRange) + 1) / scale;
-  for (const double value : x) {
-    const double below = range.high - sign * value;
-    if (below < looked_at) ++counts[std::min(kClipBins - 1, static_cast<std::size_t>(below * scale))];
+  for (std::size_t c = 0; c < channel.values.part.size(); ++c) {
+    const Extremes& part = channel.values.part[c];
+    if (range.high - sign * (sign > 0 ? part.high : part.low) >= looked_at) continue;
+    const std::size_t begin = c * Chunks::length;
+    for (const double value : x.subspan(begin, std::min(Chunks::length, x.size() - begin))) {
+      const double below = range.high - sign * value;
+      if (below < looked_at) ++counts[std::min(kClipBins - 1, static_cast<std::size_t>(below * scale))];
+    }
   }
   Crowd best;
   const auto sum = [&](std::size_t from, std::size_t to) {
@@ -97,15 +105,17 @@ Crowd find_crowd(std::span<const double> x, const Extremes& range, double sign) 
 
 }  // namespace
 
-PileUp find_levelling(std::span<const double> friction, std::span<const double> velocity, bool upper) {
+PileUp find_levelling(const ChannelOutline& channel, std::span<const double> velocity, bool upper) {
+  const std::span<const double> friction = channel.x;
   PileUp pile;
   if (friction.size() < kFewestDistributed || friction.size() != velocity.size()) return pile;
-  const Extremes whole = extremes(friction), range = upper ? whole : Extremes{-whole.high, -whole.low};
+  const Extremes &whole = channel.values.whole, range = upper ? whole : Extremes{-whole.high, -whole.low};
   if (!(range.high > range.low)) return pile;
-  const Crowd crowd = find_crowd(friction, range, upper ? 1 : -1);
+  const Crowd crowd = find_crowd(channel, range, upper ? 1 : -1);
   if (crowd.density < kCrowdedQuiet) return pile;
-  std::vector<double> x(friction.begin(), friction.end());
-  if (!upper) std::ranges::transform(x, x.begin(), std::negate());
+  std::vector<double> turned_over;
+  if (!upper) std::ranges::transform(friction, std::back_inserter(turned_over), std::negate());
+  const std::span<const double> x = upper ? friction : turned_over;
   const std::vector<SampleSpan> spans = spans_at_limit(x, crowd.from, range.high);
   if (!levels_off(x, velocity, spans)) return pile;
   pile.levels_off = true;

@@ -13,10 +13,11 @@ bool are_lost(const LostSamples& lost, std::size_t plateaus) {
          static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
 }
 
-LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise) {
+LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise,
+                              double step) {
   LostSamples lost;
   const std::vector<double>& v = trace.velocity;
-  const double step = trace.interval(), least = kJumpNoise * noise;
+  const double least = kJumpNoise * noise;
   const auto at_rest = [&](std::size_t i) {
     return std::abs(v[i] - (disc.varying.empty() ? 0 : disc.varying[i]) - search.plateaus.level) <= least;
   };

@@ -17,8 +17,9 @@ struct LostSamples {
 /// Too many for blows on the rig. plateaus: of stick.
 bool are_lost(const LostSamples& lost, std::size_t plateaus);
 
-/// noise: of the velocity [m/s]. Jumps from rest, or to it, are the rig's own where most sticks have one. Cost: one
-/// pass.
-LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise);
+/// noise: of the velocity [m/s]; step: sampling interval [s]. Jumps from rest, or to it, are the rig's own where most
+/// sticks have one. Cost: one pass.
+LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise,
+                              double step);
 
 }  // namespace tribofit::kinematics

@@ -11,6 +11,7 @@
 #include "limits.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 /// v_r about one re-stick, every `stride`-th sample.
 struct Restick {
   std::vector<double> velocity;
+  double squares = 0;                 ///< sum of its squares
   double fall = 0;                    ///< samples in which it falls from the highest to nothing
   double at = 0;                      ///< where it does, roughly [samples]
   std::size_t begin = 0, stride = 1;  ///< of these samples in the record
@@ -79,17 +81,20 @@ Eigen::Vector3d responses(const Filter& filter, double u, double t) {
 Smallest fit_at(const Restick& restick, double at, const Filter& filter) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0;
   const double scale = 1 / restick.fall;
-  for (std::size_t i = 0; i < restick.velocity.size(); ++i) {
+  // Without a filter nothing is left after it.
+  const std::size_t size = restick.velocity.size(),
+                    end = filter.width > 0 ? size : std::min(size, static_cast<std::size_t>(std::ceil(at)));
+  for (std::size_t i = 0; i < end; ++i) {
     const Eigen::Vector3d basis = responses(filter, (static_cast<double>(i) - at) * scale, filter.width * scale);
     const double y = restick.velocity[i];
-    normal += basis * basis.transpose();
-    right += basis * y;
-    squares += y * y;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column <= row; ++column) normal(row, column) += basis[row] * basis[column];
+      right[row] += basis[row] * y;
+    }
   }
-  const Eigen::Vector3d c = normal.ldlt().solve(right);
-  return {std::max(0.0, squares - c.dot(right)), c[0] * scale, at};
+  const Eigen::Vector3d c = normal.ldlt().solve(right);  // of the lower triangle
+  return {std::max(0.0, restick.squares - c.dot(right)), c[0] * scale, at};
 }
 
 /// The best place.
@@ -137,6 +142,7 @@ std::vector<Restick> resticks(std::span<const double> v, double rest, double fas
     for (std::size_t k = end - std::max<std::size_t>(2, (end - down) / 4); k < end; ++k) after.push_back(reads(k));
     const double level = median(std::move(after));
     for (std::size_t k = begin; k < end; k += stride) restick.velocity.push_back(reads(k) - level);
+    for (const double y : restick.velocity) restick.squares += y * y;
     restick.fall = static_cast<double>(fall) / static_cast<double>(stride);
     restick.at = restick.fall;
     all.push_back(std::move(restick));
@@ -259,12 +265,14 @@ Estimate usual_of(const std::vector<double>& taus, double model) {
 }
 
 /// The time constant that fits each re-stick best; about: of the usual one [samples].
-void refine(const std::vector<Restick>& some, double about, double step, LowPass& found) {
+void refine(const std::vector<Restick>& some, double about, double step, int threads, LowPass& found) {
+  std::vector<Refined> refined(some.size());
+  run_tasks(some.size(), threads, [&](std::size_t k) { refined[k] = refine(some[k], about); });
   std::vector<double> by_all, by_tail;
-  for (const Restick& restick : some) {
-    const Refined one = refine(restick, about);
-    by_all.push_back(static_cast<double>(restick.stride) * one.by_all);
-    if (one.by_tail) by_tail.push_back(static_cast<double>(restick.stride) * *one.by_tail);
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const auto stride = static_cast<double>(some[k].stride);
+    by_all.push_back(stride * refined[k].by_all);
+    if (refined[k].by_tail) by_tail.push_back(stride * *refined[k].by_tail);
   }
   const Estimate all = usual_of(by_all, kKinkModel);
   const Estimate tail = by_tail.size() < kFewestPeriods ? all : usual_of(by_tail, kDecayModel);
@@ -288,8 +296,36 @@ struct Look {
   bool is_explained = false, is_sharp = false;
 };
 
-Look look_at(std::span<const double> velocity, double rest, double noise, double step, double fastest, double from,
-             double shortest = kKinkRest) {
+/// Every filter that is tried where v_r falls over so many samples.
+std::vector<Filter> filters_for(double fall) {
+  std::vector<Filter> filters;
+  for (const Response kind : {Response::first_order, Response::second_order, Response::mean}) {
+    for (double t = kKinkFirst; t < (kind == Response::mean ? 2 : 1) * fall; t *= kKinkNext)
+      filters.push_back({kind, t});
+  }
+  return filters;
+}
+
+/// Velocity about which re-sticks are looked at, and what is known of it.
+struct Looked {
+  std::span<const double> velocity;
+  double rest = 0, noise = 0, step = 0, fastest = 0;
+  int threads = 1;
+};
+
+/// Where v_r comes to rest after each slip [samples], with the filter that was found.
+std::vector<double> places_of(const std::vector<Restick>& all, const LowPass& found, const Looked& at) {
+  std::vector<double> places(all.size());
+  run_tasks(all.size(), at.threads, [&](std::size_t k) {
+    const auto stride = static_cast<double>(all[k].stride);
+    const double width = found.is_first_order ? found.tau / (at.step * stride) : 0;
+    places[k] = static_cast<double>(all[k].begin) + stride * fit(all[k], {Response::first_order, width}).at;
+  });
+  return places;
+}
+
+Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
+  const auto& [velocity, rest, noise, step, fastest, threads] = at;
   Look look;
   LowPass& found = look.found;
   const std::vector<Restick> all = resticks(velocity, rest, fastest, from, shortest), some = some_of(all);
@@ -301,11 +337,11 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
   const Smallest sharp = usual(some, {});
   Smallest best = sharp;
   Filter filter;
-  for (const Response kind : {Response::first_order, Response::second_order, Response::mean}) {
-    for (double t = kKinkFirst; t < (kind == Response::mean ? 2 : 1) * most; t *= kKinkNext) {
-      const Smallest here = usual(some, {kind, t});
-      if (here.squares < best.squares) best = here, filter = {kind, t};
-    }
+  const std::vector<Filter> filters = filters_for(most);
+  std::vector<Smallest> behind(filters.size());
+  run_tasks(filters.size(), threads, [&](std::size_t k) { behind[k] = usual(some, filters[k]); });
+  for (std::size_t k = 0; k < filters.size(); ++k) {
+    if (behind[k].squares < best.squares) best = behind[k], filter = filters[k];
   }
   if (sharp.squares > kKinkExplained * best.squares) {
     const auto left = [&](double width) { return usual(some, {filter.kind, width}).squares; };
@@ -327,12 +363,8 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
       best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) && returns;
   found.is_second_order = found.is_filter && filter.kind == Response::second_order;
   found.is_first_order = found.is_filter && filter.kind == Response::first_order && is_inside;
-  if (found.is_first_order) refine(some, filter.width, step, found);
-  for (const Restick& restick : all) {
-    const double width = found.is_first_order ? found.tau / (step * static_cast<double>(restick.stride)) : 0;
-    found.resticks.push_back(static_cast<double>(restick.begin) +
-                             static_cast<double>(restick.stride) * fit(restick, {Response::first_order, width}).at);
-  }
+  if (found.is_first_order) refine(some, filter.width, step, threads, found);
+  found.resticks = places_of(all, found, at);
   const double left = std::max(kKinkNoise * noise, kKinkUnexplained * fastest);
   look.is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;
   look.is_explained = found.is_filter ? is_inside : look.is_sharp;
@@ -341,24 +373,25 @@ Look look_at(std::span<const double> velocity, double rest, double noise, double
 
 }  // namespace
 
-LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step) {
+LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step, int threads) {
   std::vector<double> size = thinned(velocity, std::size_t{1} << 15);
   for (double& v : size) v = std::abs(v - rest);
   if (size.empty()) return {};
   const double fastest = quantile(std::move(size), 0.999);
   if (!(fastest > 0)) return {};
-  Look look = look_at(velocity, rest, noise, step, fastest, kKinkFrom);
+  const Looked at{velocity, rest, noise, step, fastest, threads};
+  Look look = look_at(at, kKinkFrom);
   // Behind short sticks only the last of the slip shows it.
   if (look.found.slips == 0) {
     // A fast slip is no cubic there, which a filter imitates: only that there is none is seen.
-    const Look last = look_at(velocity, rest, noise, step, fastest, kKinkFromShort, kKinkRestShort);
+    const Look last = look_at(at, kKinkFromShort, kKinkRestShort);
     if (last.is_sharp) look.found = last.found;
     look.found.is_filter = look.found.is_first_order = false;
     return look.found;
   }
   if (look.is_explained) return look.found;
   // Behind a slow filter the kink is higher up.
-  Look higher = look_at(velocity, rest, noise, step, fastest, kKinkFromSlow);
+  Look higher = look_at(at, kKinkFromSlow);
   return higher.found.is_filter ? higher.found : look.found;
 }
 

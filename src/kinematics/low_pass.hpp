@@ -22,7 +22,7 @@ struct LowPass {
 };
 
 /// v_r or v_b [m/s] of a record that sticks and slips; rest: where it rests, noise: its standard deviation there [m/s].
-/// Cost: a tenth of a second.
-LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step);
+/// The result does not depend on the threads. Cost: a tenth of a second.
+LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step, int threads = 1);
 
 }  // namespace tribofit::kinematics

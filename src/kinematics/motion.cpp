@@ -15,8 +15,10 @@
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
 #include "points.hpp"
+#include "side_by_side.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::kinematics {
 
@@ -38,8 +40,8 @@ bool make_missing_channels(Trace& trace, std::vector<std::string>& notes) {
 
 }  // namespace
 
-MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
-    : trace_(std::move(trace)), instruments_(instruments), options_(options) {
+MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads)
+    : trace_(std::move(trace)), instruments_(instruments), options_(options), threads_(threads) {
   kinematics::require_channels(trace_);
   kinematics::take_conditions_from_instruments(trace_.conditions, instruments.rig);
   if (trace_.steps.empty()) trace_.steps.push_back({0, trace_.size(), "", {}});
@@ -50,11 +52,19 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
 
 /// What the recorder did: its range and its gaps.
 void MotionStages::look_at_recording() {
-  spoilt_.emplace(trace_);
+  ChannelOutlines channels;
+  run_tasks(2, threads_, [&](std::size_t k) {
+    if (k == 0) {
+      channels.friction = ChannelOutline(trace_.friction);
+    } else {
+      channels.velocity = ChannelOutline(trace_.velocity);
+    }
+  });
+  spoilt_.emplace(trace_, channels, threads_);
   spoilt_->add_unsure(kinematics::unsure_samples(trace_));
-  range_ends_ = kinematics::range_ends(trace_, chunks_of(trace_.friction), chunks_of(trace_.velocity));
-  steps_ = {kinematics::find_resolution(trace_.friction),
-            kinematics::find_resolution(trace_.velocity),
+  range_ends_ = kinematics::range_ends(trace_, channels, threads_);
+  steps_ = {channels.friction.step,
+            channels.velocity.step,
             range_ends_.friction[1].at - range_ends_.friction[0].at,
             range_ends_.largest_velocity,
             kinematics::repeats_unevenly(trace_.friction),
@@ -234,14 +244,18 @@ void MotionStages::settle_signs_and_levels() {
 namespace tribofit {
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
+  return compute_motion(std::move(trace), instruments, options, 1);
+}
+
+Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
   if (trace.kind == RecordKind::force_only) return kinematics::motion_of_force(std::move(trace));
   std::vector<std::string> notes;
-  kinematics::keep_fresh_values(trace, notes);
+  kinematics::keep_fresh_values(trace, threads, notes);
   MotionOptions own = options;
   const bool was_made = kinematics::make_missing_channels(trace, notes);
   if (was_made) own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;  // of a vibrometer
-  kinematics::MotionStages stages(std::move(trace), instruments, own);
+  kinematics::MotionStages stages(std::move(trace), instruments, own, threads);
   stages.look_at_recording();
   stages.correct_declared();
   stages.find_disc();

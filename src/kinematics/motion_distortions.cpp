@@ -25,7 +25,7 @@ void MotionStages::undo_distortions() {
   find_zero();
   undo_zero();
   if (search_.sticks && !steps_.velocity_repeats)
-    jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity));
+    jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity), motion_.step);
   // What was lost of slips is missing in the way of the block.
   if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();
@@ -36,19 +36,24 @@ void MotionStages::undo_distortions() {
 void MotionStages::undo_zero_drift() {
   const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !spoilt_->any();
   if (!asked || !is_block() || !search_.sticks || !speed_is_constant()) return;
-  zero_drift_ = find_zero_drift(trace_, search_, steps_.velocity);
+  positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_);
+  zero_drift_ = find_zero_drift(trace_, search_, positions_, steps_.velocity);
   if (zero_drift_.value == 0) return;
   const double middle = 0.5 * (trace_.time.front() + trace_.time.back());
   for (std::size_t i = 0; i < trace_.size(); ++i) trace_.velocity[i] -= zero_drift_.value * (trace_.time[i] - middle);
   motion_.notes.push_back(fmt::format("velocity: its zero drifted by {:.4g} mm/s over the record, taken off",
                                       1e3 * zero_drift_.value * trace_.duration()));
   find_plateau();
+  positions_ = {};
 }
 
 /// A block on a spring goes nowhere: what v_b is on average is an error of the reading.
 void MotionStages::find_zero() {
   if (motion_.high_pass > 0 || spoilt_->any()) return;
-  if (is_block() && search_.sticks) zero_ = kinematics::find_zero(trace_, search_, disc_, steps_.velocity);
+  if (is_block() && search_.sticks) {
+    if (positions_.time.empty()) positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_);
+    zero_ = kinematics::find_zero(search_, disc_, positions_, steps_.velocity);
+  }
   const bool rests_nowhere = trace_.velocity_kind == VelocityKind::relative && !search_.sticks;
   if (rests_nowhere && speed_is_constant()) zero_ = find_zero_of_relative(trace_, search_, disc_);
 }
@@ -105,7 +110,7 @@ void MotionStages::undo_low_pass() {
     for (std::size_t i = 0; i < relative.size(); ++i) relative[i] -= disc_.varying[i];
   }
   low_pass_ = find_low_pass(relative.empty() ? trace_.velocity : relative, search_.plateaus.level,
-                            std::max(search_.noise, steps_.velocity / std::sqrt(12.0)), motion_.step);
+                            std::max(search_.noise, steps_.velocity / std::sqrt(12.0)), motion_.step, threads_);
   const bool asked = options_.undo_distortions && !instruments_.vibrometer.low_pass;
   if (!low_pass_.is_first_order || !asked) return;
   motion_.velocity_low_pass = {low_pass_.tau, low_pass_.std_error};
@@ -147,7 +152,7 @@ void MotionStages::find_friction_filter() {
   // gradual.
   const bool is_known = !low_pass_.creeps && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
-  const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step);
+  const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step, threads_);
   motion_.friction_low_pass = found.tau;
   friction_fall_ = found.fall;
   // A filter that holds its input for a sample is half of one early.

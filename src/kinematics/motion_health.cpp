@@ -18,9 +18,9 @@ namespace tribofit::kinematics {
 void MotionStages::check_clipping() {
   recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
   clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
-                                         {plateau_as_recorded(), is_block() && search_.sticks}, *spoilt_);
+                                         {plateau_as_recorded(), is_block() && search_.sticks}, motion_.step, *spoilt_);
   const auto lost = clipping_.status == HealthItem::Status::ok ? jumps_ : LostSamples{};
-  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size());
+  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size(), motion_.step);
   motion_.faults = spoilt_->take();
 }
 

@@ -23,7 +23,7 @@ namespace tribofit::kinematics {
 /// A trace on its way to a motion. Each stage reads what the stages before it have settled.
 class MotionStages {
  public:
-  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options);
+  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads);
 
   void look_at_recording();
   void correct_declared();
@@ -66,6 +66,7 @@ class MotionStages {
   Trace trace_;
   const Instruments& instruments_;
   const MotionOptions& options_;
+  int threads_;
   Motion motion_;
 
   // Of the channels as recorded.
@@ -82,8 +83,9 @@ class MotionStages {
   HighPassEstimate sag_;
   double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
   std::optional<RecordedPlateau> recorded_;
-  LostSamples jumps_;    ///< of the velocity as recorded
-  Estimate zero_drift_;  ///< that was taken off v_b [m/s^2]
+  LostSamples jumps_;         ///< of the velocity as recorded
+  BlockPositions positions_;  ///< of the block, until the velocity is changed
+  Estimate zero_drift_;       ///< that was taken off v_b [m/s^2]
   BlockZero zero_;
   LowPass low_pass_;          ///< of the velocity as recorded
   double friction_fall_ = 0;  ///< see FrictionLowPass::fall

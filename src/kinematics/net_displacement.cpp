@@ -13,24 +13,6 @@
 namespace tribofit::kinematics {
 namespace {
 
-/// Where the block is in the middles of the plateaus.
-struct Positions {
-  std::vector<double> time, position;  // [s], [m]
-};
-
-Positions positions_of(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search) {
-  Positions out;
-  double displacement = 0;
-  std::size_t i = 1;
-  for (const StickPlateau& run : search.plateaus.runs) {
-    const std::size_t middle = std::min((run.begin + run.end) / 2 * search.blocks.length, velocity.size() - 1);
-    for (; i <= middle; ++i) displacement += 0.5 * (velocity[i] + velocity[i - 1]) * (time[i] - time[i - 1]);
-    out.time.push_back(time[middle]);
-    out.position.push_back(displacement);
-  }
-  return out;
-}
-
 /// Break-away scatters, and the positions with it.
 Estimate slope_of(std::span<const double> time, std::span<const double> position) {
   const StraightLine line = fit_line(time, position);
@@ -41,7 +23,7 @@ Estimate slope_of(std::span<const double> time, std::span<const double> position
 }
 
 /// Both halves of the record say the same: a standstill or a gap moves the block once.
-bool is_steady(const Positions& positions, double mean) {
+bool is_steady(const BlockPositions& positions, double mean) {
   const std::span<const double> time(positions.time), position(positions.position);
   const std::size_t half = time.size() / 2;
   const Estimate first = slope_of(time.first(half), position.first(half)),
@@ -55,14 +37,28 @@ bool is_steady(const Positions& positions, double mean) {
 
 }  // namespace
 
+BlockPositions positions_in_plateaus(std::span<const double> time, std::span<const double> velocity,
+                                     const PlateauSearch& search) {
+  BlockPositions out;
+  double displacement = 0;
+  std::size_t i = 1;
+  for (const StickPlateau& run : search.plateaus.runs) {
+    const std::size_t middle = std::min((run.begin + run.end) / 2 * search.blocks.length, velocity.size() - 1);
+    for (; i <= middle; ++i) displacement += 0.5 * (velocity[i] + velocity[i - 1]) * (time[i] - time[i - 1]);
+    out.time.push_back(time[middle]);
+    out.position.push_back(displacement);
+  }
+  return out;
+}
+
 Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search) {
-  const Positions positions = positions_of(time, velocity, search);
+  const BlockPositions positions = positions_in_plateaus(time, velocity, search);
   return slope_of(positions.time, positions.position);
 }
 
-Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, double step) {
+Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, const BlockPositions& positions,
+                         double step) {
   if (search.plateaus.runs.size() < 2 * kFewestPeriods) return {};
-  const Positions positions = positions_of(trace.time, trace.velocity, search);
   const std::span<const double> time(positions.time), position(positions.position);
   const std::size_t half = time.size() / 2;
   const Estimate first = slope_of(time.first(half), position.first(half)),
@@ -83,10 +79,9 @@ Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, double
   return agree && moves && std::abs(plateaus.value) > least ? plateaus : Estimate{};
 }
 
-BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step) {
+BlockZero find_zero(const PlateauSearch& search, const Disc& disc, const BlockPositions& positions, double step) {
   BlockZero zero;
   if (search.plateaus.runs.size() < kFewestPeriods) return zero;
-  const Positions positions = positions_of(trace.time, trace.velocity, search);
   zero.mean = slope_of(positions.time, positions.position);
   const bool varies = !disc.varying.empty();
   // Where the disc's speed varies plateaus are relative to it.

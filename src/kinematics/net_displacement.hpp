@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "plateau_search.hpp"
 #include "tribofit/ingest/trace.hpp"
@@ -21,16 +22,25 @@ struct BlockZero {
   Estimate mean;  ///< [m/s]
 };
 
+/// Where the block is in the middles of the plateaus.
+struct BlockPositions {
+  std::vector<double> time, position;  ///< [s], [m]
+};
+
+/// Cost: one pass.
+BlockPositions positions_in_plateaus(std::span<const double> time, std::span<const double> velocity,
+                                     const PlateauSearch& search);
+
 /// Slope of the positions at the middles of the plateaus over time [m/s]. Cost: one pass.
 Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search);
 
 /// By how much the zero of v_b moves in a second [m/s^2], evenly: plateaus and the mean velocity of the block move
 /// alike. A disc that changes its speed moves plateaus alone, slips that are read wrongly the mean alone. Zero where
-/// they do not agree, or within their errors. Of a disc at one speed. Cost: one pass.
-Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, double step);
+/// they do not agree, or within their errors. Of a disc at one speed. step: of the converter [m/s]; 0: fine.
+Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, const BlockPositions& positions, double step);
 
-/// step: of the converter [m/s]; 0: fine. Cost: one pass.
-BlockZero find_zero(const Trace& trace, const PlateauSearch& search, const Disc& disc, double step);
+/// step: of the converter [m/s]; 0: fine.
+BlockZero find_zero(const PlateauSearch& search, const Disc& disc, const BlockPositions& positions, double step);
 
 /// The same of a v_r that was measured and rests nowhere: a plateau is off zero by as much as the mean is off omega r.
 BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search, const Disc& disc);

@@ -9,6 +9,7 @@
 #include "levelling.hpp"
 #include "limits.hpp"
 #include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // What the recorder did: a range that was too small, samples and times that are missing.
@@ -49,41 +50,58 @@ std::vector<SampleSpan> runs_at(std::span<const double> x, const Chunks& chunks,
   return runs;
 }
 
+/// The smallest distance of another value from an end of the range.
+double step_beside(const ChannelOutline& channel, double limit) {
+  double step = std::numeric_limits<double>::infinity();
+  const bool upper = limit == channel.values.whole.high;
+  for (std::size_t c = 0; c < channel.values.part.size(); ++c) {
+    const double nearest = upper ? channel.values.part[c].high : channel.values.part[c].low;
+    if (nearest != limit) {
+      step = std::min(step, std::abs(nearest - limit));
+      continue;
+    }
+    const std::size_t begin = c * Chunks::length, length = std::min(Chunks::length, channel.size() - begin);
+    for (const double value : channel.x.subspan(begin, length)) {
+      if (value != limit) step = std::min(step, std::abs(value - limit));
+    }
+  }
+  return step;
+}
+
 /// Whether the longest run at a limit is a turn that the channel's steps are too coarse to show, as noiseless friction
 /// makes where its law is flat at rest: had the run gone on as fast as it is entered and left, it would have passed the
 /// limit by a few steps.
-bool turns_over(std::span<const double> x, double limit, const std::vector<SampleSpan>& runs) {
-  double step = std::numeric_limits<double>::infinity();
-  for (double value : x) {
-    if (value != limit) step = std::min(step, std::abs(value - limit));
-  }
+bool turns_over(const ChannelOutline& channel, double limit, const std::vector<SampleSpan>& runs) {
+  const double step = step_beside(channel, limit);
   const SampleSpan longest = *std::ranges::max_element(runs, {}, &SampleSpan::size);
-  const auto rate = [&](std::span<const double> outwards) {  // steps in a sample; a run at an end of the record: any
-    if (outwards.empty()) return std::numeric_limits<double>::infinity();
-    const auto next = std::ranges::find_if(outwards, [&](double value) { return value != outwards.front(); });
-    return std::abs(outwards.front() - limit) / step / static_cast<double>(next - outwards.begin());
+  const auto rate = [&](auto first, auto last) {  // steps in a sample; a run at an end of the record: any
+    if (first == last) return std::numeric_limits<double>::infinity();
+    const double value = *first;
+    const auto next = std::find_if(first, last, [&](double other) { return other != value; });
+    return std::abs(value - limit) / step / static_cast<double>(next - first);
   };
-  const std::vector<double> before(x.rend() - static_cast<std::ptrdiff_t>(longest.begin), x.rend());
-  const double entered = rate(before), left = rate(x.subspan(longest.end));
+  const std::span<const double> before = channel.x.first(longest.begin), after = channel.x.subspan(longest.end);
+  const double entered = rate(before.rbegin(), before.rend()), left = rate(after.begin(), after.end());
   return static_cast<double>(longest.size()) / (1 / entered + 1 / left) < kStepsOfATurn;
 }
 
 /// smooths: a crowd is looked for behind noise, too. A velocity crowds where the contact creeps.
-std::array<EndRuns, 2> ends_of(std::span<const double> x, const Chunks& chunks, bool smooths) {
-  const Extremes range = chunks.whole;
+std::array<EndRuns, 2> ends_of(const ChannelOutline& channel, bool smooths) {
+  const std::span<const double> x = channel.x;
+  const Extremes& range = channel.values.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < kFewestSamples || range.low == range.high || repeats_elsewhere(x, range)) return ends;
   // Without noise a limit repeats one value, and the crowd of a turn is as quiet as all the rest.
-  const bool has_noise = turns_often(x);
-  std::array<PileUp, 2> piles = has_noise ? find_pile_ups(x) : std::array<PileUp, 2>{};
+  const bool has_noise = channel.turns_often();
+  std::array<PileUp, 2> piles = has_noise ? find_pile_ups(channel) : std::array<PileUp, 2>{};
   const std::array<PileUp, 2> smoothed = has_noise && smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
   for (std::size_t k = 0; k < 2; ++k) {
     if (piles[k].density < kCrowdedAlone && !piles[k].is_quiet && smoothed[k].count > 0) piles[k] = smoothed[k];
   }
   for (std::size_t k = 0; k < 2; ++k) {
-    ends[k].spans = runs_at(x, chunks, ends[k].at);
-    if (!ends[k].spans.empty() && turns_over(x, ends[k].at, ends[k].spans)) ends[k].spans.clear();
+    ends[k].spans = runs_at(x, channel.values, ends[k].at);
+    if (!ends[k].spans.empty() && turns_over(channel, ends[k].at, ends[k].spans)) ends[k].spans.clear();
     for (const SampleSpan& run : ends[k].spans) ends[k].count += run.size();
     ends[k].pile = piles[k];
     ends[k].is_far = std::abs(ends[k].at) >= std::abs(ends[1 - k].at);
@@ -176,21 +194,30 @@ Gaps gaps_of(std::span<const double> time, double step) {
 
 }  // namespace
 
-RangeEnds range_ends(const Trace& trace, const Chunks& friction, const Chunks& velocity) {
+RangeEnds range_ends(const Trace& trace, const ChannelOutlines& channels, int threads) {
   const bool recorded = trace.velocity_std_error.empty();  // not made from another channel
-  std::array<EndRuns, 2> ends = ends_of(trace.friction, friction, true);
-  const bool shows_rest = recorded && trace.velocity_kind == VelocityKind::block && turns_often(trace.friction);
-  for (std::size_t k = 0; k < 2 && shows_rest; ++k) {
-    // Friction crowds at break-away too, where it is the same every time: the block slips there already.
-    if (ends[k].count == 0) ends[k].pile = find_levelling(trace.friction, trace.velocity, k == 1);
-  }
-  return {ends, ends_of(trace.velocity, velocity, false),
-          std::max(std::abs(velocity.whole.low), std::abs(velocity.whole.high)),
-          recorded ? find_slew_limit(trace.friction) : 0, recorded ? find_slew_limit(trace.velocity) : 0};
+  const ChannelOutline &friction = channels.friction, &velocity = channels.velocity;
+  RangeEnds out;
+  out.largest_velocity = std::max(std::abs(velocity.values.whole.low), std::abs(velocity.values.whole.high));
+  const auto look_at_friction = [&] {
+    out.friction = ends_of(friction, true);
+    const bool shows_rest = recorded && trace.velocity_kind == VelocityKind::block && friction.turns_often();
+    for (std::size_t k = 0; k < 2 && shows_rest; ++k) {
+      // Friction crowds at break-away too, where it is the same every time: the block slips there already.
+      if (out.friction[k].count == 0) out.friction[k].pile = find_levelling(friction, velocity.x, k == 1);
+    }
+    if (recorded) out.friction_slew = find_slew_limit(friction);
+  };
+  const auto look_at_velocity = [&] {
+    out.velocity = ends_of(velocity, false);
+    if (recorded) out.velocity_slew = find_slew_limit(velocity);
+  };
+  run_tasks(2, threads, [&](std::size_t k) { k == 0 ? look_at_friction() : look_at_velocity(); });
+  return out;
 }
 
 HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instruments& instruments,
-                          const Resting& resting, SpoiltSamples& spoilt) {
+                          const Resting& resting, double step, SpoiltSamples& spoilt) {
   HealthItem item{health_check::kClipping, Status::ok, "no samples crowd at the end of a channel's range"};
   const bool is_force = trace.friction_kind == FrictionKind::force;
   const Units friction{"friction", 1, is_force ? " N" : "", SampleFault::friction};
@@ -206,18 +233,17 @@ HealthItem check_clipping(const RangeEnds& ends, const Trace& trace, const Instr
   for (const EndRuns& end : ends.velocity)
     add_end(velocity, without_rest(end, range, resting.plateau), "mu_k and the law's decay (alpha) are");
   if (resting.sticks) {
-    add_slew(friction, ends.friction_slew / trace.interval(), item);
-    add_slew(velocity, ends.velocity_slew / trace.interval(), item);
+    add_slew(friction, ends.friction_slew / step, item);
+    add_slew(velocity, ends.velocity_slew / step, item);
   }
   if (item.status == Status::ok) compare_with_declared(ends.largest_velocity, instruments, item);
   return item;
 }
 
 HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, const LostSamples& lost,
-                           std::size_t plateaus) {
+                           std::size_t plateaus, double step) {
   const std::size_t n = trace.size();
   if (n < kFewestSamples) return {health_check::kDropOuts, Status::warning, fmt::format("only {} samples", n)};
-  const double step = trace.interval();
   const Gaps gaps = gaps_of(trace.time, step);
   const std::vector<std::string>& spoilt_by = spoilt.sentences();
   const SampleSpan& still = spoilt.longest_still();

@@ -7,6 +7,7 @@
 
 #include "limits.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -22,11 +23,19 @@ std::string counted(std::size_t count, const char* noun) {
 }
 
 /// A pause of the disc is no fault: the block is at rest, the spring still pulls, and without noise neither changes.
-SampleSpan longest_still_of(std::span<const double> friction, std::span<const double> velocity) {
+SampleSpan longest_still_of(const ChannelOutlines& channels) {
+  const std::span<const double> friction = channels.friction.x, velocity = channels.velocity.x;
   SampleSpan longest;
   if (friction.size() != velocity.size()) return longest;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < friction.size(); ++i) {
+    const std::size_t change = i - 1, chunk = change / Chunks::length;
+    const auto changes_throughout = [&](const ChannelOutline& channel) { return channel.repeats[chunk] == 0; };
+    if (change % Chunks::length == 0 && longest.size() > 0 &&
+        (changes_throughout(channels.friction) || changes_throughout(channels.velocity))) {
+      begin = i = std::min(i + Chunks::length - 1, friction.size() - 1);
+      continue;
+    }
     if (friction[i] != friction[i - 1] || velocity[i] != velocity[i - 1]) begin = i;
     const bool pauses = velocity[i] == 0 && friction[i] != 0;
     if (!pauses && i + 1 - begin > longest.size()) longest = {begin, i + 1};
@@ -36,19 +45,21 @@ SampleSpan longest_still_of(std::span<const double> friction, std::span<const do
 
 }  // namespace
 
-SpoiltSamples::SpoiltSamples(Trace& trace) : size_(trace.size()) {
-  still_ = longest_still_of(trace.friction, trace.velocity);
+SpoiltSamples::SpoiltSamples(Trace& trace, ChannelOutlines& channels, int threads) : size_(trace.size()) {
+  still_ = longest_still_of(channels);
   // Both as recorded: what one shows says what the other is.
   const bool made = trace.kind == RecordKind::motion_only, made_velocity = !trace.velocity_std_error.empty();
-  const ChannelFaults friction = made ? ChannelFaults{} : find_channel_faults(trace.friction, trace.velocity);
-  const ChannelFaults velocity = made_velocity ? ChannelFaults{} : find_channel_faults(trace.velocity, trace.friction);
-  clean(trace.friction, friction, "friction", SampleFault::friction);
-  clean(trace.velocity, velocity, "velocity", SampleFault::velocity);
-  ChannelFaults lost;
-  if (!made_velocity) lost.excursions = find_excursions(trace.velocity, trace.friction);
-  clean(trace.velocity, lost, "velocity", SampleFault::velocity);
+  ChannelFaults friction, velocity, lost;
+  run_tasks(2, threads, [&](std::size_t k) {
+    if (k == 0 && !made) friction = find_channel_faults(channels.friction, channels.velocity);
+    if (k == 1 && !made_velocity) velocity = find_channel_faults(channels.velocity, channels.friction);
+  });
+  clean(trace.friction, channels.friction, friction, "friction", SampleFault::friction);
+  clean(trace.velocity, channels.velocity, velocity, "velocity", SampleFault::velocity);
+  if (!made_velocity) lost.excursions = find_excursions(channels.velocity, channels.friction);
+  clean(trace.velocity, channels.velocity, lost, "velocity", SampleFault::velocity);
   const auto clean_markers = [&](std::vector<double>& channel, const char* name) {
-    const std::vector<SampleSpan> markers = find_channel_faults(channel, {}).markers;
+    const std::vector<SampleSpan> markers = find_marker_values(channel);
     if (markers.empty()) return;
     bridge(markers, channel);
     mark(markers, SampleFault::friction | SampleFault::velocity);
@@ -59,8 +70,8 @@ SpoiltSamples::SpoiltSamples(Trace& trace) : size_(trace.size()) {
   clean_markers(trace.disc_speed, "speed");
 }
 
-void SpoiltSamples::clean(std::vector<double>& channel, const ChannelFaults& faults, const std::string& name,
-                          std::uint8_t kind) {
+void SpoiltSamples::clean(std::vector<double>& channel, ChannelOutline& outline, const ChannelFaults& faults,
+                          const std::string& name, std::uint8_t kind) {
   if (!faults.markers.empty()) {
     const double value = channel[faults.markers.front().begin];
     const bool is_velocity = kind == SampleFault::velocity;
@@ -96,6 +107,7 @@ void SpoiltSamples::clean(std::vector<double>& channel, const ChannelFaults& fau
       if (span.size() >= kShortestStretch) mark({span}, SampleFault::stretch);
     }
   }
+  if (faults.any()) outline = ChannelOutline(channel);
 }
 
 void SpoiltSamples::mark(const std::vector<SampleSpan>& spans, std::uint8_t kind) {

@@ -15,8 +15,9 @@ namespace tribofit::kinematics {
 /// The samples of a trace that are not used, and why.
 class SpoiltSamples {
  public:
-  /// Looks for markers, spikes and frozen stretches in every channel and bridges them.
-  explicit SpoiltSamples(Trace& trace);
+  /// Looks for markers, spikes and frozen stretches in every channel and bridges them. channels: of the trace, which
+  /// are outlined anew where they were bridged.
+  SpoiltSamples(Trace& trace, ChannelOutlines& channels, int threads);
 
   /// Samples at a limit of the range of a channel (SampleFault::friction or velocity); they keep their values.
   void add_clipped(const std::vector<SampleSpan>& spans, std::uint8_t kind) { mark(spans, kind); }
@@ -42,7 +43,8 @@ class SpoiltSamples {
   std::vector<std::uint8_t> take() { return std::move(faults_); }  ///< as Motion::faults, of the trace's samples
 
  private:
-  void clean(std::vector<double>& channel, const ChannelFaults& faults, const std::string& name, std::uint8_t kind);
+  void clean(std::vector<double>& channel, ChannelOutline& outline, const ChannelFaults& faults,
+             const std::string& name, std::uint8_t kind);
   void mark(const std::vector<SampleSpan>& spans, std::uint8_t kind);
 
   std::size_t size_, spikes_ = 0, frozen_ = 0;

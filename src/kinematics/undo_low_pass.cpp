@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -38,14 +39,17 @@ Decay fit_decay(const Tail& tail, double tau) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   const double scale = 1 / static_cast<double>(tail.friction.size());
+  std::vector<double> left(tail.friction.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = std::exp(-(tail.first + static_cast<double>(i)) / tau);
   const auto row = [&](std::size_t i) {
-    const double t = tail.first + static_cast<double>(i);
-    return Eigen::Vector3d(1, t * scale, std::exp(-t / tau));
+    return Eigen::Vector3d(1, (tail.first + static_cast<double>(i)) * scale, left[i]);
   };
   for (std::size_t i = 0; i < tail.friction.size(); ++i) {
     const Eigen::Vector3d x = row(i);
-    normal += x * x.transpose();
-    right += x * tail.friction[i];
+    for (int k = 0; k < 3; ++k) {
+      for (int l = 0; l <= k; ++l) normal(k, l) += x[k] * x[l];
+      right[k] += x[k] * tail.friction[i];
+    }
   }
   const Eigen::Vector3d c = normal.ldlt().solve(right);
   Decay decay{0, 0, c[0], c[2]};
@@ -152,23 +156,28 @@ std::size_t undo_low_pass(std::span<double> velocity, double tau, double step, d
 }
 
 FrictionLowPass find_friction_low_pass(std::span<const double> friction, const std::vector<double>& resticks,
-                                       double step) {
+                                       double step, int threads) {
   const std::vector<Tail> tails = tails_of(friction, resticks);
   if (tails.size() < kFewestPeriods) return {};
   double best = 0, least = std::numeric_limits<double>::infinity();
   const double longest = kTailDecay * static_cast<double>(tails.front().friction.size());
-  for (double tau = kTailFirst; tau < longest; tau *= kKinkNext) {
-    if (const double left = squares_left(tails, tau); left < least) least = left, best = tau;
+  std::vector<double> tried;
+  for (double tau = kTailFirst; tau < longest; tau *= kKinkNext) tried.push_back(tau);
+  std::vector<double> left(tried.size());
+  run_tasks(tried.size(), threads, [&](std::size_t k) { left[k] = squares_left(tails, tried[k]); });
+  for (std::size_t k = 0; k < tried.size(); ++k) {
+    if (left[k] < least) least = left[k], best = tried[k];
   }
   constexpr int kCuts = 16;  // to a thousandth
-  const auto refined = [&](const auto& left) {
-    return golden_section(left, best / kKinkNext, best * kKinkNext, kCuts).at;
+  const auto refined = [&](const auto& squares) {
+    return golden_section(squares, best / kKinkNext, best * kKinkNext, kCuts).at;
   };
   const double tau = refined([&](double t) { return squares_left(tails, t); });
   const Evidence evidence = evidence_of(tails, tau);
   if (best == kTailFirst || !evidence.is_first_order) return {{}, 0, fall_at_restick(tails) * step};
-  std::vector<double> taus;
-  for (const Tail& tail : tails) taus.push_back(refined([&](double t) { return fit_decay(tail, t).squares; }));
+  std::vector<double> taus(tails.size());
+  run_tasks(tails.size(), threads,
+            [&](std::size_t k) { taus[k] = refined([&](double t) { return fit_decay(tails[k], t).squares; }); });
   const double scatter = kSigmaPerMad * median_absolute_deviation(taus, median(taus));
   return {{tau * step, scatter / std::sqrt(static_cast<double>(taus.size())) * step}, evidence.early};
 }

@@ -25,8 +25,8 @@ struct FrictionLowPass {
 /// which it then rises. The reading goes on from where it was, A exp(-t/tau) above the line. A lag of the contact,
 /// which ends at rest, leaves the jump. A filter of higher order draws the jump out: from a tenth of it to nine.
 ///
-/// resticks: where v_r came to rest [samples]. Cost: a tenth of a second.
+/// resticks: where v_r came to rest [samples]. The result does not depend on the threads. Cost: a tenth of a second.
 FrictionLowPass find_friction_low_pass(std::span<const double> friction, const std::vector<double>& resticks,
-                                       double step);
+                                       double step, int threads = 1);
 
 }  // namespace tribofit::kinematics

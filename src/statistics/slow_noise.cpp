@@ -30,35 +30,50 @@ struct Periodogram {
   double resolved = 0;                   ///< values that are independent of each other, as a part of all of them
 };
 
+/// Periodograms of series of one length, about their means.
+class WindowedPeriodogram {
+ public:
+  explicit WindowedPeriodogram(std::size_t length) : weight_(length) {
+    const auto n = static_cast<double>(length);
+    // A Hann window keeps a line and a slope at their own frequencies.
+    for (std::size_t i = 0; i < length; ++i) {
+      weight_[i] = std::pow(std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / n), 2);
+      weights_ += weight_[i] * weight_[i];
+    }
+    fft_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  }
+
+  Periodogram operator()(std::span<const double> series) {
+    const auto n = static_cast<double>(series.size());
+    const std::size_t size = padded(series.size());
+    double mean = 0;
+    for (const double x : series) mean += x / n;
+    // Of values about one frequency so many are worth one: n sum(w^4) / sum(w^2)^2 of the Hann window
+    // (P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70).
+    constexpr double kBandwidth = 35.0 / 18;
+    std::vector<double> windowed(size, 0.0);
+    for (std::size_t i = 0; i < series.size(); ++i) windowed[i] = weight_[i] * (series[i] - mean);
+    fft_.fwd(spectrum_, windowed);
+    Periodogram out;
+    out.resolved = n / kBandwidth / static_cast<double>(size);
+    for (std::size_t j = 1; 2 * j <= size; ++j) {
+      const double f = static_cast<double>(j) / static_cast<double>(size);
+      if (f * n < kFirstBin) continue;
+      out.frequency.push_back(f);
+      out.power.push_back(std::norm(spectrum_[j]) / weights_);
+    }
+    return out;
+  }
+
+ private:
+  std::vector<double> weight_;
+  double weights_ = 0;
+  Eigen::FFT<double> fft_;
+  Transform spectrum_;
+};
+
 Periodogram windowed_periodogram(std::span<const double> series) {
-  const auto n = static_cast<double>(series.size());
-  const std::size_t size = padded(series.size());
-  double mean = 0;
-  for (const double x : series) mean += x / n;
-  // Of values about one frequency so many are worth one: n sum(w^4) / sum(w^2)^2 of the Hann window
-  // (P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70).
-  constexpr double kBandwidth = 35.0 / 18;
-  // A Hann window keeps a line and a slope at their own frequencies.
-  std::vector<double> windowed(series.begin(), series.end());
-  double weights = 0;
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    const double weight = std::pow(std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / n), 2);
-    windowed[i] = weight * (windowed[i] - mean);
-    weights += weight * weight;
-  }
-  windowed.resize(size, 0.0);
-  Eigen::FFT<double> fft;
-  Transform spectrum;
-  fft.fwd(spectrum, windowed);
-  Periodogram out;
-  out.resolved = n / kBandwidth / static_cast<double>(size);
-  for (std::size_t j = 1; 2 * j <= size; ++j) {
-    const double f = static_cast<double>(j) / static_cast<double>(size);
-    if (f * n < kFirstBin) continue;
-    out.frequency.push_back(f);
-    out.power.push_back(std::norm(spectrum[j]) / weights);
-  }
-  return out;
+  return WindowedPeriodogram(series.size())(series);
 }
 
 /// Spectra of slow noise; the covariance of a series with that of 1/f noise is covariance_of_flicker().
@@ -94,11 +109,12 @@ std::vector<double> covariance_of_flicker(std::size_t n) {
 /// exponential distribution.
 Periodogram median_periodogram(std::span<const std::span<const double>> stretches) {
   std::vector<Periodogram> all;
+  WindowedPeriodogram windowed(stretches.front().size());
   for (const auto& stretch : stretches) {
     const Parabola parabola = fit_parabola(stretch);
     std::vector<double> left(stretch.begin(), stretch.end());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= parabola.at(static_cast<double>(i) - parabola.centre());
-    all.push_back(windowed_periodogram(left));
+    all.push_back(windowed(left));
   }
   Periodogram out = all.front();
   std::vector<double> values(all.size());

@@ -132,6 +132,18 @@ Layout find_layout(const std::vector<HeadLine>& lines) {
   return best;
 }
 
+/// The beginning of a file: kHeadLines lines, or up to the longest line and a byte.
+std::string head_of(const InputFile& file) {
+  std::string head;
+  for (const std::size_t most : {kHeadBytes, kLongestLine + 1}) {
+    head.assign(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), most)), '\0');
+    head.resize(file.read(0, head));
+    const auto lines = static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n'));
+    if (lines > kHeadLines || head.size() < most) break;
+  }
+  return head;
+}
+
 [[noreturn]] void refuse_without_rows(const std::vector<HeadLine>& lines, Encoding encoding, const std::string& path) {
   std::size_t last = lines.size();
   while (last > 0 && trimmed(lines[last - 1].text).empty()) --last;
@@ -233,8 +245,7 @@ bool is_number(std::string_view cell, char decimal) {
 
 Dialect find_dialect(const InputFile& file) {
   if (file.size() == 0) throw InputError("is empty", "export the trace again", {file.path(), 0, ""});
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kLongestLine + 1)), '\0');
-  head.resize(file.read(0, head));
+  const std::string head = head_of(file);
   if (head.size() > kLongestLine && head.find('\n') == std::string::npos) file.refuse_long_line(1);
 
   std::string_view text(head);

@@ -35,7 +35,7 @@ struct Dialect {
   std::vector<std::string> notes;
 };
 
-/// Finds the dialect from the first megabyte of the file.
+/// Finds the dialect from the first lines of the file, within its first megabyte.
 ///
 /// Separator and decimal mark are those under which most cells of most lines are numbers. The first row is the first
 /// line with as many cells as most have and mostly numbers in them; the header is the last line of text above it that

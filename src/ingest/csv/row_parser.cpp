@@ -37,40 +37,69 @@ RowParser::Outcome RowParser::parse(char* line, double* out) {
     case blanks:
       return parse_blanks(line, out) ? Outcome::numbers : parse_carefully<blanks>(line, out);
     case ';':
-      return parse_plain<';'>(line, out) ? Outcome::numbers : parse_carefully<';'>(line, out);
+      return parse_carefully<';'>(line, out);
     case '\t':
-      return parse_plain<'\t'>(line, out) ? Outcome::numbers : parse_carefully<'\t'>(line, out);
+      return parse_carefully<'\t'>(line, out);
     default:
-      return parse_plain<','>(line, out) ? Outcome::numbers : parse_carefully<','>(line, out);
+      return parse_carefully<','>(line, out);
   }
 }
 
-/// The short way, in one pass: plain decimals without quotes or spaces, the right number of cells. False leaves the
-/// line to the long way.
+char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<double*>& column,
+                                  std::size_t& row) const {
+  const auto read = [&](const auto& parse_row) {
+    while (at < end) {
+      char* next = parse_row();
+      if (next == nullptr) break;
+      at = next;
+      ++row;
+    }
+    return at;
+  };
+  switch (separator_) {
+    case blanks:
+      return at;
+    case ';':
+      return read([&] { return parse_plain_row<';'>(at, end, column, row); });
+    case '\t':
+      return read([&] { return parse_plain_row<'\t'>(at, end, column, row); });
+    default:
+      return read([&] { return parse_plain_row<','>(at, end, column, row); });
+  }
+}
+
+/// The line after the one at `at`; null leaves that to the long way.
 template <char separator>
-bool RowParser::parse_plain(const char* line, double* out) const {
-  const char* at = line;
-  std::size_t cell = 0;
+char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) const {
+  std::size_t cell = 0, k = 0;
   for (const std::size_t skip : skips_) {
     for (std::size_t i = 0; i < skip; ++i, ++cell) {
-      while (*at != separator && *at != '\0' && *at != '"') ++at;
-      if (*at != separator) return false;
+      while (*at != separator && *at != '\n' && *at != '"' && *at != '\0') ++at;
+      if (*at != separator) return nullptr;
       ++at;
     }
-    at = read_decimal(at, decimal_, *out++);
-    if (at == nullptr) return false;
+    while (*at == ' ') ++at;
+    const char* after = read_decimal(at, decimal_, column[k++][row]);
+    if (after == nullptr) return nullptr;
+    at += after - at;
+    while (*at == ' ') ++at;
     ++cell;
-    if (*at != separator) return *at == '\0' && cell == cells_ && cell == wanted_.back().index + 1;
+    if (*at != separator) {
+      if (*at == '\r') ++at;
+      return *at == '\n' && cell == cells_ && k == skips_.size() ? at + 1 : nullptr;
+    }
     ++at;
   }
-  for (; *at != '\0'; ++at) {
-    if (*at == '"') return false;
+  char before = separator;  // of the character before the end of the line
+  for (; *at != '\n'; ++at) {
+    if (*at == '"' || at >= end) return nullptr;
     if (*at == separator) ++cell;
+    if (*at != '\r' || at[1] != '\n') before = *at;
   }
-  return cell + 1 == cells_ || (cell == cells_ && at[-1] == separator);
+  return cell + 1 == cells_ || (cell == cells_ && before == separator) ? at + 1 : nullptr;
 }
 
-/// The same for columns that blanks and tabs divide.
+/// The short way for columns that blanks and tabs divide. False leaves the line to the long way.
 bool RowParser::parse_blanks(const char* line, double* out) const {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   const char* at = line;

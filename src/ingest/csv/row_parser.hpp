@@ -26,6 +26,11 @@ class RowParser {
   /// end.
   RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal, bool may_be_short);
 
+  /// Reads whole lines of plain numbers from `at` on, up to `end` (where a NUL stands) or the first that is none, in
+  /// one pass: decimals without quotes, the right number of cells. Row `row` goes into column[k][row] for the wanted
+  /// cell k, and `row` counts on. Returns the beginning of the first line that it has not read.
+  char* parse_plain_rows(char* at, const char* end, const std::vector<double*>& column, std::size_t& row) const;
+
   /// Parses `line` (ended by NUL; may be changed) into `out`, one number for each wanted cell, as written; NaN where a
   /// cell holds none of a usable size. defect() says what is wrong after Outcome::wrong, and in the first cell without
   /// a number after is_gappy().
@@ -39,7 +44,7 @@ class RowParser {
 
  private:
   template <char separator>
-  bool parse_plain(const char* line, double* out) const;
+  char* parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) const;
   bool parse_blanks(const char* line, double* out) const;
   template <char separator>
   Outcome parse_carefully(char* line, double* out);

@@ -7,13 +7,16 @@
 #include <condition_variable>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <thread>
 
+#include "decimal.hpp"
 #include "ingest/huge_pages.hpp"
 #include "ingest/limits.hpp"
+#include "ingest/memory.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -23,11 +26,13 @@ namespace {
 
 // A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
 // Chunks end where lines do and depend on the file only, not on the number of threads.
-constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 20;
+constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
-  std::vector<std::vector<double>> values;
+  std::vector<std::unique_ptr<double[]>> numbers;  // of each wanted cell
+  std::vector<double*> values;                     // where they begin
+  std::size_t capacity = 0, rows = 0;
   std::vector<std::pair<std::size_t, std::size_t>> line_starts;  // row, line
   std::size_t lines = 0;
   std::size_t text_rows = 0;
@@ -38,35 +43,26 @@ struct Chunk {
   std::optional<std::size_t> long_line;
   std::exception_ptr failure;
 
-  void clear(std::size_t columns) {
+  /// Empty, with the memory that it had.
+  void clear() {
     Chunk empty;
+    empty.numbers = std::move(numbers);
     empty.values = std::move(values);
-    empty.values.resize(columns);
-    for (auto& column : empty.values) column.clear();
+    empty.capacity = capacity;
     *this = std::move(empty);
   }
-};
 
-/// The lines of a text in memory, each ended by NUL in place of its line end.
-class TextLines {
- public:
-  /// `text` has a byte more than `size`.
-  TextLines(char* text, std::size_t size) : at_(text), end_(text + size) {}
-
-  /// Null at the end.
-  char* next() {
-    if (at_ >= end_) return nullptr;
-    char* const line = at_;
-    char* end = static_cast<char*>(std::memchr(line, '\n', static_cast<std::size_t>(end_ - line)));
-    if (end == nullptr) end = end_;
-    at_ = end + 1;
-    if (end > line && end[-1] == '\r') --end;
-    *end = '\0';
-    return line;
+  /// Memory that is not touched costs nothing.
+  void make_room(std::size_t columns, std::size_t most_rows) {
+    if (most_rows <= capacity && columns == numbers.size()) return;
+    capacity = most_rows;
+    numbers.resize(columns);
+    values.clear();
+    for (auto& column : numbers) {
+      column = std::make_unique_for_overwrite<double[]>(capacity);
+      values.push_back(column.get());
+    }
   }
-
- private:
-  char *at_, *end_;
 };
 
 class RowReader {
@@ -78,6 +74,7 @@ class RowReader {
     // Memory that is reserved and not used costs nothing, growing a vector twice its size does.
     const auto estimate =
         static_cast<std::size_t>(1.2 * static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes)) + 64;
+    refuse_beyond_memory(static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes), wanted.size(), file.path());
     rows_.values.resize(wanted.size());
     for (auto& values : rows_.values) {
       values.reserve(estimate);
@@ -101,7 +98,7 @@ class RowReader {
     Chunk chunk;  // reused, as the text is: their memory is touched once
     std::vector<char> text;
     for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
-      chunk.clear(wanted_.size());
+      chunk.clear();
       try {
         parse(i, text, chunk);
       } catch (...) {
@@ -143,7 +140,7 @@ class RowReader {
   /// The bytes of a chunk, up to a NUL that would cut a line unseen.
   std::size_t read_text(std::uint64_t begin, std::uint64_t end, std::vector<char>& text, Chunk& chunk) const {
     const auto wanted = static_cast<std::size_t>(end - begin);
-    if (text.size() < wanted + 1) text.resize(wanted + 1);
+    if (text.size() < wanted + 1 + kReadBeyond) text.resize(wanted + 1 + kReadBeyond);
     const std::size_t count = file_.read(begin, std::span(text).first(wanted));
     const void* zero = std::memchr(text.data(), '\0', count);
     if (zero == nullptr) return count;
@@ -161,23 +158,38 @@ class RowReader {
     return 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
+  /// Rows of at least this many bytes follow from the cells that a row has, if all have them.
+  std::size_t shortest_row() const { return dialect_.blocks_apart ? 1 : std::max<std::size_t>(1, dialect_.columns); }
+
+  /// `text` has kReadBeyond bytes and one more than `size`.
   void parse_lines(char* text, std::size_t size, Chunk& chunk) const {
     RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal, dialect_.blocks_apart);
-    const auto estimate = static_cast<std::size_t>(1.2 * static_cast<double>(size) / std::max(2.0, dialect_.row_bytes));
-    for (auto& values : chunk.values) values.reserve(estimate);
-    TextLines lines(text, size);
+    constexpr std::size_t kLineMore = 4096;  // a chunk ends with its last line
+    chunk.make_room(wanted_.size(), std::max<std::size_t>(size, chunk_bytes + kLineMore) / shortest_row() + 2);
     std::vector<double> row(wanted_.size());
     bool follows = false;  // the line before gave a row too
-    while (char* line = lines.next()) {
-      ++chunk.lines;
-      const RowParser::Outcome outcome = parser.parse(line, row.data());
+    const auto count_rows = [&](std::size_t from) {
+      if (chunk.rows == from) return;
+      if (!follows) chunk.line_starts.emplace_back(from, chunk.lines + 1);
+      follows = true;
+      chunk.lines += chunk.rows - from;
+    };
+    char* const end = text + size;
+    *end = '\0';
+    for (char* at = text; at < end;) {
+      std::size_t before = chunk.rows;
+      at = parser.parse_plain_rows(at, end, chunk.values, chunk.rows);
+      count_rows(before);
+      if (at >= end) return;
+      const RowParser::Outcome outcome = parser.parse(ended_line(at, end), row.data());
       if (outcome == RowParser::Outcome::numbers) {
-        if (!follows) chunk.line_starts.emplace_back(chunk.values.front().size(), chunk.lines);
-        follows = true;
         if (parser.is_gappy() && !chunk.first_gap) chunk.first_gap = gap_of(parser, row, chunk);
-        for (std::size_t k = 0; k < row.size(); ++k) chunk.values[k].push_back(row[k]);
+        for (std::size_t k = 0; k < row.size(); ++k) chunk.values[k][chunk.rows] = row[k];
+        before = chunk.rows++;
+        count_rows(before);
         continue;
       }
+      ++chunk.lines;
       follows = false;
       if (outcome == RowParser::Outcome::blank) continue;
       if (outcome == RowParser::Outcome::wrong) {
@@ -188,15 +200,24 @@ class RowReader {
         return;
       }
       ++chunk.text_rows;
-      if (chunk.text.size() < kMostTextLines)
-        chunk.text.push_back({chunk.values.front().size(), chunk.lines, parser.text()});
+      if (chunk.text.size() < kMostTextLines) chunk.text.push_back({chunk.rows, chunk.lines, parser.text()});
     }
+  }
+
+  /// The line at `at`, ended by NUL in place of its line end; `at` goes on to the next.
+  static char* ended_line(char*& at, char* end) {
+    char* const line = at;
+    char* stop = static_cast<char*>(std::memchr(line, '\n', static_cast<std::size_t>(end - line)));
+    if (stop == nullptr) stop = end;
+    at = stop + 1;
+    if (stop > line && stop[-1] == '\r') --stop;
+    *stop = '\0';
+    return line;
   }
 
   RawDefect gap_of(const RowParser& parser, const std::vector<double>& row, const Chunk& chunk) const {
     const auto cell = std::find_if(row.begin(), row.end(), [](double value) { return value != value; }) - row.begin();
-    return {chunk.values.front().size(), wanted_[static_cast<std::size_t>(cell)].index, parser.defect().problem,
-            parser.defect().advice};
+    return {chunk.rows, wanted_[static_cast<std::size_t>(cell)].index, parser.defect().problem, parser.defect().advice};
   }
 
   /// Called in the order of the file, one chunk at a time.
@@ -218,7 +239,7 @@ class RowReader {
     }
     for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);
     for (std::size_t k = 0; k < wanted_.size(); ++k) {
-      rows_.values[k].insert(rows_.values[k].end(), chunk.values[k].begin(), chunk.values[k].end());
+      rows_.values[k].insert(rows_.values[k].end(), chunk.values[k], chunk.values[k] + chunk.rows);
     }
     rows_.text_rows += chunk.text_rows;
     next_line_ += chunk.lines;

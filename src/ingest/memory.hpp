@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace tribofit {
+
+/// Memory that the system has left for this process [bytes]: what it can free without swapping, within the limits of
+/// the process and its control group. The largest number where nothing says how much.
+std::uint64_t available_memory();
+
+/// Throws InputError where so many rows of so many columns would take more memory than there is: the system would swap,
+/// or end the process, before they are read.
+void refuse_beyond_memory(double rows, std::size_t columns, const std::string& path);
+
+}  // namespace tribofit

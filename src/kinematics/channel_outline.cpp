@@ -1,0 +1,61 @@
+#include "channel_outline.hpp"
+
+#include <algorithm>
+
+#include "limits.hpp"
+#include "resolution.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+Extremes usual_range(std::span<const double> x) {
+  std::vector<double> some = thinned(x, kThinned);
+  std::sort(some.begin(), some.end());
+  return {quantile_of_sorted(some, 0.001), quantile_of_sorted(some, 0.999)};
+}
+
+void widen(Extremes& range, const Extremes& by) {
+  range = {std::min(range.low, by.low), std::max(range.high, by.high)};
+}
+
+}  // namespace
+
+ChannelOutline::ChannelOutline(std::span<const double> samples) : x(samples) {
+  if (x.empty()) return;
+  const std::size_t chunks = (x.size() + Chunks::length - 1) / Chunks::length;
+  for (Chunks* of : {&values, &changes}) of->part.reserve(chunks);
+  repeats.reserve(chunks);
+  values.whole = {x[0], x[0]};
+  double before = 0;  // the change that led to the sample
+  for (std::size_t begin = 0; begin < x.size(); begin += Chunks::length) {
+    const std::size_t end = std::min(x.size(), begin + Chunks::length), changed = std::min(end, x.size() - 1);
+    values.part.push_back(extremes(x.subspan(begin, end - begin)));
+    widen(values.whole, values.part.back());
+    if (begin == changed) break;
+    const double first = x[begin + 1] - x[begin];
+    Extremes change{first, first};
+    std::size_t equal = 0, turned = 0;
+    for (std::size_t i = begin; i < changed; ++i) {
+      const double d = x[i + 1] - x[i];
+      change.low = d < change.low ? d : change.low;
+      change.high = d > change.high ? d : change.high;
+      equal += d == 0 ? 1U : 0U;
+      turned += before * d < 0 ? 1U : 0U;
+      before = d;
+    }
+    changes.part.push_back(change);
+    if (begin == 0) changes.whole = change;
+    widen(changes.whole, change);
+    repeats.push_back(static_cast<std::uint16_t>(equal));
+    turns += turned;
+  }
+  usual = usual_range(x);
+  step = find_resolution(x);
+}
+
+bool ChannelOutline::turns_often() const {
+  return static_cast<double>(turns) > kManyTurns * static_cast<double>(x.size());
+}
+
+}  // namespace tribofit::kinematics
