@@ -85,12 +85,12 @@ Identification prepare_trace(const TraceInput& input, const IdentifyOptions& opt
   return prepare(input, kinematic, options.motion, Purpose::law);
 }
 
-void fit_trace(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
+void fit_trace(const IdentifyOptions& options, Identification& trace) {
   trace.fits.clear();
   trace.best = 0;
   require_channels(friction_effects(options.effects), trace);
   require_formulas(options.effects, trace);
-  if (trace.analysed) fit_laws(options, trace, detail);
+  if (trace.analysed) fit_laws(options, trace);
 }
 
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& options) {

@@ -158,7 +158,7 @@ Fit of_first_record(const Fit& joint) {
 double own_floor(const Fit& joint, const Identification& trace) {
   const Record record = {&trace.motion, &trace.segmentation};
   const FrictionModel model = joint.model.of_one_record();
-  return fit_model(model, {&record, 1}, observations_for(model, {&record, 1}, FitDetail::quick)).floor.rmse;
+  return fit_model(model, {&record, 1}, observations_for(model, {&record, 1})).floor.rmse;
 }
 
 /// The fit with what belongs to a record alone (phases, the time of a change) found anew on this one.
@@ -176,7 +176,7 @@ Fit with_values_of_record(const Fit& joint, const Identification& trace) {
   if (options.given.size() == fit.parameters.size()) return fit;
   const Record record = {&trace.motion, &trace.segmentation};
   const Fit own =
-      fit_model(fit.model, {&record, 1}, observations_for(fit.model, {&record, 1}, FitDetail::quick), {}, options);
+      fit_model(fit.model, {&record, 1}, observations_for(fit.model, {&record, 1}), {}, options);
   Fit out = fit;
   for (std::size_t k = 0; k < own.parameters.size(); ++k) {
     if (belongs_to_record(k)) out.parameters[k].value = own.parameters[k].value;

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "change_point.hpp"
+#include "reduced.hpp"
+#include "refinement.hpp"
 #include "spectral_lines.hpp"
 
 namespace tribofit {
@@ -72,11 +74,10 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
   return starts;
 }
 
-/// Where the best of several starts leads, compared on a part of the slips.
+/// Where the best of several starts leads, compared on slips with about so many values.
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
-                                   const SolverOptions& search, Fit& fit) {
-  constexpr std::size_t kValuesToCompare = 4000;
-  const std::vector<std::size_t> part = sample_of_slips(context.observations, kValuesToCompare);
+                                   std::size_t values, const SolverOptions& search, Fit& fit) {
+  const std::vector<std::size_t> part = sample_of_slips(context.observations, values);
   std::vector<SolverResult> tries;
   for (const auto& start : starts) tries.push_back(context.solve(part, start, search));
   std::size_t best = 0;
@@ -88,18 +89,12 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   return tries[best].p;
 }
 
-/// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
-/// that scatter taken out.
-Solution joint_estimate(FitContext& context, Fit& fit) {
-  Solution out;
+/// Passes from p, each with the scatter of break-away as the one before it leaves it, until two are alike. Sets the
+/// whitening; where a change point ends is held in `held`.
+void settle(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
   const bool look = context.is_look();
   const SolverOptions search = look ? short_search() : quick_search();
-  const std::vector<std::vector<double>> starts = different_starts(context);
-  out.start = starts[0];
   const std::vector<std::size_t> all = all_slips(context.observations);
-  std::vector<double> p = context.solve(all, best_of_starts(context, starts, search, fit), search).p;
-  const std::optional<ChangePoint> change = change_point_of(context.model);
-  Bounds held = context.bounds;
   // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
   // is most of what a law leaves, three passes still hold something of the start.
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
@@ -118,6 +113,51 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
     p = std::move(next);
   }
   if (is_settled) context.whitening = plain.whitening_at(p.data());
+}
+
+/// The search on fewer values: where passes from the best of several starts end.
+std::vector<double> search_on(const Observations& few, const FitContext& context,
+                              const std::vector<std::vector<double>>& starts, const std::optional<ChangePoint>& change,
+                              Fit& fit) {
+  FitContext coarse{context.model, context.records, few, context.instruments, context.options};
+  coarse.given = context.given;
+  coarse.bounds = context.bounds;
+  coarse.evaluation = context.evaluation;
+  const SolverOptions search = context.is_look() ? short_search() : quick_search();
+  constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
+  std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
+  p = coarse.solve(all_slips(few), p, search).p;
+  Bounds held = coarse.bounds;
+  settle(coarse, change, held, p);
+  return p;
+}
+
+/// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
+/// that scatter taken out. The search runs on fewer values where there are many, and what it finds is taken to where
+/// all of them lead.
+Solution joint_estimate(FitContext& context, Fit& fit) {
+  Solution out;
+  const bool look = context.is_look();
+  const SolverOptions search = look ? short_search() : quick_search();
+  const std::vector<std::vector<double>> starts = different_starts(context);
+  out.start = starts[0];
+  const std::optional<ChangePoint> change = change_point_of(context.model);
+  const std::vector<std::size_t> all = all_slips(context.observations);
+  Bounds held = context.bounds;
+  std::vector<double> p;
+  if (const auto few = reduced_for_search(context.model, context.observations)) {
+    p = search_on(*few, context, starts, change, fit);
+    if (refine(context, change, held, p)) {
+      out.result.p = std::move(p);
+      out.result.converged = true;
+      return out;
+    }
+    held = context.bounds;
+  } else {
+    constexpr std::size_t kValuesToCompare = 4000;
+    p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, search, fit), search).p;
+  }
+  settle(context, change, held, p);
   out.result = context.solve(all, p, look ? search : careful_search(), held);
   return out;
 }

@@ -56,18 +56,17 @@ void share_floor(std::vector<Fit>& fits, std::size_t best) {
 }
 
 /// Effects may act within a few samples of break-away and re-stick, and so may some laws; the others are smooth.
-std::size_t values_per_slip(const FrictionModel& model, FitDetail detail) {
-  constexpr std::size_t kBare = 80, kQuick = 100, kFull = 1000;
-  if (model.effects().empty() && !describe(model.law()).steep_at_rest) return kBare;
-  return detail == FitDetail::quick ? kQuick : kFull;
+std::size_t values_per_slip(const FrictionModel& model) {
+  constexpr std::size_t kBare = 80, kFull = 1000;
+  return model.effects().empty() && !describe(model.law()).steep_at_rest ? kBare : kFull;
 }
 
 }  // namespace
 
-Observations observations_for(const FrictionModel& model, std::span<const Record> records, FitDetail detail) {
+Observations observations_for(const FrictionModel& model, std::span<const Record> records) {
   std::vector<Observations> parts;
   for (const Record& record : records) {
-    parts.push_back(observe(*record.motion, *record.segmentation, model.needs(), values_per_slip(model, detail)));
+    parts.push_back(observe(*record.motion, *record.segmentation, model.needs(), values_per_slip(model)));
     if (!model.acts_in_stick()) continue;
     const double noise = estimate_floor(*record.motion, *record.segmentation).noise;
     add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
@@ -75,7 +74,7 @@ Observations observations_for(const FrictionModel& model, std::span<const Record
   return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
 }
 
-void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail detail) {
+void fit_laws(const IdentifyOptions& options, Identification& trace) {
   const std::vector<Effect> effects = friction_effects(options.effects);
   if (slip_ranges(trace.motion, trace.segmentation).size() < kFewestCycles) {
     trace.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
@@ -87,7 +86,7 @@ void fit_laws(const IdentifyOptions& options, Identification& trace, FitDetail d
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
     auto& [model, fit] = fits[k];
     fit.threads = options.threads;  // one of them may take most of the time
-    const Observations observations = observations_for(model, {&record, 1}, detail);
+    const Observations observations = observations_for(model, {&record, 1});
     trace.fits[k] = fit_model(model, trace.motion, trace.segmentation, observations, options.instruments, fit);
   });
   trace.best = best_of(trace.fits);

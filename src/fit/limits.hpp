@@ -63,6 +63,18 @@ inline constexpr double kLeastWeight = 1e-6;
 /// Variance of a stretch over that of the quiet quarter, beyond which it holds something else than noise.
 inline constexpr double kLoudest = 3;
 
+// ---- the search for parameters
+
+/// Values of a slip on which a search runs before all values take part: what means over more move is within reach of a
+/// few Gauss-Newton steps (up to 20 standard errors for a memory of a thirtieth of a slip). Fewer: a start may be led
+/// into another valley.
+inline constexpr double kValuesOfSearch = 100;
+/// Part of a standard error by which the last step over all values may move a parameter: what is left then is a tenth
+/// of it, and no printed digit moves. Steps that are taken at the most, and by how much each must at least be shorter
+/// than the one before it.
+inline constexpr double kLastStep = 1e-3, kShortening = 0.7;
+inline constexpr int kMostRefiningSteps = 12;
+
 // ---- slips
 
 /// Samples of a stick that show a spread, and units of evidence of a record that never sticks: enough for folds and

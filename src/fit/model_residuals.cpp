@@ -73,9 +73,9 @@ template <class T>
 bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p, double level,
                          Arrays<T>& arrays) const {
   if (level != 0) {
-    arrays.p.assign(p, p + parameter_count());
-    arrays.p[0] += level;
-    p = arrays.p.data();
+    arrays.at_level.assign(p, p + parameter_count());
+    arrays.at_level[0] += level;
+    p = arrays.at_level.data();
   }
   const Slip slip = observations_.slip(range);
   const std::size_t n = slip.size();
@@ -107,11 +107,11 @@ bool ModelResiduals::differentiate(const Observations::SlipObservation& range, c
                                    std::size_t first, std::size_t derivatives, Arrays<Dual<N>>& arrays,
                                    Block& block) const {
   const std::size_t last = std::min(derivatives, first + N);
-  std::vector<Dual<N>> dual;
+  arrays.p.clear();
   for (std::size_t j = 0; j < parameter_count(); ++j) {
-    dual.push_back(j >= first && j < last ? Dual<N>(p[j], j - first) : Dual<N>(p[j]));
+    arrays.p.push_back(j >= first && j < last ? Dual<N>(p[j], j - first) : Dual<N>(p[j]));
   }
-  if (!run(range, dual.data(), level, arrays)) return false;
+  if (!run(range, arrays.p.data(), level, arrays)) return false;
   for (std::size_t i = 0; i < arrays.rows.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     block(row, Eigen::Index(derivatives)) = arrays.rows[i].a;

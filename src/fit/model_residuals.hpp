@@ -128,7 +128,7 @@ class ModelResiduals final : public Residuals {
   /// What is written anew for every slip, kept from one to the next.
   template <class T>
   struct Arrays {
-    std::vector<T> p, velocity, mu, rows;
+    std::vector<T> p, at_level, velocity, mu, rows;
   };
   struct Workspace {
     Arrays<double> values;

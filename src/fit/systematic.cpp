@@ -52,16 +52,18 @@ struct Sources {
   std::span<const Record> records;
   const Observations& observations;
   const Instruments& instruments;
-  mutable std::vector<Place> places = {};  ///< of every value, once something asks for them
 
-  void find_places() const {
-    places.resize(observations.size());
+  /// Calls look(place, index) for every value.
+  template <class Look>
+  void each_place(Look&& look) const {
     for (const auto& slip : observations.slips) {
       const Motion& motion = *records[slip.record].motion;
-      for (std::size_t i = slip.begin; i < slip.end; ++i) {
-        const auto at = std::lower_bound(motion.time.begin(), motion.time.end(), observations.time[i]);
-        const auto sample = static_cast<std::size_t>(at - motion.time.begin());
-        places[i] = {&motion, slip.record, std::min(sample, motion.size() - 1)};
+      const auto begin = motion.time.begin();
+      auto at =
+          slip.begin < slip.end ? std::lower_bound(begin, motion.time.end(), observations.time[slip.begin]) : begin;
+      for (std::size_t i = slip.begin; i < slip.end; ++i) {  // in order of time
+        while (at != motion.time.end() && *at < observations.time[i]) ++at;
+        look(Place{&motion, slip.record, std::min(static_cast<std::size_t>(at - begin), motion.size() - 1)}, i);
       }
     }
   }
@@ -69,9 +71,8 @@ struct Sources {
   /// change(place, index) of every value.
   template <class Change>
   std::vector<double> values(Change&& change) const {
-    if (places.empty()) find_places();
-    std::vector<double> out(places.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = change(places[i], i);
+    std::vector<double> out(observations.size());
+    each_place([&](const Place& at, std::size_t i) { out[i] = change(at, i); });
     return out;
   }
   /// change(motion) of every record.

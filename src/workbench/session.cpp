@@ -185,7 +185,7 @@ WorkbenchRung WorkbenchSession::State::fitted(const WorkbenchChoice& choice, con
                                               FitDetail detail, Identification& trace) const {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t said = trace.warnings.size();
-  fit_trace(identify, trace, detail);
+  fit_trace(identify, trace);
   WorkbenchRung rung;
   rung.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const bool fits = trace.analysed && !trace.fits.empty() && !trace.fits[0].parameters.empty();

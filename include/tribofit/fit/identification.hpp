@@ -64,8 +64,8 @@ struct Identification {
   }
 };
 
-/// How finely effects are fitted. quick: to means of a few samples where a slip has many, which moves parameters by up
-/// to about one standard error; the bare laws always are.
+/// How thoroughly a model is fitted, always to the same values. quick: from the start of the data alone, without what a
+/// look at a model does not need (FitOptions::starts == 0).
 enum class FitDetail { full, quick };
 
 /// The rig behind one trace.

@@ -74,8 +74,8 @@ struct WorkbenchOptions {
 /// time, and so are full ones.
 ///
 /// A fit is that of identify() for the same choice: from the data and not from what was shown before, so that coming
-/// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0) at means of a few
-/// samples; FitDetail::full is what the command line does, to the last bit.
+/// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0) at the same values;
+/// FitDetail::full is what the command line does, to the last bit.
 class WorkbenchSession {
  public:
   /// Reads the trace. Throws InputError, also where the trace cannot carry an analysis.
