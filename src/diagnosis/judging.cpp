@@ -219,7 +219,7 @@ class CandidateScreening {
  private:
   const EffectInfo& info(std::size_t t) const { return candidates_[out_[t].candidate].info; }
   void judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
-             const std::vector<double>& start);
+             const std::vector<double>& start, int threads);
   void search(std::size_t t, const Level& level, const Trial& beside);
   bool is_hopeless(std::size_t t, double best) const;
 
@@ -227,7 +227,7 @@ class CandidateScreening {
   const Trial &top_, &coarse_top_;
   const std::vector<Candidate>& candidates_;
   const Limits& least_passing_;
-  double least_ = 0, least_plain_ = 0;
+  const LeastFalls least_falls_;
   double next_ = 0;  ///< what may be added before a line
   std::vector<CandidateResult> out_;
   std::vector<SearchStart> search_starts_;
@@ -237,12 +237,12 @@ class CandidateScreening {
 
 CandidateScreening::CandidateScreening(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
                                        const std::vector<Candidate>& candidates, const Limits& least)
-    : context_(context), top_(top), coarse_top_(coarse_top), candidates_(candidates), least_passing_(least) {
-  const auto enough = [&](double floor, double squares) {
-    return std::max(limits::kWorthFitting * least.least_size * floor, limits::kWorthPart * (squares - floor));
-  };
-  least_ = enough(context.noise_squares(), coarse_top.squares);
-  least_plain_ = enough(context.floor_squares(top.whitening), coarse_top.plain_squares);
+    : context_(context),
+      top_(top),
+      coarse_top_(coarse_top),
+      candidates_(candidates),
+      least_passing_(least),
+      least_falls_(worth_fitting(context, coarse_top, top.whitening, least)) {
   const std::vector<std::string> present = top.model.effect_keys();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     if (!candidates[k].untestable.empty()) continue;
@@ -255,17 +255,17 @@ CandidateScreening::CandidateScreening(const DiagnosisContext& context, const Tr
 }
 
 void CandidateScreening::judge(std::size_t t, const Level& level, const Trial& beside, const FrictionModel& model,
-                               const std::vector<double>& start) {
+                               const std::vector<double>& start, int threads) {
   const std::size_t candidate = out_[t].candidate;
   const double tests = search_starts_[t].places * static_cast<double>(candidates_.size());
-  out_[t] = compare(context_, level, beside, try_model(context_, level, model, start), candidates_[candidate], tests,
-                    least_passing_);
+  out_[t] = compare(context_, level, beside, try_model(context_, level, model, start, threads), candidates_[candidate],
+                    tests, least_passing_);
   out_[t].candidate = candidate;
 }
 
 void CandidateScreening::search(std::size_t t, const Level& level, const Trial& beside) {
   const FrictionModel model = with_effect(top_.model, candidates_[out_[t].candidate].effect);
-  judge(t, level, beside, model, nearest(level, model, beside.whitening, search_starts_[t].starts));
+  judge(t, level, beside, model, nearest_if_several(level, model, beside.whitening, search_starts_[t].starts), 1);
 }
 
 void CandidateScreening::judge_coarsely() {
@@ -275,7 +275,7 @@ void CandidateScreening::judge_coarsely() {
     const Level& level = narrow ? context_.fine : context_.coarse;
     const Trial& beside = narrow ? top_ : coarse_top_;
     const Candidate& candidate = candidates_[out_[t].candidate];
-    search_starts_[t] = search_start_of(context_, level, beside, candidate, residual, least_, least_plain_);
+    search_starts_[t] = search_start_of(context_, level, beside, candidate, residual, least_falls_);
     if (!narrow && !search_starts_[t].starts.empty()) search(t, level, beside);
   });
   for (const CandidateResult& judged : out_) {
@@ -293,8 +293,8 @@ bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
   const double fallen = coarse_top_.held_out_squares - best;
   const bool small = judged.size < limits::kWorthFitting * least_passing_.least_size ||
                      (judged.p_value > limits::kHopelessChance && !judged.passes) ||
-                     (judged.fall < least_ && judged.fall < limits::kWorthPart * fallen);
-  const bool far = at_low_[t] - best > limits::kFarPart * fallen + limits::kFarNoise * context_.noise_squares();
+                     (judged.fall < least_falls_.whitened && judged.fall < limits::kWorthPart * fallen);
+  const bool far = is_far_behind(context_, at_low_[t] - best, fallen);
   return !judged.by_level && (far || judged.fall < 0 || small);
 }
 
@@ -312,8 +312,10 @@ bool CandidateScreening::judge_promising() {
   run_tasks(promising.size(), context_.threads, [&](std::size_t k) {
     const std::size_t t = promising[k];
     if (info(t).needs_full_resolution) return search(t, context_.fine, top_);
-    const Trial coarse = std::move(out_[t].trial);
-    judge(t, context_.fine, top_, coarse.model, coarse.p);
+    Trial coarse = std::move(out_[t].trial);
+    judge(t, context_.fine, top_, coarse.model, coarse.p, context_.threads_each(promising.size()));
+    coarse.linear = coarse.plain = {};  // large, and not asked for again
+    out_[t].coarse = std::move(coarse);
   });
   for (const std::size_t t : promising) judged_finely_[t] = true;
   return !promising.empty();
@@ -325,6 +327,19 @@ std::vector<CandidateResult> CandidateScreening::result() && {
 }
 
 }  // namespace
+
+LeastFalls worth_fitting(const DiagnosisContext& context, const Trial& coarse,
+                         const ModelResiduals::Whitening& whitening, const Limits& least) {
+  const auto enough = [&](double floor, double squares) {
+    return std::max(limits::kWorthFitting * least.least_size * floor, limits::kWorthPart * (squares - floor));
+  };
+  return {enough(context.noise_squares(), coarse.squares),
+          enough(context.floor_squares(whitening), coarse.plain_squares)};
+}
+
+bool is_far_behind(const DiagnosisContext& context, double behind, double fallen) {
+  return behind > limits::kFarPart * fallen + limits::kFarNoise * context.noise_squares();
+}
 
 std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
                                        const std::vector<Candidate>& candidates, const Limits& least) {

@@ -14,6 +14,8 @@ namespace tribofit::diagnosis {
 struct CandidateResult {
   std::size_t candidate = 0;
   Trial trial;
+  /// The same at low resolution, without its rows, where it was judged there first; else not usable.
+  Trial coarse;
   double fall = 0;  ///< of the whitened squares on held-out cycles
   /// That fall over the squares that sensor noise leaves, or the fall of the plain squares over those that noise and
   /// scatter leave: the larger.
@@ -36,6 +38,15 @@ struct Choice {
 /// as many.
 CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
                         const Candidate& candidate, double tests, const Limits& least);
+
+/// What an effect must promise to be worth a fit beside a model that leaves the squares of `coarse`, with scatter as
+/// `whitening` says.
+LeastFalls worth_fitting(const DiagnosisContext& context, const Trial& coarse,
+                         const ModelResiduals::Whitening& whitening, const Limits& least);
+
+/// So far behind the best at low resolution that more resolution will not change it. behind: held-out squares above
+/// those of the best; fallen: what the best explains.
+bool is_far_behind(const DiagnosisContext& context, double behind, double fallen);
 
 /// Every testable candidate beside the top of a ladder (top, and the same at low resolution).
 std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,

@@ -22,11 +22,12 @@ std::vector<CandidateResult> judge_beside(const DiagnosisContext& context, const
 
 /// A rung for what was judged beside the last one.
 void add_step(const DiagnosisContext& context, Ladder& ladder, const CandidateResult& leader,
-              std::vector<std::size_t> group) {
+              std::vector<std::size_t> group, Trial without = {}) {
   LadderStep step;
   step.added = leader.candidate;
   step.by_level = leader.by_level;
   step.trial = leader.trial;
+  step.without = std::move(without);
   step.equivalent = std::move(group);
   step.judged = std::move(ladder.last);
   look_beside(context, step);
@@ -34,11 +35,11 @@ void add_step(const DiagnosisContext& context, Ladder& ladder, const CandidateRe
   ladder.finished = false;
 }
 
-/// A fall is enough of what a free function explains. Those are fitted at low resolution, where other scatter may have
-/// been taken out: what they explain counts as that part of what the trial leaves.
-bool is_worth_a_rung(const LadderStep& step, double fall) {
+/// The least fall that is enough of what a free function explains. Those are fitted at low resolution, where other
+/// scatter may have been taken out: what they explain counts as that part of what the trial leaves.
+double worth_a_rung(const LadderStep& step) {
   const double here = step.trial.held_out_squares, there = step.coarse.held_out_squares;
-  return fall >= limits::kHopelessPart * largest_fall(step) * (here > 0 && there > 0 ? std::min(1.0, here / there) : 1);
+  return limits::kHopelessPart * largest_fall(step) * (here > 0 && there > 0 ? std::min(1.0, here / there) : 1);
 }
 
 /// Adds two effects that hide each other, if there are two such that explain more than the one that leads (if any).
@@ -46,12 +47,19 @@ bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const Candi
                     const std::vector<Candidate>& candidates, const Limits& least, int most_effects) {
   if (static_cast<int>(ladder.steps.size()) >= most_effects) return false;
   const Trial& top = ladder.top();
-  const double least_size = leader != nullptr ? limits::kRivalPart * leader->size : 0;
+  LeastOfPair least_of_pair;
+  least_of_pair.fall = worth_a_rung(ladder.steps.back());
+  if (leader != nullptr) {
+    least_of_pair.size = limits::kRivalPart * leader->size;
+    least_of_pair.fall =
+        std::max(least_of_pair.fall, leader->fall + limits::kDistinguishableSize * context.noise_squares());
+    least_of_pair.beside = leader->candidate;
+  }
   const std::optional<HiddenPair> pair =
-      find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, least_size, candidates, least);
+      find_hidden_pair(context, top, ladder.steps.back().coarse, ladder.last, least_of_pair, candidates, least);
   if (!pair) return false;
   const double fall = top.held_out_squares - pair->first.trial.held_out_squares;
-  if (!is_worth_a_rung(ladder.steps.back(), fall)) return false;
+  if (fall < worth_a_rung(ladder.steps.back())) return false;
   if (leader != nullptr && !are_distinguishable(context, pair->first, *leader)) return false;
   // What was judged beside the other one is what decided: it stands for the candidate from here on.
   for (CandidateResult& judged : ladder.last) {
@@ -76,11 +84,10 @@ bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const Candi
   return true;
 }
 
-/// What a rung explains may be that its search ended in a lower minimum: the model without it is then fitted anew from
-/// there, and takes the place of the one it was compared with.
-bool improve_top(const DiagnosisContext& context, Ladder& ladder, const Trial& leader, const Candidate& added) {
+/// What a rung explains may be that its search ended in a lower minimum: the model `without` it, fitted anew from
+/// there, then takes the place of the one it was compared with.
+bool improve_top(const DiagnosisContext& context, Ladder& ladder, const Trial& leader, Trial& without) {
   LadderStep& last = ladder.steps.back();
-  Trial without = try_without(context, context.fine, leader, added.info.key);
   const double least = limits::kLowerMinimum * (last.trial.held_out_squares - leader.held_out_squares);
   const bool lower = without.usable && without.held_out_squares < last.trial.held_out_squares - std::max(0.0, least) &&
                      without.squares < last.trial.squares;
@@ -100,23 +107,29 @@ void extend(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   const Choice choice = choose(context, ladder.last, candidates);
   std::optional<CandidateResult> leader;
   if (choice.leader) leader = ladder.last[*choice.leader];
-  if (leader && !leader->by_level && !is_worth_a_rung(ladder.steps.back(), leader->fall)) {
+  if (leader && !leader->by_level && leader->fall < worth_a_rung(ladder.steps.back())) {
     ladder.withdrawn.push_back(leader->candidate);
     leader.reset();
   }
-  if (leader && improve_top(context, ladder, leader->trial, candidates[leader->candidate])) return;
+  Trial without;
+  if (leader) {
+    without = try_without(context, context.fine, leader->trial, candidates[leader->candidate].info.key,
+                          context.threads_each(1));
+    if (improve_top(context, ladder, leader->trial, without)) return;
+  }
   if (extend_by_pair(context, ladder, leader ? &*leader : nullptr, candidates, least, most_effects)) return;
-  if (leader) add_step(context, ladder, *leader, choice.group);
+  if (leader) add_step(context, ladder, *leader, choice.group, std::move(without));
 }
 
 /// What is done once, when nothing more passes.
 void finish(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
             const Limits& least) {
   const std::size_t before = ladder.steps.size();
-  prune(context, ladder, candidates, least);
+  std::vector<Trial> without = prune(context, ladder, candidates, least);
   bool replaced = false;
   for (std::size_t s = 1; s < ladder.steps.size(); ++s) {  // as often as there are effects, at the most
-    if (!reconsider(context, ladder, candidates, least)) break;
+    if (!reconsider(context, ladder, candidates, least, std::move(without))) break;
+    without = {};
     replaced = true;
   }
   if (replaced) prune(context, ladder, candidates, least);
@@ -134,11 +147,12 @@ void finish(const DiagnosisContext& context, Ladder& ladder, const std::vector<C
   }
 }
 
-Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<Candidate>& from_the_start) {
+Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<Candidate>& from_the_start,
+                    int threads) {
   Ladder ladder;
   ladder.law = law;
   LadderStep base;
-  base.trial = try_base(context, context.fine, FrictionModel(law, {}, context.records.size()));
+  base.trial = try_base(context, context.fine, FrictionModel(law, {}, context.records.size()), threads);
   for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect).trial;
   look_beside(context, base);
   ladder.finished = !base.trial.usable;
@@ -244,8 +258,9 @@ Climb climb(const DiagnosisContext& context, const CompetingLaws& laws, const st
   double rounds = 0;
   const auto start_all = [&](const std::vector<Law>& from) {
     std::vector<Ladder> started(from.size());
-    run_tasks(from.size(), context.threads,
-              [&](std::size_t k) { started[k] = start_ladder(context, from[k], from_the_start); });
+    run_tasks(from.size(), context.threads, [&](std::size_t k) {
+      started[k] = start_ladder(context, from[k], from_the_start, context.threads_each(from.size()));
+    });
     std::move(started.begin(), started.end(), std::back_inserter(ladders));
   };
   const auto climb_all = [&] {

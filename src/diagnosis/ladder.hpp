@@ -19,6 +19,7 @@ struct LadderStep {
   bool by_level = false;                ///< it was added for the levels of break-away alone
   Trial trial;                          ///< at full resolution
   Trial coarse;                         ///< the same at low resolution
+  Trial without;                        ///< fitted from `trial` without the effect added, where that is known
   std::vector<Probe> probes;            ///< what free functions find beside it
   std::vector<std::size_t> equivalent;  ///< candidates that do as well
   std::vector<CandidateResult> judged;  ///< every candidate tried beside the step before

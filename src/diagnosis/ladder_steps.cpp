@@ -8,15 +8,16 @@
 
 namespace tribofit::diagnosis {
 
-Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key) {
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key,
+                  int threads) {
   Trial rest = without_effect(full, key);
-  return try_model(context, level, rest.model, std::move(rest.p));
+  return try_model(context, level, rest.model, std::move(rest.p), threads);
 }
 
 namespace {
 
 /// The model of `without` with the effect of a judged candidate, at the values found when it was judged.
-Trial try_instead(const DiagnosisContext& context, const Trial& without, const Candidate& candidate,
+Trial try_instead(const DiagnosisContext& context, const Level& level, const Trial& without, const Candidate& candidate,
                   const Trial& judged) {
   FrictionModel model = with_effect(without.model, candidate.effect);
   const std::size_t offset = model.offset_of(candidate.info.key), added = model.count_of(candidate.info.key);
@@ -25,7 +26,7 @@ Trial try_instead(const DiagnosisContext& context, const Trial& without, const C
   start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset),
                judged.p.begin() + static_cast<std::ptrdiff_t>(from),
                judged.p.begin() + static_cast<std::ptrdiff_t>(from + added));
-  return try_model(context, context.fine, model, std::move(start));
+  return try_model(context, level, model, std::move(start));
 }
 
 /// Puts the steps of a ladder in order anew, from the top down: what was found beside an effect that is gone need not
@@ -46,6 +47,7 @@ void put_in_order(const DiagnosisContext& context, Ladder& ladder, const std::ve
     }
     std::swap(ladder.steps[least], ladder.steps[last]);
     ladder.steps[last].trial = std::move(top);
+    ladder.steps[last].without = below;
     look_beside(context, ladder.steps[last]);
     if (!below.usable) return;  // nothing lower can be fitted: the steps below stay as they were
     top = std::move(below);
@@ -69,18 +71,43 @@ std::vector<const CandidateResult*> rivals_of(const LadderStep& step, const Tria
   return rivals;
 }
 
+/// A rival in the place of the effect of a step, at low resolution.
+struct Instead {
+  const CandidateResult* rival = nullptr;
+  Trial trial;
+};
+
+/// The rivals that come near the effect of a step at low resolution. full: the top there.
+std::vector<Instead> near_rivals(const DiagnosisContext& context, const Trial& full, const std::string& key,
+                                 const std::vector<const CandidateResult*>& rivals,
+                                 const std::vector<Candidate>& candidates) {
+  std::vector<Instead> all(rivals.size());
+  const Trial without = try_without(context, context.coarse, full, key);
+  if (!full.usable || !without.usable) return {};
+  run_tasks(all.size(), context.threads, [&](std::size_t r) {
+    const Candidate& rival = candidates[rivals[r]->candidate];
+    all[r] = {rivals[r], try_instead(context, context.coarse, without, rival, rivals[r]->trial)};
+  });
+  const double fallen = without.held_out_squares - full.held_out_squares;
+  std::erase_if(all, [&](const Instead& one) {
+    const double behind = one.trial.held_out_squares - full.held_out_squares;
+    return !one.trial.usable || is_far_behind(context, behind, fallen);
+  });
+  return all;
+}
+
 /// The effect of a step and its rivals, each compared with the model `without` any of them.
 std::vector<CandidateResult> judge_anew(const DiagnosisContext& context, const LadderStep& step, const Trial& full,
-                                        const Trial& without, const std::vector<const CandidateResult*>& rivals,
+                                        const Trial& without, const std::vector<Instead>& rivals,
                                         const std::vector<Candidate>& candidates, const Limits& least) {
   std::vector<CandidateResult> judged(rivals.size() + 1);
   judged[0] = compare(context, context.fine, without, full, candidates[*step.added], 1, least);
   judged[0].candidate = *step.added;
   run_tasks(rivals.size(), context.threads, [&](std::size_t r) {
-    const Candidate& rival = candidates[rivals[r]->candidate];
-    Trial instead = try_instead(context, without, rival, rivals[r]->trial);
-    judged[r + 1] = compare(context, context.fine, without, std::move(instead), rival, 1, least);
-    judged[r + 1].candidate = rivals[r]->candidate;
+    const std::size_t candidate = rivals[r].rival->candidate;
+    Trial instead = try_model(context, context.fine, rivals[r].trial.model, rivals[r].trial.p);
+    judged[r + 1] = compare(context, context.fine, without, std::move(instead), candidates[candidate], 1, least);
+    judged[r + 1].candidate = candidate;
   });
   return judged;
 }
@@ -98,42 +125,52 @@ double largest_fall(const LadderStep& step) {
   return structure.empty() ? 0 : structure.front().fall;
 }
 
-void prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
-           const Limits& least) {
-  struct Without {
-    Trial trial;
-    bool is_needed = false;
-  };
+namespace {
+
+/// The top without the effect of step k + 1: taken from what is known, or fitted.
+Trial without_step(const DiagnosisContext& context, const Ladder& ladder, const std::vector<Candidate>& candidates,
+                   std::size_t k, int threads) {
+  const LadderStep& step = ladder.steps[k + 1];
+  if (k + 2 == ladder.steps.size() && step.without.usable) return step.without;
+  return try_without(context, context.fine, ladder.top(), candidates[*step.added].info.key, threads);
+}
+
+}  // namespace
+
+std::vector<Trial> prune(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
+                         const Limits& least) {
   while (true) {
-    const Trial& full = ladder.top();
-    std::vector<Without> all(ladder.steps.size() - 1);  // without each of the effects
-    run_tasks(all.size(), context.threads, [&](std::size_t k) {
+    std::vector<Trial> without(ladder.steps.size() - 1);  // each of the effects
+    std::vector<unsigned char> is_needed(without.size());
+    run_tasks(without.size(), context.threads, [&](std::size_t k) {
       const Candidate& candidate = candidates[*ladder.steps[k + 1].added];
-      all[k].trial = try_without(context, context.fine, full, candidate.info.key);
-      all[k].is_needed =
-          !all[k].trial.usable || compare(context, context.fine, all[k].trial, full, candidate, 1, least).passes;
+      without[k] = without_step(context, ladder, candidates, k, context.threads_each(without.size()));
+      const bool needed =
+          !without[k].usable || compare(context, context.fine, without[k], ladder.top(), candidate, 1, least).passes;
+      is_needed[k] = needed ? 1 : 0;
     });
-    const auto first = std::find_if(all.begin(), all.end(), [](const Without& without) { return !without.is_needed; });
-    if (first == all.end()) return;
-    ladder.steps.erase(ladder.steps.begin() + 1 + (first - all.begin()));
-    put_in_order(context, ladder, candidates, std::move(first->trial));
+    const auto first = std::find(is_needed.begin(), is_needed.end(), 0) - is_needed.begin();
+    if (first == std::ssize(is_needed)) return without;
+    ladder.steps.erase(ladder.steps.begin() + 1 + first);
+    put_in_order(context, ladder, candidates, std::move(without[static_cast<std::size_t>(first)]));
   }
 }
 
 bool reconsider(const DiagnosisContext& context, Ladder& ladder, const std::vector<Candidate>& candidates,
-                const Limits& least) {
+                const Limits& least, std::vector<Trial> without) {
   if (ladder.steps.size() <= 2) return false;
   std::vector<std::vector<CandidateResult>> judged(ladder.steps.size() - 1);  // beside all effects but one
+  without.resize(judged.size());
   run_tasks(judged.size(), context.threads, [&](std::size_t k) {
     const LadderStep& step = ladder.steps[k + 1];
-    const Trial& full = ladder.top();
-    std::vector<const CandidateResult*> rivals = rivals_of(step, full, candidates);
+    std::vector<const CandidateResult*> rivals = rivals_of(step, ladder.top(), candidates);
+    const std::string& key = candidates[*step.added].info.key;
+    const FrictionModel rest = without_effect(ladder.top(), key).model;
+    std::erase_if(rivals, [&](const CandidateResult* r) { return !rest.acts_with(candidates[r->candidate].effect); });
     if (rivals.empty()) return;
-    const Trial without = try_without(context, context.fine, full, candidates[*step.added].info.key);
-    if (!without.usable) return;
-    std::erase_if(rivals,
-                  [&](const CandidateResult* r) { return !without.model.acts_with(candidates[r->candidate].effect); });
-    if (!rivals.empty()) judged[k] = judge_anew(context, step, full, without, rivals, candidates, least);
+    const std::vector<Instead> near = near_rivals(context, ladder.steps.back().coarse, key, rivals, candidates);
+    if (!without[k].usable) without[k] = without_step(context, ladder, candidates, k, 1);
+    if (without[k].usable) judged[k] = judge_anew(context, step, ladder.top(), without[k], near, candidates, least);
   });
   for (std::size_t k = 0; k < judged.size(); ++k) {
     if (judged[k].empty()) continue;

@@ -82,7 +82,8 @@ inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
 /// Candidates tried two at a time, ten pairs, and those that are tried with all others: slow effects of which one shows
 /// only beside another (drift beside a runout of few turns).
 inline constexpr std::size_t kMostInPairs = 5, kMostWithAll = 1;
-inline constexpr std::size_t kMostStarts = 2;  ///< the linear step ranks starts well, but not always the first two
+inline constexpr std::size_t kMostPairsFitted = 4;  ///< linear steps rank pairs well, but not always the first ones
+inline constexpr std::size_t kMostStarts = 2;       ///< the linear step ranks starts well, but not always the first two
 
 // The ladder.
 /// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less

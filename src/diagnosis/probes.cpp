@@ -176,14 +176,24 @@ std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
   const double span = times.back() - times.front();
   const double highest = 0.35 * static_cast<double>(times.size()) / span;
   const double step = 0.1 / span;
-  double best = -1, frequency = 0;
-  for (double f = 0.8 / span; f < highest; f += step) {
-    std::complex<double> swing = 0;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      swing += weights[k] * (levels[k] - mean) * std::polar(1.0, -(2 * std::numbers::pi) * f * times[k]);
+  // From one frequency to the next every phase turns on by a step of its own.
+  std::vector<std::complex<double>> at(times.size()), turn(times.size());
+  double f = 0.8 / span, best = -1, frequency = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    at[k] = weights[k] * (levels[k] - mean) * std::polar(1.0, -(2 * std::numbers::pi) * f * times[k]);
+    turn[k] = std::polar(1.0, -(2 * std::numbers::pi) * step * times[k]);
+  }
+  for (; f < highest; f += step) {
+    double real = 0, imaginary = 0;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const double x = at[k].real(), y = at[k].imag(), c = turn[k].real(), s = turn[k].imag();
+      real += x;
+      imaginary += y;
+      at[k] = {x * c - y * s, x * s + y * c};
     }
-    if (std::abs(swing) > best) {
-      best = std::abs(swing);
+    const double swing = std::hypot(real, imaginary);
+    if (swing > best) {
+      best = swing;
       frequency = f;
     }
   }

@@ -20,17 +20,16 @@ namespace tribofit::diagnosis {
 namespace {
 
 ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
-                            const ModelResiduals::Whitening& whitening) {
-  ModelResiduals residuals(model, observations, all_slips(observations));
+                            const ModelResiduals::Whitening& whitening, int threads = 1) {
+  ModelResiduals residuals(model, observations, all_slips(observations), {Loss::squares, 0, threads});
   if (whitening.any()) residuals.whiten(whitening);
   return residuals;
 }
 
 /// Adds what each cycle pays for the scatter of break-away.
 void pay_for_scatter(const ModelResiduals::Whitening& whitening, std::vector<double>& squares) {
-  for (std::size_t c = 0; c < std::min(squares.size(), whitening.log_spread.size()); ++c) {
+  for (std::size_t c = 0; c < std::min(squares.size(), whitening.log_spread.size()); ++c)
     squares[c] += whitening.noise * whitening.log_spread[c];
-  }
 }
 
 ModelResiduals::StickSquares all_sticks(const std::vector<ModelResiduals::StickSquares>& sticks) {
@@ -69,6 +68,7 @@ double judge(const DiagnosisContext& context, const ModelResiduals& residuals, c
     trial.linear.known_flicker = context.fine.observations.flicker;
   }
   std::vector<double> squares = squares_after(trial.linear, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
+  trial.row_squares = sum(squares);
   trial.held_out = held_out_squares(trial.linear, context.blocks);
   pay_for_scatter(trial.whitening, squares);
   pay_for_scatter(trial.whitening, trial.held_out);
@@ -126,9 +126,8 @@ StepRange step_range(const std::vector<double>& start, const Bounds& bounds) {
 
 /// A full turn more or less is the same phase.
 void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
-  for (std::size_t k = 0; k < p.size(); ++k) {
+  for (std::size_t k = 0; k < p.size(); ++k)
     if (model.parameters()[k].parameter.periodic) p[k] = std::remainder(p[k], 2 * std::numbers::pi);
-  }
 }
 
 }  // namespace
@@ -156,43 +155,50 @@ double noise_of(const Level& level, const Trial& trial) {
 }
 
 Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
-                std::vector<double> start) {
+                std::vector<double> start, int threads) {
   stop_point();
   Trial trial;
   trial.model = model;
   const Observations& observations = level.observations;
   const Bounds bounds = bounds_of(model, observations);
-  trial.whitening = residuals_of(observations, model, {}).whitening_at(start.data());
-  const ModelResiduals residuals = residuals_of(observations, model, trial.whitening);
+  const ModelResiduals plain = residuals_of(observations, model, {}, threads);
+  trial.whitening = plain.whitening_at(start.data());
+  const ModelResiduals residuals = residuals_of(observations, model, trial.whitening, threads);
   trial.p = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(20)).p;
   wrap_phases(model, trial.p);
   // Scatter is known better once the model is: a start may see as scatter what an effect explains.
-  trial.whitening = residuals_of(observations, model, {}).whitening_at(trial.p.data());
-  const ModelResiduals again = residuals_of(observations, model, trial.whitening);
+  trial.whitening = plain.whitening_at(trial.p.data());
+  const ModelResiduals again = residuals_of(observations, model, trial.whitening, threads);
   trial.p = minimize(again, trial.p, bounds.lower, bounds.upper, quick_search(5)).p;
   const double off = judge(context, again, bounds, trial);
-  if (trial.usable) judge_plainly(context.blocks, residuals_of(observations, model, {}), off, trial);
+  if (trial.usable) judge_plainly(context.blocks, plain, off, trial);
   return trial;
 }
 
-std::vector<double> nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
-                            const std::vector<std::vector<double>>& starts) {
+Approach nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+                 const std::vector<std::vector<double>>& starts) {
   const Bounds bounds = bounds_of(model, level.observations);
   const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
-  if (starts.size() == 1) return starts[0];
-  SolverResult best;
+  Approach best;
   for (const auto& start : starts) {
     SolverResult next = minimize(residuals, start, bounds.lower, bounds.upper, quick_search(8));
-    if (best.p.empty() || next.cost < best.cost) best = std::move(next);
+    if (best.p.empty() || 2 * next.cost < best.squares) best = {std::move(next.p), 2 * next.cost};
   }
-  return best.p;
+  return best;
 }
 
-Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model) {
+std::vector<double> nearest_if_several(const Level& level, const FrictionModel& model,
+                                       const ModelResiduals::Whitening& whitening,
+                                       const std::vector<std::vector<double>>& starts) {
+  return starts.size() == 1 ? starts[0] : nearest(level, model, whitening, starts).p;
+}
+
+Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model, int threads) {
   const Bounds bounds = bounds_of(model, level.observations);
-  const ModelResiduals plain = residuals_of(level.observations, model, {});
+  const ModelResiduals plain = residuals_of(level.observations, model, {}, threads);
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
-  return try_model(context, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p);
+  return try_model(context, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p,
+                   threads);
 }
 
 std::vector<double> residual_of(const DiagnosisContext& context, const Trial& trial) {
@@ -202,9 +208,8 @@ std::vector<double> residual_of(const DiagnosisContext& context, const Trial& tr
     const Slip slip = observations.slip(range);
     mu.resize(slip.size());
     evaluate<double>(trial.model, trial.p.data(), slip, slip.velocity, mu);
-    for (std::size_t i = 0; i < mu.size(); ++i) {
+    for (std::size_t i = 0; i < mu.size(); ++i)
       residual[range.begin + i] = observations.friction[range.begin + i] - mu[i];
-    }
   }
   return residual;
 }
@@ -233,14 +238,12 @@ Promise start_with(const std::vector<double>& base, const FrictionModel& model, 
   promise.start = base;
   promise.start.insert(promise.start.begin() + static_cast<std::ptrdiff_t>(offset), added, 0.0);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    for (std::size_t record = 0; record < model.records(); ++record) {
+    for (std::size_t record = 0; record < model.records(); ++record)
       promise.start[model.slot_of(offset + k, record)] = values[k];
-    }
     if (!effect.parameters[k].periodic) promise.place.push_back(values[k]);
   }
-  for (std::size_t k = 0; k < promise.start.size(); ++k) {
+  for (std::size_t k = 0; k < promise.start.size(); ++k)
     promise.start[k] = std::clamp(promise.start[k], bounds.lower[k], bounds.upper[k]);
-  }
   return promise;
 }
 
@@ -322,8 +325,7 @@ void keep_best_of_place(Promise promise, std::vector<Promise>& promises) {
 }  // namespace
 
 SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
-                            const Candidate& candidate, std::span<const double> residual, double least,
-                            double least_plain) {
+                            const Candidate& candidate, std::span<const double> residual, const LeastFalls& least) {
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = bounds_of(model, level.observations);
@@ -359,27 +361,25 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   SearchStart found;
   found.places = starts.places * static_cast<double>(bases.size());
   if (promises.empty()) return found;
-  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.p.size()));
-  found.promised = sum(squares_after(base.linear, stay)) - base.stick.rigid - promises[0].squares;
-  if (found.promised < least) {
+  found.promised = base.row_squares - base.stick.rigid - promises[0].squares;
+  found.squares = promises[0].squares + *rigid;
+  if (found.promised < least.whitened) {
     // What acts through the level of break-away may look like its scatter, which has been taken out.
     const ModelResiduals unwhitened = residuals_of(level.observations, model, {});
     const auto plain = squares_of_step(unwhitened, promises[0].start, bounds, *rigid);
-    if (!plain || base.plain_squares - plain->there < least_plain) return found;
+    if (!plain || base.plain_squares - plain->there < least.plain) return found;
   }
-  for (std::size_t k = 0; k < std::min(limits::kMostStarts, promises.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(limits::kMostStarts, promises.size()); ++k)
     found.starts.push_back(promises[k].start);
-  }
   return found;
 }
 
 Searched try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
-  constexpr double kAnyFall = -std::numeric_limits<double>::infinity();
-  const SearchStart search =
-      search_start_of(context, level, base, effect, residual_of(context, base), kAnyFall, kAnyFall);
+  const SearchStart search = search_start_of(context, level, base, effect, residual_of(context, base), LeastFalls());
   const FrictionModel model = with_effect(base.model, effect.effect);
   if (search.starts.empty()) return {try_base(context, level, model), search.places};
-  return {try_model(context, level, model, nearest(level, model, base.whitening, search.starts)), search.places};
+  return {try_model(context, level, model, nearest_if_several(level, model, base.whitening, search.starts)),
+          search.places};
 }
 
 Trial without_effect(const Trial& full, std::string_view key) {

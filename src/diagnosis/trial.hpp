@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@ struct Trial {
   Linearised linear;             ///< at p
   std::vector<double> held_out;  ///< squares of each cycle, from parameters that the other blocks suggest
   double squares = 0;            ///< of all cycles, at p
+  double row_squares = 0;        ///< the same without what is paid for scatter: of the rows of `linear`
   double plain_squares = 0;      ///< the same not whitened: scatter of break-away counts in full
   double held_out_squares = 0;   ///< sum of held_out
   Linearised plain;              ///< not whitened, stepped to its own minimum
@@ -63,6 +65,8 @@ struct DiagnosisContext {
 
   DiagnosisContext(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
                    double sensor_noise, double break_away_scatter);
+  /// For each of so many tasks that are done side by side.
+  int threads_each(std::size_t tasks) const { return tasks == 1 ? threads : 1; }
   /// Squares that sensor noise leaves.
   double noise_squares() const { return fine.samples * noise * noise; }
   /// Squares that noise and scatter leave together, in slips whose friction follows break-away as the whitening says.
@@ -72,16 +76,27 @@ struct DiagnosisContext {
 /// Variance of a row of friction beside the model of a trial.
 double noise_of(const Level& level, const Trial& trial);
 
-/// Fits a model from a start, with the scatter of break-away as the model sees it there.
+/// Fits a model from a start, with the scatter of break-away as the model sees it there. threads: that share its slips.
 Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
-                std::vector<double> start);
+                std::vector<double> start, int threads = 1);
+
+/// Where a few steps from a start lead, and the squares of all rows there.
+struct Approach {
+  std::vector<double> p;
+  double squares = 0;
+};
 
 /// The start from which a few steps lead lowest, after those steps.
-std::vector<double> nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
-                            const std::vector<std::vector<double>>& starts);
+Approach nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+                 const std::vector<std::vector<double>>& starts);
+
+/// The same, but a single start as it is.
+std::vector<double> nearest_if_several(const Level& level, const FrictionModel& model,
+                                       const ModelResiduals::Whitening& whitening,
+                                       const std::vector<std::vector<double>>& starts);
 
 /// Fits a model from the data alone.
-Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model);
+Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model, int threads = 1);
 
 /// What the model of a trial leaves at each value of the fine observations [1 or N].
 std::vector<double> residual_of(const DiagnosisContext& context, const Trial& trial);
@@ -92,14 +107,18 @@ struct SearchStart {
                                             ///< a fall of the squares
   double places = 1;                        ///< independent places that were looked at
   double promised = 0;  ///< fall of the whitened squares that a linear step from the best start says
+  double squares = 0;   ///< of all rows that are left then
 };
 
-/// The best two of the starts of an effect beside the model of `base`, a trial at `level`.
-/// residual: see residual_of; least, least_plain: falls of the whitened and of the plain squares, one of which a start
-/// must promise.
+/// Falls of the squares of which one must be promised; of any size, where nothing is said.
+struct LeastFalls {
+  double whitened = -std::numeric_limits<double>::infinity();
+  double plain = -std::numeric_limits<double>::infinity();
+};
+
+/// The best two of the starts of an effect beside the model of `base`, a trial at `level`. residual: see residual_of.
 SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
-                            const Candidate& candidate, std::span<const double> residual, double least,
-                            double least_plain);
+                            const Candidate& candidate, std::span<const double> residual, const LeastFalls& least);
 
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);

@@ -24,7 +24,7 @@ void widen(Extremes& range, const Extremes& by) {
 ChannelOutline::ChannelOutline(std::span<const double> samples) : x(samples) {
   if (x.empty()) return;
   const std::size_t chunks = (x.size() + Chunks::length - 1) / Chunks::length;
-  for (Chunks* of : {&values, &changes}) of->part.reserve(chunks);
+  for (Chunks* summary : {&values, &changes}) summary->part.reserve(chunks);
   repeats.reserve(chunks);
   values.whole = {x[0], x[0]};
   double before = 0;  // the change that led to the sample
