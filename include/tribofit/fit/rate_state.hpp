@@ -1,0 +1,140 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/fit.hpp"
+#include "tribofit/friction/state_evolution.hpp"
+#include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
+
+namespace tribofit {
+
+/// What is taken off friction within each stretch beside a constant.
+enum class Detrend {
+  automatic,     ///< a line over the displacement of the load point or over time, whichever leaves less
+  displacement,  ///< a line over the displacement of the load point
+  time,          ///< a line over time
+  none           ///< nothing
+};
+/// "auto", "displacement", "time", "none": as --detrend and JSON have them.
+std::string_view to_string(Detrend detrend);
+std::vector<std::string> detrend_names();
+std::optional<Detrend> find_detrend(std::string_view name);
+
+/// How velocity steps and holds are fitted.
+struct RateStateOptions {
+  std::vector<StateEvolution> evolutions = {state_evolutions.begin(), state_evolutions.end()};
+  std::size_t states = 1;  ///< state variables
+  Detrend detrend = Detrend::automatic;
+  double reference_speed = 0;  ///< v0 [m/s]; 0: the speed of the load point before the first step
+  double from = -std::numeric_limits<double>::infinity();  ///< [s]: nothing before is used
+  double to = std::numeric_limits<double>::infinity();     ///< [s]: nothing after is used
+  std::vector<GivenParameter> given = {};                  ///< starts and bounds of a, b, D_c, k (b_2, D_c2), SI
+  std::vector<Selection::Stretch> excluded = {};           ///< samples that are left out
+  bool each_step = true;                                   ///< every step by itself, too
+  int threads = 1;  ///< 0: as many as there are; the result does not depend on it
+};
+
+/// A change of the speed of the load point with the samples that show what friction does: from within the sliding
+/// before it until sliding before the next one. A hold is one of them, from where the load point stops.
+struct VelocityStep {
+  double time = 0;               ///< at which the speed changes [s]
+  double before = 0, after = 0;  ///< speeds of the load point [m/s]; of a hold those of sliding around it
+  double hold = 0;               ///< time at rest [s]; 0: none
+  double displacement = 0;       ///< of the load point at `time` [m]
+  double from = 0, to = 0;       ///< times between which its samples lie [s]
+  std::size_t samples = 0;
+  double slack = 0;     ///< by which `time` may be wrong [s]; 0: it is known
+  double interval = 0;  ///< shortest sampling interval behind the step [s]
+};
+
+/// Rate-and-state friction fitted to steps together (`step` is empty) or to one of them.
+struct RateStateFit {
+  StateEvolution evolution = StateEvolution::ageing;
+  std::optional<std::size_t> step;
+  std::vector<FitParameter> parameters;  ///< a, b, D_c, k; with two states b_2 and D_c2 behind D_c
+  std::vector<double> covariance;        ///< of ln D and ln k, and the others as they are, row by row
+  Estimate rate_dependence;              ///< a - b (of all states) [1]
+  double rate_dependence_lower95 = 0, rate_dependence_upper95 = 0;
+  /// (b - a)/D_c of one state [1/m], below which steady sliding is unstable, and k over it; NaN where friction does not
+  /// fall with speed, or with two states.
+  double critical_stiffness = std::numeric_limits<double>::quiet_NaN();
+  double stiffness_ratio = std::numeric_limits<double>::quiet_NaN(), stiffness_ratio_lower95 = 0,
+         stiffness_ratio_upper95 = 0;
+  std::vector<Estimate> base_friction;  ///< mu_0 of each step of the fit, at v0 and at the time of the step
+  std::vector<Estimate> trend;          ///< slope of the line taken off [1/m or 1/s]
+  double rmse = 0;                      ///< of the samples that were fitted [1]
+  double noise_white = 0;               ///< scatter of a sample in what is left [1]
+  double noise_slow = 0;                ///< and of what wanders in it [1], over a time of
+  double noise_time = 0;                ///< [s]; 0: nothing wanders
+  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  ///< steps that were left out of the fit
+  double degrees_of_freedom = 1;
+  std::size_t samples = 0;
+  std::vector<Correlation> correlations;  ///< above 0.9 in size
+  std::vector<std::string> messages;
+  bool converged = false;
+};
+
+/// One hold.
+struct HoldMeasures {
+  std::size_t step = 0;    ///< index of the step
+  double duration = 0;     ///< [s]
+  Estimate sliding, peak;  ///< friction before it, and the largest afterwards [1]
+  double minimum = 0;      ///< friction at its end [1]
+  double healing = 0;      ///< peak less sliding [1]
+  double relaxation = 0;   ///< sliding less minimum [1]
+};
+
+/// How static friction grows with the time at rest.
+struct Healing {
+  std::vector<HoldMeasures> holds;
+  Estimate per_decade;  ///< growth of the peak for a tenfold time at rest [1]; NaN for fewer than three holds
+  double per_decade_model = std::numeric_limits<double>::quiet_NaN();  ///< the same of the response that was fitted
+};
+
+/// Friction over time as it was used and as the best fit has it, thinned.
+struct RateStateCurve {
+  std::size_t step = 0;
+  std::vector<double> time, displacement, friction, model;  ///< [s], [m], [1], [1]
+  std::vector<double> other;                                ///< the best fit of the other law; empty: there is none
+};
+
+/// All that velocity steps and holds say.
+struct RateStateAnalysis {
+  double reference_speed = 0;  ///< v0 [m/s]
+  std::string reference_source;
+  Detrend detrend = Detrend::automatic;  ///< as it was done
+  std::vector<VelocityStep> steps;
+  std::vector<RateStateFit> fits;  ///< one for each law, all steps together
+  std::size_t best = 0;            ///< in `fits`
+  double law_p_value =
+      std::numeric_limits<double>::quiet_NaN();  ///< bound of the chance that the other law is true; NaN: not compared
+  std::vector<RateStateFit> each;                ///< of each step by itself, the best law
+  double sharing_p_value = std::numeric_limits<double>::quiet_NaN();  ///< that all steps have the same values
+  std::optional<Healing> healing;
+  std::vector<RateStateCurve> curves;
+  std::vector<std::string> messages;
+  std::string reason;  ///< why nothing was fitted; empty: it was
+
+  bool fitted() const { return !fits.empty() && fits[best].converged; }
+};
+
+/// Fits a, b, D_c and the stiffness k per normal force to the whole simulated response of a record of velocity steps or
+/// holds (`motion.load_point` says how the load point moved): d mu/dt = k (v_lp - v), from steady sliding at the first
+/// speed. Constants and lines of each stretch are projected out (G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10
+/// (1973) 413), so that the search has no more unknowns however many steps there are.
+///
+/// Statistical errors: least squares, whose covariance is computed with noise that is white in part and in part wanders
+/// with a correlation exp(-dt/tau), sizes and tau by restricted maximum likelihood from what is left; a, b with normal
+/// intervals, D_c and k in the logarithm. The laws are compared by the likelihood of what they leave, and on steps
+/// held out.
+///
+/// Throws Stopped within a StopScope that says so. Cost: linear in samples; some hundred simulations of the record.
+RateStateAnalysis fit_rate_state(const Motion& motion, const RateStateOptions& options = {});
+
+}  // namespace tribofit

@@ -1,0 +1,198 @@
+#include "rate_state_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "limits.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::fit {
+
+namespace {
+
+/// A stretch of sliding at one speed.
+struct Sliding {
+  std::size_t phase = 0;
+  double begin = 0, end = 0, speed = 0;
+  double length() const { return speed * (end - begin); }
+};
+
+std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, double end) {
+  std::vector<Sliding> out;
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    const double until = i + 1 < phases.size() ? phases[i + 1].begin : end;
+    if (phases[i].speed > 0) out.push_back({i, phases[i].begin, until, phases[i].speed});
+  }
+  return out;
+}
+
+/// Phases of the load point within a window, in which sliding begins.
+std::vector<LoadPointPhase> phases_within(const std::vector<LoadPointPhase>& all, double from) {
+  std::vector<LoadPointPhase> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i + 1 < all.size() && all[i + 1].begin <= from) continue;
+    if (out.empty() && !(all[i].speed > 0)) continue;
+    out.push_back(all[i]);
+    if (out.size() == 1) out.front().begin = std::max(out.front().begin, from);
+  }
+  return out;
+}
+
+/// Steps between neighbouring stretches of sliding, with the times between which their samples lie.
+void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
+  for (std::size_t j = 0; j + 1 < slidings.size(); ++j) {
+    const Sliding &from = slidings[j], &to = slidings[j + 1];
+    VelocityStep step;
+    step.time = from.end;
+    step.before = from.speed;
+    step.after = to.speed;
+    step.hold = to.begin - from.end;
+    step.displacement = data.displacement_at(step.time);
+    const double own = j == 0 ? 1 : 1 - kPartOfSlidingBehind;
+    const double before = std::min(own * from.length(), std::max(kPartOfSlidingBefore * from.length(), to.length()));
+    step.from = from.end - before / from.speed;
+    step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * (to.end - to.begin) : 0);
+    data.steps.push_back(step);
+    data.before.push_back(from.phase);
+  }
+}
+
+bool is_excluded(const RateStateOptions& options, double t) {
+  return std::any_of(options.excluded.begin(), options.excluded.end(),
+                     [t](const Selection::Stretch& s) { return t >= s.from && t <= s.to; });
+}
+
+/// Samples of one step.
+struct Samples {
+  std::vector<double> time, friction;
+};
+
+/// Puts neighbours together so that about `most` values are left: a value holds the samples of a part of the time since
+/// the last change of speed.
+void add_values(const RateStateData& data, const Samples& samples, std::span<const double> counts, std::size_t most,
+                RateStateData& out) {
+  const auto last_change = [&](double t) {
+    double at = data.phases.front().begin;
+    for (const LoadPointPhase& phase : data.phases) {
+      if (phase.begin <= t) at = phase.begin;
+    }
+    return at;
+  };
+  const std::size_t n = samples.time.size();
+  double growth = n > most ? 1e-3 : 0;
+  const auto pass = [&](double part, bool write) {
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < n;) {
+      const double change = last_change(samples.time[i]), width = part * (samples.time[i] - change);
+      double time = 0, friction = 0, count = 0;
+      const double begin = samples.time[i];
+      do {
+        time += counts[i] * samples.time[i];
+        friction += counts[i] * samples.friction[i];
+        count += counts[i];
+        ++i;
+      } while (i < n && samples.time[i] - begin < width && last_change(samples.time[i]) == change);
+      ++values;
+      if (!write) continue;
+      out.time.push_back(time / count);
+      out.friction.push_back(friction / count);
+      out.count.push_back(count);
+    }
+    return values;
+  };
+  while (growth > 0 && growth < 1 && pass(growth, false) > most) growth *= 1.5;
+  pass(growth, true);
+}
+
+void set_displacement(RateStateData& data) {
+  data.displacement.clear();
+  for (const double t : data.time) data.displacement.push_back(data.displacement_at(t));
+}
+
+}  // namespace
+
+double RateStateData::displacement_at(double t) const {
+  std::size_t i = 0;
+  while (i + 1 < phases.size() && phases[i + 1].begin <= t) ++i;
+  return phase_displacement[i] + phases[i].speed * (t - phases[i].begin);
+}
+
+RateStateData rate_state_data(const Motion& motion, const RateStateOptions& options, std::size_t most,
+                              std::vector<std::string>& messages) {
+  RateStateData data;
+  if (motion.size() < 2) return data;
+  const double begin = std::max(options.from, motion.time.front()), end = std::min(options.to, motion.time.back());
+  data.phases = phases_within(motion.load_point, begin);
+  if (data.phases.empty()) return data;
+  double x = 0;
+  for (std::size_t i = 0; i < data.phases.size(); ++i) {
+    data.phase_displacement.push_back(x);
+    if (i + 1 < data.phases.size()) x += data.phases[i].speed * (data.phases[i + 1].begin - data.phases[i].begin);
+  }
+  while (data.phases.size() > 1 && data.phases.back().begin >= end) {
+    data.phases.pop_back();
+    data.phase_displacement.pop_back();
+  }
+  find_steps(slidings_of(data.phases, end), data);
+  data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
+
+  std::vector<VelocityStep> steps = std::exchange(data.steps, {});
+  const std::vector<std::size_t> before = std::exchange(data.before, {});
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    VelocityStep& step = steps[s];
+    step.from = std::max(step.from, begin);
+    step.to = std::min(step.to, end);
+    Samples samples;
+    std::size_t earlier = 0;
+    const auto first = std::lower_bound(motion.time.begin(), motion.time.end(), step.from) - motion.time.begin();
+    std::vector<double> intervals;
+    for (auto i = static_cast<std::size_t>(first); i < motion.size() && motion.time[i] <= step.to; ++i) {
+      if (is_excluded(options, motion.time[i]) || motion.has_fault(i, SampleFault::any)) continue;
+      if (motion.time[i] < step.time) ++earlier;
+      if (!samples.time.empty() && motion.time[i] > step.time)
+        intervals.push_back(motion.time[i] - samples.time.back());
+      samples.time.push_back(motion.time[i]);
+      samples.friction.push_back(motion.friction[i]);
+    }
+    step.samples = samples.time.size();
+    if (earlier < kFewestBeforeStep || step.samples - earlier < kFewestBehindStep) {
+      messages.push_back(fmt::format("the step at {:.6g} s was not used: {} samples before and {} behind it", step.time,
+                                     earlier, step.samples - earlier));
+      continue;
+    }
+    step.interval = quantile(std::move(intervals), 0.1);
+    const double beside = std::min(step.time - step.from, step.to - step.time);
+    if (motion.load_point_source == LoadPointSource::stated) step.slack = kSlackOfStated * beside;
+    if (motion.load_point_source == LoadPointSource::speed) step.slack = kSlackOfSpeed * step.interval;
+    data.begins.push_back(data.time.size());
+    data.steps.push_back(step);
+    data.before.push_back(before[s]);
+    const std::vector<double> ones(samples.time.size(), 1.0);
+    add_values(data, samples, ones, most, data);
+  }
+  set_displacement(data);
+  return data;
+}
+
+RateStateData thinned(const RateStateData& data, std::size_t most) {
+  RateStateData out = data;
+  out.time.clear();
+  out.friction.clear();
+  out.count.clear();
+  out.begins.clear();
+  for (std::size_t s = 0; s < data.begins.size(); ++s) {
+    const auto begin = static_cast<std::ptrdiff_t>(data.begins[s]), end = static_cast<std::ptrdiff_t>(data.end_of(s));
+    Samples samples;
+    samples.time.assign(data.time.begin() + begin, data.time.begin() + end);
+    samples.friction.assign(data.friction.begin() + begin, data.friction.begin() + end);
+    out.begins.push_back(out.time.size());
+    add_values(data, samples, std::span(data.count).subspan(data.begins[s], samples.time.size()), most, out);
+  }
+  set_displacement(out);
+  return out;
+}
+
+}  // namespace tribofit::fit

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tribofit/fit/rate_state.hpp"
+
+namespace tribofit::fit {
+
+/// The samples of velocity steps, and how the load point moved.
+struct RateStateData {
+  std::vector<LoadPointPhase> phases;
+  std::vector<double> phase_displacement;  ///< of the load point at the begin of each phase [m]
+  std::vector<VelocityStep> steps;
+  std::vector<std::size_t> before;  ///< of each step: the phase of sliding before it
+  double reference_speed = 0;       ///< v0 [m/s]
+
+  /// Values, each the mean of `count` samples, in order of time; those of step s begin at begins[s].
+  std::vector<double> time, displacement, friction, count;
+  std::vector<std::size_t> begins;
+
+  std::size_t size() const { return time.size(); }
+  std::size_t end_of(std::size_t step) const { return step + 1 < begins.size() ? begins[step + 1] : size(); }
+  /// Of the load point at a time [m].
+  double displacement_at(double t) const;
+};
+
+/// Steps of a record with their samples. most: values of each step; neighbours are put together where there are more,
+/// the closer to a change of speed the fewer. What cannot be used is said in `messages`.
+RateStateData rate_state_data(const Motion& motion, const RateStateOptions& options, std::size_t most,
+                              std::vector<std::string>& messages);
+
+/// The same steps with fewer values, for a first search.
+RateStateData thinned(const RateStateData& data, std::size_t most);
+
+}  // namespace tribofit::fit

@@ -1,0 +1,315 @@
+#include "rate_state_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "limits.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "statistics/wandering_noise.hpp"
+#include "tribofit/statistics/distributions.hpp"
+
+namespace tribofit::fit {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// Covariance of values that are weighted sums of the noise, with the freedom of each variance: few independent values
+/// of what wanders lie in a record.
+struct Errors {
+  Eigen::MatrixXd covariance;
+  std::vector<double> freedom;
+};
+
+class FitErrors {
+ public:
+  FitErrors(const RateStateProblem& problem, const RateStateData& data, const std::vector<double>& p)
+      : problem_(problem), data_(data), rows_(static_cast<Eigen::Index>(problem.count())) {
+    const auto n = static_cast<Eigen::Index>(p.size());
+    residual_.resize(rows_);
+    weighted_.resize(rows_, n);
+    valid_ = problem.evaluate(p.data(), residual_.data(), weighted_.data()) &&
+             problem.response(p.data(), friction_, &derivatives_);
+    root_count_.resize(rows_);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      const std::size_t value = problem.value_of(static_cast<std::size_t>(i));
+      times_.push_back(data.time[value]);
+      counts_.push_back(data.count[value]);
+      root_count_(i) = std::sqrt(data.count[value]);
+    }
+    for (std::size_t k = 0; k < problem.steps().size(); ++k) begins_.push_back(problem.row_of(k));
+  }
+
+  bool valid() const { return valid_; }
+  const NoisySeries series() const { return {times_, counts_, begins_}; }
+  double sum_of_squares() const { return residual_.squaredNorm(); }
+  double count() const { return std::accumulate(counts_.begin(), counts_.end(), 0.0); }
+
+  /// Noise of what is left; the free unknowns are those whose columns are kept.
+  WanderingNoise noise(const std::vector<Eigen::Index>& free) const {
+    Eigen::VectorXd left = residual_.cwiseQuotient(root_count_);
+    Eigen::MatrixXd jacobian(rows_, static_cast<Eigen::Index>(free.size()));
+    for (std::size_t k = 0; k < free.size(); ++k)
+      jacobian.col(static_cast<Eigen::Index>(k)) = weighted_.col(free[k]).cwiseQuotient(root_count_);
+    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    jacobian *= scale.asDiagonal();
+    return estimate_noise(series(), left, jacobian, own_columns());
+  }
+
+  /// Minus twice the logarithm of the likelihood of what is left, with that noise.
+  double whitened(const WanderingNoise& noise) const {
+    return whitened_squares(series(), residual_.cwiseQuotient(root_count_), own_columns(), noise);
+  }
+
+  /// Rows by which the noise moves the free unknowns.
+  Eigen::MatrixXd influence(const std::vector<Eigen::Index>& free) const {
+    Eigen::MatrixXd kept(rows_, static_cast<Eigen::Index>(free.size()));
+    for (std::size_t k = 0; k < free.size(); ++k) kept.col(static_cast<Eigen::Index>(k)) = weighted_.col(free[k]);
+    const Eigen::VectorXd scale = kept.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    kept *= scale.asDiagonal();
+    const Eigen::MatrixXd inverse = inverse_triangular_factor(kept);
+    Eigen::MatrixXd out = kept * (inverse * inverse.transpose()) * scale.asDiagonal();
+    for (Eigen::Index i = 0; i < rows_; ++i) out.row(i) *= root_count_(i);
+    return out;
+  }
+
+  /// Constant and slope of the k-th step, and the rows by which the noise moves them.
+  Eigen::VectorXd own_values(std::size_t k, const std::vector<Eigen::Index>& free, const Eigen::MatrixXd& influence,
+                             Eigen::MatrixXd& rows) const {
+    const auto begin = static_cast<Eigen::Index>(begins_[k]);
+    Eigen::MatrixXd design = problem_.design_of(k);
+    const Eigen::Index n = design.rows(), q = design.cols();
+    const Eigen::VectorXd weights = root_count_.segment(begin, n);
+    Eigen::VectorXd right(n);
+    Eigen::MatrixXd by_free(n, static_cast<Eigen::Index>(free.size()));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::size_t value = problem_.value_of(static_cast<std::size_t>(begin + i));
+      right(i) = weights(i) * (data_.friction[value] - friction_(begin + i));
+      for (std::size_t c = 0; c < free.size(); ++c)
+        by_free(i, static_cast<Eigen::Index>(c)) = weights(i) * derivatives_(begin + i, free[c]);
+      design.row(i) *= weights(i);
+    }
+    const Eigen::VectorXd scale = design.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    design *= scale.asDiagonal();
+    const Eigen::MatrixXd inverse = inverse_triangular_factor(design);
+    const Eigen::MatrixXd normal = scale.asDiagonal() * (inverse * inverse.transpose());
+    rows = -influence * (normal * (design.transpose() * by_free)).transpose();
+    for (Eigen::Index i = 0; i < n; ++i) rows.row(begin + i) += weights(i) * (design.row(i) * normal.transpose());
+    rows.conservativeResize(Eigen::NoChange, q);
+    return normal * (design.transpose() * right);
+  }
+
+  Errors errors_of(const Eigen::MatrixXd& rows, const WanderingNoise& noise) const {
+    const NoiseMoments moments = noise_moments(series(), rows, noise);
+    Errors out{moments.white + moments.slow, {}};
+    double independent = 0;
+    for (std::size_t k = 0; k < begins_.size() && noise.time > 0; ++k) {
+      const std::size_t end = k + 1 < begins_.size() ? begins_[k + 1] : times_.size();
+      independent += (times_[end - 1] - times_[begins_[k]]) / (2 * noise.time);
+    }
+    const double of_slow = std::max(2.0, independent), of_white = std::max(2.0, count());
+    for (Eigen::Index i = 0; i < rows.cols(); ++i) {
+      const double all = out.covariance(i, i), slow = all > 0 ? moments.slow(i, i) / all : 0;
+      out.freedom.push_back(1 / (slow * slow / of_slow + (1 - slow) * (1 - slow) / of_white));
+    }
+    return out;
+  }
+
+ private:
+  /// Constant and slope of each step, one below the other.
+  Eigen::MatrixXd own_columns() const {
+    Eigen::MatrixXd own(rows_, problem_.design_of(0).cols());
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      Eigen::MatrixXd design = problem_.design_of(k);
+      for (Eigen::Index c = 0; c < design.cols(); ++c) design.col(c) /= std::max(design.col(c).norm(), 1e-300);
+      own.middleRows(static_cast<Eigen::Index>(begins_[k]), design.rows()) = design;
+    }
+    return own;
+  }
+
+  const RateStateProblem& problem_;
+  const RateStateData& data_;
+  Eigen::Index rows_;
+  bool valid_ = false;
+  Eigen::VectorXd residual_, friction_, root_count_;
+  RowMatrix weighted_, derivatives_;
+  std::vector<double> times_, counts_;
+  std::vector<std::size_t> begins_;
+};
+
+void set_interval(const RateStateUnknowns& unknowns, std::size_t k, double searched, double error, double freedom,
+                  FitParameter& out) {
+  const double half = t_quantile_95(freedom) * error;
+  out.lower95 = unknowns.value(k, searched - half);
+  out.upper95 = unknowns.value(k, searched + half);
+  out.std_error = unknowns.logarithmic[k] ? out.value * error : error;
+  // Of a length or stiffness: known to a factor at least.
+  out.determined = !unknowns.logarithmic[k] || out.upper95 / out.lower95 < kWidestInterval;
+}
+
+/// a - b, and whether sliding is stable on this machine.
+void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit) {
+  const auto n = static_cast<Eigen::Index>(p.size());
+  const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+  gradient(0) = 1;
+  double value = p[0];
+  for (std::size_t i = 0; i < states; ++i) {
+    gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
+    value -= p[1 + 2 * i];
+  }
+  const double quantile = t_quantile_95(freedom);
+  fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
+  fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
+  fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
+  if (states != 1 || !(fit.rate_dependence_upper95 < 0)) return;
+  const RateStateParameters<double> found = parameters_from(p.data(), 1);
+  fit.critical_stiffness = critical_stiffness(found.a, found.b[0], found.distance[0]);
+  fit.stiffness_ratio = found.stiffness / fit.critical_stiffness;
+  gradient << 1 / (found.b[0] - found.a), -1 / (found.b[0] - found.a), 1, 1;  // of ln(k D/(b - a))
+  const double half = quantile * std::sqrt(gradient.dot(covariance * gradient));
+  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
+  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
+}
+
+void set_correlations(RateStateFit& fit) {
+  const std::size_t n = fit.parameters.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double value = fit.covariance[i * n + j] / std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
+      if (std::abs(value) > kStrongCorrelation) fit.correlations.push_back({i, j, value});
+    }
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// Values of the unknowns before their errors are known; returns those that are free.
+std::vector<Eigen::Index> take_values(const RateStateUnknowns& unknowns, const std::vector<double>& p,
+                                      RateStateFit& fit) {
+  std::vector<Eigen::Index> free;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    FitParameter parameter;
+    parameter.parameter = unknowns.parameters[k];
+    parameter.value = unknowns.value(k, p[k]);
+    parameter.start = unknowns.value(k, unknowns.starts.front()[k]);
+    parameter.profile_lower95 = parameter.profile_upper95 = kUnknown;
+    const bool held = unknowns.lower[k] == unknowns.upper[k];
+    const double near = 1e-6 * std::abs(unknowns.upper[k] - unknowns.lower[k]);
+    parameter.at_bound = !held && (p[k] <= unknowns.lower[k] + near || p[k] >= unknowns.upper[k] - near);
+    parameter.lower95 = held ? parameter.value : -kUnbounded;
+    parameter.upper95 = held ? parameter.value : kUnbounded;
+    parameter.std_error = held ? 0 : kUnbounded;
+    parameter.determined = !parameter.at_bound;
+    if (!held && !parameter.at_bound) free.push_back(static_cast<Eigen::Index>(k));
+    fit.parameters.push_back(std::move(parameter));
+  }
+  return free;
+}
+
+void set_errors(const RateStateUnknowns& unknowns, const std::vector<double>& p, const std::vector<Eigen::Index>& free,
+                const Errors& errors, RateStateFit& fit) {
+  const std::size_t n = p.size();
+  fit.covariance.assign(n * n, 0.0);
+  fit.degrees_of_freedom = kUnbounded;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const auto at = static_cast<std::size_t>(free[i]);
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < free.size(); ++j)
+      fit.covariance[at * n + static_cast<std::size_t>(free[j])] = errors.covariance(row, static_cast<Eigen::Index>(j));
+    fit.degrees_of_freedom = std::min(fit.degrees_of_freedom, errors.freedom[i]);
+    set_interval(unknowns, at, p[at], std::sqrt(errors.covariance(row, row)), errors.freedom[i], fit.parameters[at]);
+  }
+}
+
+/// mu_0 and slope of each step.
+void set_own_values(const FitErrors& found, std::size_t steps, const std::vector<Eigen::Index>& free,
+                    const Eigen::MatrixXd& influence, const WanderingNoise& noise, RateStateFit& fit) {
+  for (std::size_t k = 0; k < steps; ++k) {
+    Eigen::MatrixXd rows;
+    const Eigen::VectorXd own = found.own_values(k, free, influence, rows);
+    const Errors errors = found.errors_of(rows, noise);
+    const auto estimate = [&](Eigen::Index i) {
+      return Estimate{own(i), std::sqrt(errors.covariance(i, i)), errors.freedom[static_cast<std::size_t>(i)]};
+    };
+    fit.base_friction.push_back(estimate(0));
+    fit.trend.push_back(own.size() > 1 ? estimate(1) : Estimate{});
+  }
+}
+
+}  // namespace
+
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data, const RateStateUnknowns& unknowns,
+                      const RateStateSolution& solution, StateEvolution evolution, std::size_t states) {
+  RateStateFit fit;
+  fit.evolution = evolution;
+  if (!solution.found) {
+    fit.messages.push_back("the fit failed: " + solution.message);
+    return fit;
+  }
+  const FitErrors found(problem, data, solution.p);
+  if (!found.valid()) {
+    fit.messages.emplace_back("the fit failed: the simulated sliding runs away at its minimum");
+    return fit;
+  }
+  fit.converged = true;
+  fit.samples = static_cast<std::size_t>(found.count());
+  fit.rmse = std::sqrt(found.sum_of_squares() / found.count());
+  const std::vector<Eigen::Index> free = take_values(unknowns, solution.p, fit);
+  const WanderingNoise noise = found.noise(free);
+  fit.noise_white = noise.white;
+  fit.noise_slow = noise.slow;
+  fit.noise_time = noise.time;
+  const Eigen::MatrixXd influence = found.influence(free);
+  set_errors(unknowns, solution.p, free, found.errors_of(influence, noise), fit);
+  set_stability(states, solution.p, fit.degrees_of_freedom, fit);
+  set_correlations(fit);
+  set_own_values(found, problem.steps().size(), free, influence, noise, fit);
+  return fit;
+}
+
+double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,
+                            const RateStateProblem& other, const RateStateSolution& other_solution,
+                            const RateStateData& data, const RateStateFit& fit) {
+  const FitErrors one(best, data, best_solution.p), two(other, data, other_solution.p);
+  if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
+  const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
+  return 0.5 * (two.whitened(noise) - one.whitened(noise));
+}
+
+void add_messages(RateStateFit& fit) {
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FitParameter& p = fit.parameters[k];
+    const std::string& name = p.parameter.name;
+    const double si = p.parameter.si;
+    if (p.at_bound) {
+      const bool upper = p.value / si > 0.5 * (p.parameter.lower + p.parameter.upper);
+      fit.messages.push_back(
+          name == "k" && upper
+              ? fmt::format("k is not resolved: the machine is stiffer than the samples behind the steps can show; "
+                            "sample faster there, or hold k by --bounds")
+              : fmt::format("{} ended at its {} bound, {:.4g} {}", name, upper ? "upper" : "lower", p.value / si,
+                            p.parameter.unit));
+    } else if (!p.determined) {
+      fit.messages.push_back(
+          fmt::format("{} is not known from these data: its 95 % interval reaches from {:.3g} to "
+                      "{:.3g} {}",
+                      name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
+    }
+  }
+  for (const Correlation& c : fit.correlations) {
+    fit.messages.push_back(
+        fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "
+                    "than either",
+                    fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, c.value));
+  }
+}
+
+}  // namespace tribofit::fit

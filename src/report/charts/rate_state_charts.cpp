@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/numbers.hpp"
+#include "report/rate_state.hpp"
+#include "styles.hpp"
+
+namespace tribofit {
+namespace {
+
+constexpr double kMicrometreOfChart = 1e-6;
+constexpr std::size_t kZoomedSteps = 8;
+
+std::string law_name(const RateStateFit& fit) {
+  return std::string(to_string(fit.evolution)) + " law";
+}
+
+void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, double origin, double from, double to,
+              bool listed, Chart& chart) {
+  ChartLine measured{.name = "measured", .stroke = kMeasured, .listed = listed};
+  ChartLine other{.name = "", .stroke = model_stroke(1), .listed = listed};
+  ChartLine model{.name = law_name(analysis.fits[analysis.best]), .stroke = model_stroke(0), .listed = listed};
+  if (!curve.other.empty()) other.name = law_name(analysis.fits[1 - analysis.best]);
+  for (std::size_t i = 0; i < curve.time.size(); ++i) {
+    const double x = curve.displacement[i] - origin;
+    if (x < from || x > to) continue;
+    measured.add(x / kMicrometreOfChart, curve.friction[i]);
+    model.add(x / kMicrometreOfChart, curve.model[i]);
+    if (!curve.other.empty()) other.add(x / kMicrometreOfChart, curve.other[i]);
+  }
+  chart.lines.push_back(std::move(measured));
+  if (!curve.other.empty()) chart.lines.push_back(std::move(other));
+  chart.lines.push_back(std::move(model));
+}
+
+Chart whole_chart(const RateStateAnalysis& analysis) {
+  Chart chart{.id = "t1-response",
+              .title = "Friction and the fitted response",
+              .note =
+                  "The samples that were fitted, over the displacement of the load point; dotted lines mark where "
+                  "its speed changes.",
+              .x = {"displacement of the load point", "um"},
+              .height = 420};
+  chart.panels[0].axis = {"friction", "1"};
+  for (const RateStateCurve& curve : analysis.curves) {
+    add_step(analysis, curve, 0, -1e300, 1e300, &curve == &analysis.curves.front(), chart);
+    const VelocityStep& step = analysis.steps[curve.step];
+    chart.marks.push_back(
+        {step.displacement / kMicrometreOfChart, true, Dash::dotted,
+         step.hold > 0 ? fmt::format("{} s", significant(step.hold, 3)) : sliding_speed_text(step.after)});
+  }
+  return chart;
+}
+
+/// Around the step: as far behind it as friction takes to settle.
+Chart zoom_chart_of(const RateStateAnalysis& analysis, const RateStateCurve& curve) {
+  const VelocityStep& step = analysis.steps[curve.step];
+  constexpr double kBehind = 6, kBeforeIt = 1.5;  // D_c
+  const RateStateFit& fit = analysis.fits[analysis.best];
+  const double distance = fit.parameters[2].value + fit.parameters[0].value / fit.parameters.back().value;
+  Chart chart =
+      half_chart(fmt::format("t1-step-{}", curve.step + 1),
+                 step.hold > 0 ? fmt::format("Step {}: hold of {} s", curve.step + 1, significant(step.hold, 3))
+                               : fmt::format("Step {}: {} to {}", curve.step + 1, sliding_speed_text(step.before),
+                                             sliding_speed_text(step.after)),
+                 {"displacement since the step", "um"}, {"friction", "1"});
+  add_step(analysis, curve, step.displacement, -kBeforeIt * distance, kBehind * distance, true, chart);
+  return chart;
+}
+
+Chart healing_chart(const Healing& healing) {
+  Chart chart = half_chart("t1-healing", "Healing: peak less sliding friction over the time at rest",
+                           {"time at rest", "s"}, {"healing", "1"});
+  chart.x.logarithmic = true;
+  ChartLine line{.name = "holds", .stroke = dots(Colour::blue, Symbol::circle)};
+  for (const HoldMeasures& hold : healing.holds)
+    line.add(hold.duration, hold.healing, std::hypot(hold.peak.std_error, hold.sliding.std_error));
+  line.bars = true;
+  chart.lines.push_back(std::move(line));
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> rate_state_charts(const RateStateAnalysis& analysis) {
+  std::vector<Chart> charts;
+  if (!analysis.fitted() || analysis.curves.empty()) return charts;
+  charts.push_back(whole_chart(analysis));
+  for (const RateStateCurve& curve : analysis.curves) {
+    if (charts.size() <= kZoomedSteps) charts.push_back(zoom_chart_of(analysis, curve));
+  }
+  if (analysis.healing && analysis.healing->holds.size() > 1) charts.push_back(healing_chart(*analysis.healing));
+  return charts;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,194 @@
+#include "piecewise_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "limits.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// A line through points that are added one by one, and the squares it leaves.
+class GrowingLine {
+ public:
+  void add(double t, double x) {
+    ++n_;
+    const double dt = t - mean_t_, dx = x - mean_x_;
+    mean_t_ += dt / n_;
+    mean_x_ += dx / n_;
+    tt_ += dt * (t - mean_t_);
+    tx_ += dt * (x - mean_x_);
+    xx_ += dx * (x - mean_x_);
+  }
+  double slope() const { return tt_ > 0 ? tx_ / tt_ : 0; }
+  double squares() const { return tt_ > 0 ? std::max(0.0, xx_ - tx_ * tx_ / tt_) : xx_; }
+  double at(double t) const { return mean_x_ + slope() * (t - mean_t_); }
+
+ private:
+  double n_ = 0, mean_t_ = 0, mean_x_ = 0, tt_ = 0, tx_ = 0, xx_ = 0;
+};
+
+/// Noise and rounding of samples, by their deviations from the line through their neighbours.
+double noise_about_neighbours(std::span<const double> t, std::span<const double> x) {
+  std::vector<double> off;
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+    const double part = (t[i] - t[i - 1]) / (t[i + 1] - t[i - 1]);
+    off.push_back(std::abs(x[i] - (1 - part) * x[i - 1] - part * x[i + 1]) /
+                  std::sqrt(1 + part * part + (1 - part) * (1 - part)));
+  }
+  if (off.empty()) return 0;
+  // Readings of few digits deviate in few samples only, and by as much as a digit.
+  double squares = 0;
+  for (double& d : off) squares += d * d;
+  const double robust = kSigmaPerMad * median(off), plain = std::sqrt(squares / static_cast<double>(off.size()));
+  return robust > 0 ? robust : plain;
+}
+
+/// A last piece that may begin at a sample, and what all before it costs.
+struct LastPiece {
+  std::size_t begin = 0, doubted_at = 0;
+  double before = 0;
+  bool is_doubted = false;  ///< no later end can make it the best one, but for those too close for a further piece
+  GrowingLine line;
+};
+
+/// Indices at which pieces begin, the first among them: those of the least sum of squares and of a price per corner,
+/// by optimal partitioning with pruning (PELT; Killick, Fearnhead and Eckley 2012).
+std::vector<std::size_t> corners_of(std::span<const double> t, std::span<const double> x, double price) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const std::size_t n = t.size();
+  std::vector<double> least(n + 1, kNever);
+  std::vector<std::size_t> begin_of_last(n + 1, 0);
+  least[0] = -price;  // the first piece has no corner
+  std::vector<LastPiece> pieces;
+  for (std::size_t end = 1; end <= n; ++end) {
+    if (least[end - 1] < kNever) pieces.push_back({end - 1, 0, least[end - 1], false, {}});
+    for (LastPiece& piece : pieces) {
+      piece.line.add(t[end - 1], x[end - 1]);
+      const double cost = piece.before + piece.line.squares() + price;
+      if (end - piece.begin < kFewestOfPiece || cost >= least[end]) continue;
+      least[end] = cost;
+      begin_of_last[end] = piece.begin;
+    }
+    for (LastPiece& piece : pieces) {
+      if (piece.is_doubted || piece.before + piece.line.squares() <= least[end]) continue;
+      piece.is_doubted = true;
+      piece.doubted_at = end;
+    }
+    std::erase_if(pieces, [&](const LastPiece& p) { return p.is_doubted && end >= p.doubted_at + kFewestOfPiece; });
+  }
+  std::vector<std::size_t> corners;
+  for (std::size_t end = n; end > 0; end = begin_of_last[end]) corners.push_back(begin_of_last[end]);
+  std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
+struct Stretch {
+  std::size_t begin = 0, end = 0;
+  GrowingLine line;  ///< through its inner samples
+};
+
+Stretch stretch_of(std::span<const double> t, std::span<const double> x, std::size_t begin, std::size_t end) {
+  Stretch out{begin, end, {}};
+  const std::size_t margin = std::min((end - begin) / 5, kMarginOfPiece);
+  for (std::size_t i = begin + margin; i < end - margin; ++i) out.line.add(t[i], x[i]);
+  return out;
+}
+
+/// How plain a corner is, over the least that counts: by its change of slope and by its distance from one line.
+double plainness(std::span<const double> t, const Stretch& one, const Stretch& two, double noise) {
+  const double change = std::abs(one.line.slope() - two.line.slope());
+  const double larger = std::max(std::abs(one.line.slope()), std::abs(two.line.slope()));
+  const double first = t[two.begin] - t[one.begin], second = t[two.end - 1] - t[two.begin];
+  if (!(change > 0)) return 0;
+  return std::min(change / (kLeastChangeOfSlope * larger),
+                  change * first * second / (first + second) / (kCornerOfNoise * noise));
+}
+
+/// Neighbours of one speed are one stretch: the least plain corner goes first.
+void merge_alike(std::span<const double> t, std::span<const double> x, double noise, std::vector<Stretch>& stretches) {
+  while (stretches.size() > 1) {
+    std::size_t faintest = 0;
+    double least = 1;
+    for (std::size_t i = 1; i < stretches.size(); ++i) {
+      const double plain = plainness(t, stretches[i - 1], stretches[i], noise);
+      if (plain < least) least = plain, faintest = i;
+    }
+    if (faintest == 0) return;
+    stretches[faintest - 1] = stretch_of(t, x, stretches[faintest - 1].begin, stretches[faintest].end);
+    stretches.erase(stretches.begin() + static_cast<std::ptrdiff_t>(faintest));
+  }
+}
+
+/// Where two lines meet, if that is near the samples between which the corner lies.
+double corner_between(std::span<const double> t, const Stretch& one, const Stretch& two) {
+  const double early = t[two.begin - 1], late = t[two.begin], middle = 0.5 * (early + late);
+  const double apart = one.line.slope() - two.line.slope();
+  const double meet = middle - (one.line.at(middle) - two.line.at(middle)) / apart;
+  const double near = kNearCorner * (late - early);
+  return std::isfinite(meet) && meet > early - near && meet < late + near ? meet : middle;
+}
+
+std::vector<double> picked(std::span<const double> values, std::size_t stride) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < values.size(); i += stride) out.push_back(values[i]);
+  return out;
+}
+
+/// Levels go nowhere but for noise, or by a small part of what their neighbours do.
+void settle_levels(const std::vector<Stretch>& stretches, std::span<const double> t, double noise,
+                   std::vector<LinePiece>& pieces) {
+  std::vector<double> speeds;
+  for (const LinePiece& piece : pieces) speeds.push_back(std::abs(piece.slope));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double duration = t[stretches[i].end - 1] - t[stretches[i].begin];
+    const double beside = std::max(i > 0 ? speeds[i - 1] : 0.0, i + 1 < pieces.size() ? speeds[i + 1] : 0.0);
+    pieces[i].is_level = speeds[i] * duration <= kCornerOfNoise * noise || speeds[i] <= kLevelBeside * beside;
+  }
+}
+
+/// Corners move to where the lines beside them meet: thinned samples have placed them to a stride.
+void move_corners(std::span<const double> t, std::span<const double> x, std::size_t stride,
+                  std::vector<Stretch>& stretches) {
+  for (std::size_t i = 1; i < stretches.size(); ++i) {
+    const double at = t[stretches[i].begin];
+    const double apart = stretches[i - 1].line.slope() - stretches[i].line.slope();
+    const double meet = at - (stretches[i - 1].line.at(at) - stretches[i].line.at(at)) / apart;
+    const auto found = static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), meet) - t.begin());
+    const std::size_t corner = stretches[i].begin, back = std::min(corner, 2 * stride);
+    const std::size_t low = std::max(stretches[i - 1].begin + kFewestOfPiece, corner - back);
+    const std::size_t high = std::min(stretches[i].end - kFewestOfPiece, corner + 2 * stride);
+    stretches[i - 1].end = stretches[i].begin = low < high ? std::clamp(found, low, high) : corner;
+  }
+  for (Stretch& s : stretches) s = stretch_of(t, x, s.begin, s.end);
+}
+
+}  // namespace
+
+std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<const double> x) {
+  std::vector<LinePiece> pieces;
+  if (t.size() < 2 * kFewestOfPiece) return pieces;
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  const double noise = std::max(noise_about_neighbours(t, x), kRoundingOfWay * (*high - *low));
+  const std::size_t stride = 1 + t.size() / kMostSplit;
+  const std::vector<double> some_t = picked(t, stride), some_x = picked(x, stride);
+  const std::vector<std::size_t> corners = corners_of(some_t, some_x, kCornerOfNoise * kCornerOfNoise * noise * noise);
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::size_t end = i + 1 < corners.size() ? corners[i + 1] * stride : t.size();
+    stretches.push_back(stretch_of(t, x, corners[i] * stride, end));
+  }
+  merge_alike(t, x, noise, stretches);
+  for (int again = 0; again < 3; ++again) move_corners(t, x, stride, stretches);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const double begin = i == 0 ? t.front() : corner_between(t, stretches[i - 1], stretches[i]);
+    pieces.push_back({begin, stretches[i].line.slope(), false});
+  }
+  settle_levels(stretches, t, noise, pieces);
+  return pieces;
+}
+
+}  // namespace tribofit

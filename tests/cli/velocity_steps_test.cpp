@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command.hpp"
+
+// Records of rock laboratories, from the file through every output.
+
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kSimulated =
+    "simulate --kind velocity-steps --rate 20Hz --duration 140s --speed-steps 0s:2um/s,60s:20um/s,80s:2um/s "
+    "--rate-state a=0.01,b=0.014,D_c=10um,k=0.002/um --noise-mu 0.0002 --evolution slip --out steps.csv";
+
+double parameter(const json& result, const std::string& name) {
+  const std::size_t best = result["best"];
+  for (const json& p : result["fits"][best]["parameters"]) {
+    if (p["name"] == name) return p["value"];
+  }
+  return std::nan("");
+}
+
+TEST(VelocitySteps, AreSimulatedReadFittedAndReported) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify(kSimulated).status, 0);
+  const Outcome outcome = shop.identify("--json j.json --csv out --report r.html --figures pictures steps.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("velocity-steps (the motion of a load point was recorded)"),
+                                 HasSubstr("2 um/s, 20 um/s, 2 um/s"), HasSubstr("Slip law, 2 steps together (best)"),
+                                 HasSubstr("k_c = (b - a)/D_c"), HasSubstr("times as stiff: it slides steadily")));
+  const json result = json::parse(contents(shop / "j.json"));
+  EXPECT_EQ(result["trace"]["kind"], "velocity-steps");
+  EXPECT_EQ(result["fits"][result["best"].get<std::size_t>()]["law"], "rate-state-slip");
+  EXPECT_NEAR(parameter(result, "a"), 0.01, 3e-4);
+  EXPECT_NEAR(parameter(result, "b"), 0.014, 4e-4);
+  EXPECT_NEAR(parameter(result, "D_c"), 10, 0.5);
+  EXPECT_NEAR(parameter(result, "k"), 0.002, 1e-4);
+  EXPECT_EQ(result["rate_state"]["steps"].size(), 2U);
+  EXPECT_NEAR(result["rate_state"]["steps"][0]["time_s"].get<double>(), 60, 2e-3);
+  EXPECT_THAT(contents(shop / "out/steps.csv"), HasSubstr("step_number,time_s,from_um_s,to_um_s,hold_s,a,a_std_error"));
+  EXPECT_THAT(contents(shop / "out/response.csv"), HasSubstr("step_number,time_s,load_point_um,mu,mu_model,mu_other"));
+  EXPECT_THAT(contents(shop / "pictures/t1-response.svg"), HasSubstr("displacement of the load point"));
+}
+
+TEST(VelocitySteps, StressesAndStatedSpeedsGiveTheSame) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify(kSimulated).status, 0);
+  std::string text = "Time (s),Shear Stress (MPa),Normal Stress (MPa)\n";
+  const std::vector<std::string> lines = lines_of(contents(shop / "steps.csv"));
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::size_t first = lines[i].find(','), second = lines[i].rfind(',');
+    const double mu = std::stod(lines[i].substr(second + 1));
+    text += lines[i].substr(0, first) + "," + std::to_string(mu * 25) + ",25\n";
+  }
+  shop.write("stress.csv", text);
+  const Outcome outcome =
+      shop.identify("--speed 0s:2um/s,60s:20um/s,80s:2um/s --evolution slip --json j.json stress.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("25 MPa"), HasSubstr("mu is shear stress over the measured normal stress")));
+  EXPECT_NEAR(parameter(json::parse(contents(shop / "j.json")), "D_c"), 10, 0.5);
+  const Outcome held = shop.identify(
+      "--speed 0s:2um/s,60s:20um/s,80s:2um/s --evolution slip --bounds k=0.002..0.002/um --json j.json stress.csv");
+  ASSERT_EQ(held.status, 0) << held.err;
+  EXPECT_EQ(parameter(json::parse(contents(shop / "j.json")), "k"), 0.002);
+}
+
+TEST(VelocitySteps, HoldsAreRecognised) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify("simulate --kind slide-hold-slide --rate 10Hz --duration 300s --speed-steps "
+                          "0s:10um/s,20s:0,23s:10um/s,43s:0,53s:10um/s,73s:0,103s:10um/s,123s:0,223s:10um/s "
+                          "--rate-state a=0.01,b=0.012,D_c=5um,k=0.002/um --noise-mu 0.0002 --out holds.csv")
+                .status,
+            0);
+  const Outcome outcome = shop.identify("--json j.json holds.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("slide-hold-slide"), HasSubstr("Healing rate")));
+  const json result = json::parse(contents(shop / "j.json"));
+  ASSERT_EQ(result["rate_state"]["healing"]["holds"].size(), 4U);
+  EXPECT_NEAR(result["rate_state"]["healing"]["holds"][3]["hold_s"].get<double>(), 100, 0.1);
+  EXPECT_GT(result["rate_state"]["healing"]["per_decade"]["value"].get<double>(), 0.003);
+}
+
+TEST(VelocitySteps, WhatCannotBeDoneIsSaid) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify(kSimulated).status, 0);
+  shop.write("bare.csv", "time_s,mu\n0,0.6\n1,0.61\n2,0.6\n3,0.61\n");
+  EXPECT_THAT(shop.identify("--kind velocity-steps bare.csv").err, HasSubstr("load point"));
+  EXPECT_EQ(shop.identify("--kind velocity-steps --speed 2um/s steps.csv").status, 2);
+  EXPECT_EQ(shop.identify("--speed 0s:2um/s,0s:3um/s steps.csv").status, 2);
+  EXPECT_EQ(shop.identify("--kind sliding --speed 0s:2um/s,9s:3um/s steps.csv").status, 2);
+  const Outcome early = shop.identify("--to 50s steps.csv");
+  EXPECT_EQ(early.status, 1);
+  EXPECT_THAT(early.err, HasSubstr("no step"));
+  const Outcome diagnosed = shop.identify("diagnose steps.csv");
+  EXPECT_EQ(diagnosed.status, 1);
+  EXPECT_THAT(diagnosed.out + diagnosed.err, HasSubstr("has no cycles"));
+  shop.write("half.csv", "time_s,Shear Stress (MPa),lp_disp_um\n0,15,0\n1,15,2\n2,15,4\n3,15,6\n");
+  EXPECT_THAT(shop.identify("half.csv").err, HasSubstr("needs the normal stress"));
+  shop.write("back.csv", [] {
+    std::string text = "time_s,mu,lp_disp_um\n";
+    for (int i = 0; i < 60; ++i)
+      text += std::to_string(i) + ",0.6," + std::to_string(i < 30 ? 2 * i : 120 - 2 * i) + "\n";
+    return text;
+  }());
+  EXPECT_THAT(shop.identify("back.csv").err, HasSubstr("turns round"));
+  const Outcome soft = shop.identify(
+      "simulate --kind velocity-steps --rate 20Hz --duration 140s --speed-steps 0s:2um/s,60s:20um/s --rate-state "
+      "k=0.00001/um --out soft.csv");
+  EXPECT_EQ(soft.status, 3);
+  EXPECT_THAT(soft.err, HasSubstr("runs away"));
+}
+
+}  // namespace

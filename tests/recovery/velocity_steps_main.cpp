@@ -1,0 +1,148 @@
+// Velocity steps and holds with known truth: simulated by an integrator written apart, read through noise and drift,
+// and fitted. Prints the tables of data/validation/velocity-steps.md; scripts/velocity-steps runs it.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "fit/contact_apart.hpp"
+#include "tribofit/fit/rate_state.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+constexpr double kMicro = 1e-6;
+
+struct Cell {
+  std::string name;
+  StateEvolution evolution;
+  double stiffness;    ///< over the critical one
+  double step;         ///< ratio of the speeds
+  double white, slow;  ///< noise [1]
+  bool holds = false;
+};
+
+/// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s.
+std::vector<LoadPointPhase> phases_of(const Cell& cell) {
+  std::vector<LoadPointPhase> out = {{0, 2 * kMicro}};
+  if (cell.holds) {
+    out = {{0, 10 * kMicro}};
+    for (const double hold : {3.0, 10.0, 30.0, 100.0}) {
+      out.push_back({out.back().begin + 20, 0});
+      out.push_back({out.back().begin + hold, 10 * kMicro});
+    }
+    return out;
+  }
+  for (int i = 0; i < 4; ++i) {
+    const bool fast = i % 2 == 0;
+    out.push_back({out.back().begin + (out.back().speed > 3 * kMicro ? 40 : 60), (fast ? cell.step : 1) * 2 * kMicro});
+  }
+  return out;
+}
+
+RateStateMachine draw_machine(const Cell& cell, std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform;
+  RateStateMachine m;
+  m.evolution = cell.evolution;
+  m.parameters.a = 0.006 + 0.008 * uniform(generator);
+  m.parameters.b[0] = m.parameters.a + 0.003 + 0.003 * uniform(generator);
+  m.parameters.distance[0] = (5 + 5 * uniform(generator)) * kMicro;
+  m.parameters.stiffness =
+      cell.stiffness * critical_stiffness(m.parameters.a, m.parameters.b[0], m.parameters.distance[0]);
+  return m;
+}
+
+Motion draw_motion(const Cell& cell, const RateStateMachine& machine, std::mt19937_64& generator) {
+  constexpr double kRate = 20, kForgets = 2;
+  Motion motion;
+  motion.load_point = phases_of(cell);
+  const double end = motion.load_point.back().begin + 60;
+  for (std::size_t i = 0; static_cast<double>(i) / kRate < end; ++i)
+    motion.time.push_back(static_cast<double>(i) / kRate);
+  motion.friction = apart::Contact(machine).friction(motion.load_point, motion.time);
+  motion.relative_velocity.assign(motion.time.size(), 0.0);
+  std::normal_distribution<double> normal;
+  const double decay = std::exp(-1 / kRate / kForgets), drift = 2e-5 * normal(generator);
+  double slow = normal(generator);
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    slow = decay * slow + std::sqrt(1 - decay * decay) * normal(generator);
+    motion.friction[i] += cell.white * normal(generator) + cell.slow * slow + drift * motion.time[i];
+  }
+  return motion;
+}
+
+/// What became of the records of a cell.
+struct Tally {
+  std::array<double, 4> squares = {};  ///< of relative errors
+  std::array<int, 4> covered = {};
+  int fitted = 0, right = 0, wrong = 0;  ///< laws named, where p < 0.05
+};
+
+Tally run(const Cell& cell, int records, unsigned cell_number) {
+  Tally tally;
+  for (int r = 0; r < records; ++r) {
+    std::mt19937_64 generator(1000003ULL * cell_number + static_cast<unsigned>(r));
+    const RateStateMachine machine = draw_machine(cell, generator);
+    RateStateOptions options;
+    options.each_step = false;
+    const RateStateAnalysis analysis = fit_rate_state(draw_motion(cell, machine, generator), options);
+    if (!analysis.fitted()) continue;
+    const RateStateFit& fit = analysis.fits[static_cast<std::size_t>(cell.evolution)];
+    if (!fit.converged) continue;
+    ++tally.fitted;
+    const bool named = analysis.law_p_value < 0.05;
+    const bool right = analysis.fits[analysis.best].evolution == cell.evolution;
+    tally.right += named && right ? 1 : 0;
+    tally.wrong += named && !right ? 1 : 0;
+    const auto& p = machine.parameters;
+    const std::array<double, 4> truth = {p.a, p.b[0], p.distance[0], p.stiffness};
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const FitParameter& found = fit.parameters[k];
+      tally.covered[k] += truth[k] > found.lower95 && truth[k] < found.upper95 ? 1 : 0;
+      tally.squares[k] += std::pow(found.value / truth[k] - 1, 2);
+    }
+  }
+  return tally;
+}
+
+void print_row(const Cell& cell, const Tally& t, int records) {
+  const auto error = [&](std::size_t k) { return 100 * std::sqrt(t.squares[k] / std::max(1, t.fitted)); };
+  const auto cover = [&](std::size_t k) { return 100.0 * t.covered[k] / std::max(1, t.fitted); };
+  fmt::print("| {} | {} | {}/{} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} |\n",
+             to_string(cell.evolution), cell.name, t.fitted, records, error(0), error(1), error(2), error(3), cover(0),
+             cover(1), cover(2), cover(3), t.right, t.wrong);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int records = argc > 1 ? std::atoi(argv[1]) : 40;
+  fmt::print(
+      "| law | record | fitted | a % | b % | D_c % | k % | covered a | b | D_c | k | law named | wrong |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::array<int, 2> pooled = {};
+  unsigned number = 0;
+  for (const StateEvolution evolution : state_evolutions) {
+    const auto cell = [&](const char* name, double stiffness, double step, double white, double slow,
+                          bool holds = false) { return Cell{name, evolution, stiffness, step, white, slow, holds}; };
+    for (const Cell& c : {cell("2 and 10 um/s, k = 30 k_c, white", 30, 5, 2e-4, 0),
+                          cell("2 and 10 um/s, k = 5 k_c, white", 5, 5, 2e-4, 0),
+                          cell("2 and 10 um/s, k = 5 k_c, coloured", 5, 5, 1e-4, 2e-4),
+                          cell("2 and 10 um/s, k = 1.5 k_c, white", 1.5, 5, 2e-4, 0),
+                          cell("2 and 10 um/s, k = 1.1 k_c, coloured", 1.1, 5, 1e-4, 2e-4),
+                          cell("2 and 20 um/s, k = 5 k_c, coloured", 5, 10, 1e-4, 2e-4),
+                          cell("holds of 3 to 100 s, k = 5 k_c, coloured", 5, 1, 1e-4, 2e-4, true)}) {
+      const Tally tally = run(c, records, ++number);
+      print_row(c, tally, records);
+      for (const int covered : tally.covered) pooled[0] += covered, pooled[1] += tally.fitted;
+    }
+  }
+  fmt::print("\n{} of {} intervals hold the truth: {:.1f} %\n", pooled[0], pooled[1], 100.0 * pooled[0] / pooled[1]);
+  return 0;
+}

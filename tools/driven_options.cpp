@@ -1,0 +1,158 @@
+#include "driven_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "exit_status.hpp"
+#include "stated_value.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/units.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+struct Named {
+  std::string_view name;
+  Quantity quantity;
+  const char* example;
+};
+constexpr std::array<Named, 6> kParameters = {{{"a", Quantity::dimensionless, "a=0.01"},
+                                               {"b", Quantity::dimensionless, "b=0.012"},
+                                               {"D_c", Quantity::length, "D_c=10um"},
+                                               {"b_2", Quantity::dimensionless, "b_2=0.002"},
+                                               {"D_c2", Quantity::length, "D_c2=100um"},
+                                               {"k", Quantity::inverse_length, "k=0.005/um"}}};
+
+constexpr Named kBaseFriction = {"mu_0", Quantity::dimensionless, "mu_0=0.6"};
+
+bool is_stated(const Settings& s) {
+  return names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
+}
+
+const Named* find_parameter(std::string_view name) {
+  const auto at = std::find_if(kParameters.begin(), kParameters.end(), [&](const Named& p) { return p.name == name; });
+  return at == kParameters.end() ? nullptr : &*at;
+}
+
+/// "0.005/um" is 0.005 1/um.
+double parameter_value(const std::string& text, const Named& parameter, const std::string& option) {
+  std::string spelled(trimmed(text));
+  const std::size_t slash = spelled.find('/');
+  if (parameter.quantity == Quantity::inverse_length && slash != std::string::npos && slash > 0 &&
+      spelled.find_first_not_of("+-.0123456789eE ") == slash)
+    spelled.insert(slash, " 1");
+  return parse_quantity(spelled, parameter.quantity, option + " " + std::string(parameter.name));
+}
+
+GivenParameter& entry_named(std::string_view name, std::vector<GivenParameter>& given) {
+  const auto found = std::find_if(given.begin(), given.end(), [&](const auto& g) { return g.name == name; });
+  if (found != given.end()) return *found;
+  given.push_back({std::string(name), std::nullopt, std::nullopt});
+  return given.back();
+}
+
+/// Calls take(parameter, text) for each "NAME=TEXT" that names one of these parameters.
+template <class Take>
+void for_each_given(const std::vector<std::string>& texts, Take&& take) {
+  for (const std::string& text : texts) {
+    for (const std::string& part : split(text, ',')) {
+      const std::size_t equals = part.find('=');
+      if (equals == std::string::npos) continue;
+      const Named* parameter = find_parameter(trimmed(std::string_view(part).substr(0, equals)));
+      if (parameter != nullptr) take(*parameter, part.substr(equals + 1));
+    }
+  }
+}
+
+void read_given(const Settings& s, std::vector<GivenParameter>& given) {
+  for_each_given(s.start_values, [&](const Named& parameter, const std::string& text) {
+    entry_named(parameter.name, given).start = parameter_value(text, parameter, "--start");
+  });
+  for_each_given(s.bounds, [&](const Named& parameter, const std::string& text) {
+    const std::size_t dots = text.find("..");
+    if (dots == std::string::npos) throw UsageError("--bounds: '" + text + "' is not FROM..TO, as in D_c=2um..50um");
+    std::string low = text.substr(0, dots), high = text.substr(dots + 2);
+    const std::size_t unit = high.find_first_not_of("+-.0123456789eE ");
+    if (unit != std::string::npos && low.find_first_not_of("+-.0123456789eE ") == std::string::npos)
+      low += high.substr(unit);
+    const GivenParameter::Bounds bounds = {parameter_value(low, parameter, "--bounds"),
+                                           parameter_value(high, parameter, "--bounds")};
+    const bool positive = parameter.quantity == Quantity::dimensionless || bounds.lower > 0;
+    if (bounds.lower > bounds.upper || !positive)
+      throw UsageError("--bounds: '" + text + "' of " + std::string(parameter.name) +
+                       (positive ? " runs from high to low" : " begins at zero or below"));
+    entry_named(parameter.name, given).bounds = bounds;
+  });
+}
+
+}  // namespace
+
+bool is_rate_state_parameter(const Settings& s, const std::string& name) {
+  return is_stated(s) && find_parameter(name) != nullptr;
+}
+
+std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option) {
+  std::map<std::string, double> values;
+  if (text.empty()) return values;
+  for (const std::string& part : split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string name(trimmed(std::string_view(part).substr(0, equals)));
+    const Named* parameter = name == "mu_0" ? &kBaseFriction : find_parameter(name);
+    if (equals == std::string::npos || parameter == nullptr)
+      throw UsageError(option + ": '" + part + "' is not NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2");
+    values[name] = parameter_value(part.substr(equals + 1), *parameter, option);
+  }
+  return values;
+}
+
+bool names_load_point_speeds(const Settings& s) {
+  return s.speed.find(':') != std::string::npos;
+}
+
+std::vector<LoadPointPhase> phases_from(const std::string& text, const std::string& option) {
+  std::vector<LoadPointPhase> phases;
+  for (const std::string& part : split(text, ',')) {
+    const std::size_t colon = part.find(':');
+    if (colon == std::string::npos)
+      throw UsageError(option + ": '" + part + "' is not TIME:SPEED, as in 0s:2um/s,60s:10um/s");
+    const double begin = stated_value(part.substr(0, colon), Quantity::time, option, "s");
+    const std::string speed(trimmed(part.substr(colon + 1)));
+    const double value = speed == "0" ? 0 : stated_value(speed, Quantity::velocity, option);
+    if (!phases.empty() && !(begin > phases.back().begin))
+      throw UsageError(option + ": '" + part + "' does not come after the time before it");
+    if (!(value >= 0)) throw UsageError(option + ": '" + part + "' goes backwards; give speeds of at least 0");
+    phases.push_back({begin, value});
+  }
+  return phases;
+}
+
+std::vector<LoadPointPhase> load_point_from(const Settings& s, std::optional<RecordKind> kind) {
+  if (s.speed.empty() || !is_driven_in_steps(kind)) return {};
+  if (!names_load_point_speeds(s))
+    throw UsageError("--speed of a load point is stated by time, 0s:2um/s,60s:10um/s; one speed alone has no steps");
+  return phases_from(s.speed, "--speed");
+}
+
+RateStateOptions driven_options_from(const Settings& s) {
+  RateStateOptions options;
+  if (!s.evolutions.empty()) options.evolutions.clear();
+  for (const std::string& name : s.evolutions) {
+    const auto found = find_state_evolution(name);
+    const auto& known = options.evolutions;
+    if (found && std::find(known.begin(), known.end(), *found) == known.end()) options.evolutions.push_back(*found);
+  }
+  options.states = static_cast<std::size_t>(s.states);
+  options.detrend = find_detrend(s.detrend).value_or(Detrend::automatic);
+  if (!s.reference_speed.empty()) {
+    options.reference_speed = stated_value(s.reference_speed, Quantity::velocity, "--reference-speed");
+    if (!(options.reference_speed > 0)) throw UsageError("--reference-speed is not above zero");
+  }
+  if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
+  if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");
+  if (!(options.from < options.to)) throw UsageError("--from and --to leave nothing between them");
+  if (is_stated(s)) read_given(s, options.given);
+  return options;
+}
