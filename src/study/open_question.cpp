@@ -1,0 +1,190 @@
+#include "open_question.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/conclusions.hpp"
+#include "diagnosis/diagnose_traces.hpp"
+#include "diagnosis/ruling.hpp"
+#include "fit/fit_laws.hpp"
+#include "limits.hpp"
+#include "tribofit/friction/effect_pairs.hpp"
+#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/statistics/stop.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// The effect as the ladder has it: in the form that a rung holds. Nothing for one that shows in the motion and not in
+/// friction.
+std::optional<Effect> effect_of(const DiagnosedTraces& diagnosed, const std::string& key) {
+  for (const Fit& rung : diagnosed.rungs) {
+    for (const Effect& effect : rung.model.effects()) {
+      if (describe(effect).key == key) return effect;
+    }
+  }
+  for (const Effect& effect : effect_catalogue()) {
+    if (describe(effect).key == key && !is_kinematic(effect)) return effect;
+  }
+  return std::nullopt;
+}
+
+/// The first group of the ladder with more than one effect of friction or of its reading.
+void ask_about_group(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
+  for (const Rung& rung : diagnosed.diagnosis.ladder) {
+    std::vector<std::string> keys = {rung.added};
+    keys.insert(keys.end(), rung.equivalent.begin(), rung.equivalent.end());
+    std::vector<Effect> asked;
+    for (const std::string& key : keys) {
+      if (std::optional<Effect> effect = effect_of(diagnosed, key)) asked.push_back(std::move(*effect));
+    }
+    if (rung.added.empty() || asked.size() < 2 || asked.size() < keys.size()) continue;
+    question.kind = QuestionKind::group;
+    question.asked = std::move(asked);
+    std::erase_if(question.beside, [&](const Effect& effect) { return describe(effect).key == rung.added; });
+    return;
+  }
+}
+
+/// The likeliest of those that are possible.
+void ask_about_possible(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
+  const EffectFinding* likely = nullptr;
+  for (const EffectFinding& finding : diagnosed.diagnosis.effects) {
+    if (finding.status != EffectStatus::possible || finding.parameters.empty()) continue;
+    if (!effect_of(diagnosed, finding.key)) continue;
+    if (likely == nullptr || finding.p_value < likely->p_value) likely = &finding;
+  }
+  if (likely == nullptr) return;
+  question.kind = QuestionKind::possible;
+  question.asked.push_back(*effect_of(diagnosed, likely->key));
+}
+
+void ask(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
+  question.law = diagnosed.diagnosis.law;
+  const std::span<const Effect> found = diagnosed.rungs.back().model.effects();
+  question.beside.assign(found.begin(), found.end());
+  ask_about_group(diagnosed, question);
+  if (question.kind == QuestionKind::nothing) ask_about_possible(diagnosed, question);
+}
+
+/// Values of the parameters of a model, from the last rung and from what was found of the effect.
+std::vector<double> start_of(const FrictionModel& model, const DiagnosedTraces& diagnosed) {
+  std::vector<double> start;
+  const Fit& last = diagnosed.rungs.back();
+  for (const FrictionModel::Slot& slot : model.parameters()) {
+    double value = slot.parameter.start * slot.parameter.si;
+    for (const EffectFinding& finding : diagnosed.diagnosis.effects) {
+      for (const FitParameter& p : finding.parameters) {
+        if (p.effect == slot.effect && p.parameter.name == slot.parameter.name) value = p.value;
+      }
+    }
+    for (const FitParameter& p : last.parameters) {
+      if (p.effect == slot.effect && p.parameter.name == slot.parameter.name) value = p.value;
+    }
+    start.push_back(value);
+  }
+  return start;
+}
+
+Fit fit_answer(const FrictionModel& model, const DiagnosedTraces& diagnosed, const PlanOptions& options) {
+  const std::vector<Record> records = records_of(diagnosed);
+  FitOptions warm = options.fit;
+  warm.start = start_of(model, diagnosed);
+  warm.threads = 1;
+  return fit_model(model, records, observations_for(model, records), options.instruments, warm);
+}
+
+/// The trace that most is known of: the longest that sticks and slips.
+std::size_t trace_to_continue(const DiagnosedTraces& diagnosed) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < diagnosed.traces.size(); ++k) {
+    const auto cycles = [&](std::size_t i) {
+      const Segmentation& s = diagnosed.traces[i].segmentation;
+      return s.kind == MotionKind::stick_slip ? s.cycles.size() : 0;
+    };
+    if (cycles(k) > cycles(best)) best = k;
+  }
+  return best;
+}
+
+/// How likely each answer is by the held-out errors so far: exp(-behind/(2 t)) with the temper t, since no model is
+/// the exact one that a likelihood takes it for.
+void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQuestion& question) {
+  std::vector<double> weights(question.models.size(), 1.0);
+  if (question.kind == QuestionKind::group) {
+    const diagnosis::Ruling now = diagnosis::rule_between(records_of(diagnosed), question.law, question.beside,
+                                                          question.asked, options.instruments);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      weights[k] = std::exp(-std::clamp(now.effects[k].behind, 0.0, kMostBehind) / (2 * kTemper));
+    }
+  }
+  double sum = 0;
+  for (const double w : weights) sum += w;
+  for (std::size_t k = 0; k < weights.size(); ++k) question.models[k].probability = weights[k] / sum;
+}
+
+/// The record, its noise and its scatter.
+RecordToContinue record_of(const Identification& trace, const IdentifiedMachine& machine, const Fit& fit) {
+  RecordToContinue out;
+  out.motion = &trace.motion;
+  out.noise = noise_of_record(trace.motion, trace.segmentation, fit.floor);
+  out.scatter = machine.scatter;
+  out.rate = 1 / trace.motion.step;
+  const double slip = trace.segmentation.slip_time.value;
+  out.simulated_rate = slip > 0 ? kSamplesOfSlip / slip : out.rate;
+  return out;
+}
+
+}  // namespace
+
+std::vector<Record> records_of(const DiagnosedTraces& diagnosed) {
+  std::vector<Record> records;
+  for (const Identification& trace : diagnosed.traces) records.push_back({&trace.motion, &trace.segmentation});
+  return records;
+}
+
+OpenQuestion open_question(const DiagnosedTraces& diagnosed, const PlanOptions& options) {
+  OpenQuestion question;
+  if (diagnosed.rungs.empty()) {
+    question.reason = "the records could not be diagnosed";
+    return question;
+  }
+  ask(diagnosed, question);
+  if (question.kind == QuestionKind::nothing) return question;
+  question.trace = trace_to_continue(diagnosed);
+  const Identification& trace = diagnosed.traces[question.trace];
+  if (trace.segmentation.kind != MotionKind::stick_slip) {
+    question.reason = "nothing sticks and slips in these records: only stick-slip is simulated";
+    return question;
+  }
+  for (const Effect& effect : question.asked) {
+    std::vector<Effect> effects = question.beside;
+    effects.push_back(effect);
+    question.models.push_back({describe(effect).spelled(), {}, 0, {}});
+    question.models.back().fit.model = FrictionModel(question.law, effects, diagnosed.traces.size());
+  }
+  if (question.kind == QuestionKind::possible) {
+    question.models.push_back({});
+    question.models.back().fit.model = FrictionModel(question.law, question.beside, diagnosed.traces.size());
+  }
+  question.machines.resize(question.models.size());
+  run_tasks(question.models.size(), options.threads, [&](std::size_t k) {
+    ModelInQuestion& model = question.models[k];
+    model.fit = fit_answer(model.fit.model, diagnosed, options);
+    const Fit own = diagnosis::of_first_record(model.fit);
+    const RigFit rig = rig_beside(own, trace.motion, trace.segmentation, options.instruments);
+    question.machines[k] = identified_machine(own, rig, trace.motion, trace.segmentation);
+    model.reason = question.machines[k].reason;
+  });
+  for (const ModelInQuestion& model : question.models) {
+    if (question.reason.empty()) question.reason = model.reason;
+  }
+  if (!question.reason.empty()) return question;
+  weigh(diagnosed, options, question);
+  question.record = record_of(trace, question.machines.front(), question.models.front().fit);
+  return question;
+}
+
+}  // namespace tribofit

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulated_run.hpp"
+#include "tribofit/study/identified.hpp"
+#include "tribofit/study/plan.hpp"
+
+namespace tribofit {
+
+/// What a diagnosis leaves open, with what it takes to simulate every answer.
+struct OpenQuestion {
+  QuestionKind kind = QuestionKind::nothing;
+  Law law = ExponentialLaw{};
+  std::vector<Effect> beside;  ///< effects found that are not asked about
+  std::vector<Effect> asked;   ///< one of them is there; of QuestionKind::possible one, and that may be there or not
+  std::vector<ModelInQuestion> models;      ///< for each asked; where one is possible, with it and without it
+  std::vector<IdentifiedMachine> machines;  ///< for each model
+  RecordToContinue record;
+  std::size_t trace = 0;  ///< whose conditions the runs go on from
+  std::string reason;     ///< why nothing can be simulated
+
+  bool without(std::size_t model) const { return kind == QuestionKind::possible && model == 1; }
+};
+
+/// The first group of the ladder that is open, else an effect that is possible.
+OpenQuestion open_question(const DiagnosedTraces& diagnosed, const PlanOptions& options);
+
+std::vector<Record> records_of(const DiagnosedTraces& diagnosed);
+
+}  // namespace tribofit

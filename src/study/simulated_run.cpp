@@ -1,0 +1,140 @@
+#include "simulated_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "limits.hpp"
+#include "tribofit/statistics/polynomials.hpp"
+
+namespace tribofit {
+
+namespace {
+
+/// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
+double noise_colour(const Motion& motion, const Segmentation& segmentation) {
+  Remainder all;
+  std::size_t used = 0;
+  for (const Cycle& cycle : segmentation.cycles) {
+    const std::size_t n = std::min(kNoisePiece, cycle.stick.size() / 2);
+    if (n < kFewestNoise || ++used > kNoiseSticks) continue;
+    const std::span<const double> piece =
+        std::span(motion.friction).subspan(cycle.stick.begin + cycle.stick.size() / 4, n);
+    Parabola line = fit_parabola(piece);
+    line.curvature = 0;
+    all += remainder_about(line, piece);
+  }
+  return all.correlation(kMostNoiseCorrelation);
+}
+
+/// How the disc is driven in a run.
+SpeedProfile speed_of_run(const RunConditions& run) {
+  if (run.reversing > 0) return reversing_speed(run.speed, run.reversing);
+  return run.pauses.empty() ? constant_speed(run.speed) : stepped_speed({0}, {run.speed}, run.pauses);
+}
+
+/// Something lets the block creep in stick.
+bool creeps(const FrictionModel& model) {
+  return std::any_of(model.effects().begin(), model.effects().end(),
+                     [](const Effect& effect) { return describe(effect).sketch.view == SketchView::creep; });
+}
+
+/// The motion as it is known of a simulation: nothing is to be found out about its channels, which takes half the time
+/// of a judgement. Where the block creeps in stick, its plateau is found as in a record.
+Motion motion_of(Trace trace, const SimulatedMotion& moved, const Sensors& sensors, const FrictionModel& model,
+                 const StickRule& stick) {
+  if (model.acts_in_stick() || creeps(model)) {
+    MotionOptions plain;
+    plain.trim = false;
+    plain.undo_high_pass = plain.undo_distortions = false;
+    plain.undo_speed_ripple = false;
+    plain.stick = stick;
+    return compute_motion(std::move(trace), {}, plain);
+  }
+  Motion out;
+  out.step = trace.interval();
+  const double radius = trace.conditions.radius.value;
+  if (trace.disc_speed.empty()) out.constant_disc_velocity = trace.conditions.speed.value * radius;
+  for (const double speed : trace.disc_speed) out.disc_velocity.push_back(speed * radius);
+  out.relative_velocity.resize(trace.size());
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    out.relative_velocity[i] = out.disc_velocity_at(i) - trace.velocity[i];
+  }
+  out.time = std::move(trace.time);
+  out.friction = std::move(trace.friction);
+  out.load = std::move(trace.load);
+  out.temperature = std::move(trace.temperature);
+  out.disc_speed = std::move(trace.disc_speed);
+  out.friction_kind = trace.friction_kind;
+  out.conditions = std::move(trace.conditions);
+  out.steps = std::move(trace.steps);
+  out.velocity_noise = sensors.velocity_noise;
+  out.stick = stick;
+  out.sticks = std::any_of(moved.sticks.begin(), moved.sticks.end(), [](std::uint8_t s) { return s != 0; });
+  return out;
+}
+
+}  // namespace
+
+Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor) {
+  Sensors sensors;
+  sensors.friction_noise = floor.noise;
+  sensors.velocity_noise = motion.velocity_noise;
+  sensors.noise_colour = noise_colour(motion, segmentation);
+  return sensors;
+}
+
+Sensors averaged_noise(Sensors noise, double samples) {
+  if (!(samples > 1)) return noise;
+  // Variance of the mean of q neighbours of an autoregression, and covariance of two such means side by side.
+  const double q = samples, r = noise.noise_colour;
+  const double sum = r > 0 ? (1 - std::pow(r, q)) / (1 - r) : 1;
+  const double variance = r > 0 ? ((1 + r) / (1 - r) - 2 * r * sum / (q * (1 - r))) / q : 1 / q;
+  const double beside = r > 0 ? r * sum * sum / (q * q) : 0;
+  const double part = std::sqrt(variance);
+  noise.friction_noise *= part;
+  noise.velocity_noise *= part;
+  noise.noise_colour = std::clamp(beside / variance, 0.0, kMostNoiseCorrelation);
+  return noise;
+}
+
+SimulatedRun simulate_run(Machine machine, const RunConditions& run, const RecordToContinue& record,
+                          std::uint64_t seed) {
+  const Motion& measured = *record.motion;
+  const bool force = measured.friction_kind == FrictionKind::force;
+  machine.radius = run.radius;
+  machine.speed = run.speed;
+  if (!force && run.load > 0 && machine.load > 0 && measured.conditions.load.known()) machine.load = run.load;
+  if (run.stiffness > 0) {
+    machine.rig.damping *= std::sqrt(run.stiffness / machine.rig.stiffness);  // the damping ratio stays
+    machine.rig.stiffness = run.stiffness;
+  }
+  machine.rig.mass += run.mass_below;
+
+  Drive drive = machine.drive();
+  drive.speed = speed_of_run(run);
+  SimulationOptions options;
+  options.duration = run.duration;
+  options.rate = std::min(run.rate, record.simulated_rate);
+  options.scatter = record.scatter;
+  options.seed = seed;
+  if (!(run.reversing > 0)) options.settle = settling_time(machine.rig, drive, machine.parameters);
+  Sensors sensors = record.noise;  // of a sample at any rate; neighbours correlate over the same time
+  sensors.noise_colour = std::pow(sensors.noise_colour, record.rate / run.rate);
+  sensors = averaged_noise(sensors, run.rate / options.rate);
+  sensors.seed = seed ^ 0x2545f4914f6cdd1du;
+  const SimulatedMotion moved = simulate(machine.rig, drive, machine.model, machine.parameters, options);
+  Trace trace = tribofit::record(moved, machine.model, machine.parameters, sensors).trace;
+  trace.path = "simulated run";
+  if (force) trace.friction_kind = FrictionKind::force;
+  const Condition& load = measured.conditions.load;
+  trace.conditions.load = load.known() ? Condition{force ? load.value : machine.load, "plan"} : Condition{};
+  for (Step& step : trace.steps) step.conditions.load = trace.conditions.load;
+
+  SimulatedRun out;
+  out.motion = motion_of(std::move(trace), moved, sensors, machine.model, measured.stick);
+  out.segmentation = find_cycles(out.motion);
+  return out;
+}
+
+}  // namespace tribofit

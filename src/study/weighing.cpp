@@ -1,0 +1,380 @@
+#include "weighing.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "diagnosis/limits.hpp"
+#include "diagnosis/ruling.hpp"
+#include "limits.hpp"
+#include "run_measures.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/parallel.hpp"
+
+namespace tribofit {
+
+namespace {
+
+double normal_tail_below(double z) {
+  return 0.5 * std::erfc(-z / std::sqrt(2.0));
+}
+
+/// Chance that another record of the same truth gives a p-value below `level`, from that of one.
+double chance_of_p(double p_value, double level) {
+  const boost::math::normal_distribution<double> normal;
+  const auto z_of = [&](double p) { return boost::math::quantile(normal, 1 - std::clamp(p, 1e-15, 1 - 1e-15)); };
+  return normal_tail_below((z_of(p_value) - z_of(level)) / std::sqrt(2.0));
+}
+
+/// A machine of the model, drawn from its posterior.
+Machine drawn_machine(const OpenQuestion& question, std::size_t model, std::uint64_t seed) {
+  const IdentifiedMachine& known = question.machines[model];
+  std::vector<Machine> drawn = draws_of(known.machine, known.covariance, 1, seed);
+  return drawn.empty() ? known.machine : std::move(drawn.front());
+}
+
+std::uint64_t seed_of(const PlanOptions& options, std::size_t truth, std::uint64_t draw) {
+  return options.seed * 1000003 + draw * 101 + truth;
+}
+
+/// The runs of an experiment with one drawn machine; empty where they cannot be simulated.
+std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment& experiment, std::size_t truth,
+                                  std::uint64_t seed) {
+  std::vector<SimulatedRun> out;
+  try {
+    const Machine machine = drawn_machine(question, truth, seed);
+    for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
+      out.push_back(simulate_run(machine, experiment.runs[k], question.record, seed + 7919 * (k + 1)));
+    }
+  } catch (const InputError&) {  // numbers that cannot be simulated
+    out.clear();
+  }
+  return out;
+}
+
+/// The records as they are, then the simulated ones.
+std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vector<SimulatedRun>& runs) {
+  std::vector<Record> records = records_of(diagnosed);
+  for (const SimulatedRun& run : runs) {
+    if (run.segmentation.kind != MotionKind::always_sticking) records.push_back({&run.motion, &run.segmentation});
+  }
+  return records;
+}
+
+/// Uncertainties of what a hand reads off a tap: where edges of two channels lie, beside a part of a sample, and how
+/// slow an edge is.
+constexpr double kReadingOfEdge = 0.02e-3 /* s */, kPartOfSample = 0.3, kReadingOfSlope = 0.25;
+
+/// What a tap shows of each answer: a shift of the channels [s], and the time of a filter [s].
+struct TapShows {
+  double shift = 0, filter = 0;
+};
+TapShows tap_shows(const OpenQuestion& question, std::size_t model) {
+  TapShows out;
+  const Effect& effect = question.asked[std::min(model, question.asked.size() - 1)];
+  if (question.without(model)) return out;
+  const EffectInfo info = describe(effect);
+  const Machine& machine = question.machines[model].machine;
+  const double value = machine.parameters[machine.model.offset_of(info.key)];
+  if (info.declared_by == InstrumentValue::vibrometer_delay) out.shift = value;
+  // A corner in Hz, or a time constant of one pole.
+  if (info.declared_by == InstrumentValue::force_bandwidth) {
+    out.filter = info.parameters[0].unit == "Hz" ? 1 / (2 * std::numbers::pi * value) : value;
+  }
+  return out;
+}
+
+/// Chance that a tap recorded at this rate tells this answer from all others: an edge that is shifted, beyond three
+/// standard uncertainties as for what an instruments file declares, or one that is slower than a filter of a quarter of
+/// the rate makes it, which a few samples show.
+double chance_of_tap(const OpenQuestion& question, std::size_t truth, double rate) {
+  const double edge = std::hypot(kReadingOfEdge, kPartOfSample / rate), slow = 4 / (2 * std::numbers::pi * rate);
+  const TapShows own = tap_shows(question, truth);
+  double least = 1;
+  for (std::size_t other = 0; other < question.models.size(); ++other) {
+    if (other == truth) continue;
+    const TapShows its = tap_shows(question, other);
+    const double by_shift = std::abs(own.shift - its.shift) / edge,
+                 by_filter = std::abs(own.filter - its.filter) / slow;
+    double chance = by_shift > 0 ? chance_beyond(by_shift) : 0;
+    if (by_filter > 0) chance = std::max(chance, normal_tail_below((by_filter - 1) / kReadingOfSlope));
+    least = std::min(least, chance);
+  }
+  return least;
+}
+
+/// Chance that the truth is named alone, from what the rule says of one record.
+double chance_of_ruling(const diagnosis::Ruling& ruling, const OpenQuestion& question, std::size_t truth) {
+  using namespace diagnosis;
+  if (question.kind == QuestionKind::possible) {
+    const double p_value = ruling.effects.front().p_value;
+    return question.without(truth)
+               ? 1 - chance_of_p(p_value, limits::kChanceOfPossible)
+               : (ruling.effects.front().passes || p_value < 1 ? chance_of_p(p_value, Limits{}.p_value) : 0);
+  }
+  const Ruling::OfEffect& own = ruling.effects[truth];
+  if (!own.passes && own.p_value >= limits::kChanceOfPossible) return 0;
+  double chance = chance_of_p(own.p_value, Limits{}.p_value);
+  if (!own.passes) chance = std::min(chance, 0.5);
+  for (std::size_t other = 0; other < ruling.effects.size(); ++other) {
+    const Ruling::OfEffect& rival = ruling.effects[other];
+    if (other == truth || !rival.passes) continue;
+    // What one record says of the mean has the spread of another record.
+    constexpr double kOfTwoRecords = 2;
+    chance = std::min(chance, chance_to_distinguish(rival.behind - own.behind, kOfTwoRecords));
+  }
+  return chance;
+}
+
+}  // namespace
+
+double chance_beyond(double sigmas) {
+  return normal_tail_below(sigmas - diagnosis::limits::kDeclaredSigmas);
+}
+
+Chance expected_chance(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
+                       std::size_t truth, std::uint64_t draw, const PlanOptions& options) {
+  if (experiment.tap > 0) return {chance_of_tap(question, truth, experiment.tap)};
+  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, seed_of(options, truth, draw));
+  if (runs.empty()) return {0, false};
+  const std::vector<Record> records = with_runs(diagnosed, runs);
+  const diagnosis::Ruling ruling =
+      diagnosis::rule_between(records, question.law, question.beside, question.asked, options.instruments);
+  return {chance_of_ruling(ruling, question, truth)};
+}
+
+Answer diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
+                          std::size_t truth, std::uint64_t draw, const PlanOptions& options) {
+  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, seed_of(options, truth, draw));
+  if (runs.empty()) return Answer::open;
+  DiagnosisOptions inner;
+  inner.threads = 1;
+  const std::vector<Law> laws = options.laws.empty() ? std::vector<Law>{question.law} : options.laws;
+  const Diagnosis d = diagnose(with_runs(diagnosed, runs), laws, {}, options.instruments, options.fit, inner).diagnosis;
+  const std::string key = describe(question.asked[std::min(truth, question.asked.size() - 1)]).key;
+  const auto among = [&](const Rung& rung, const std::string& k) {
+    return rung.added == k || std::find(rung.equivalent.begin(), rung.equivalent.end(), k) != rung.equivalent.end();
+  };
+  const auto held = std::find_if(d.ladder.begin(), d.ladder.end(), [&](const Rung& rung) { return among(rung, key); });
+  if (question.without(truth)) {
+    if (held != d.ladder.end()) return Answer::wrong;
+    const auto finding =
+        std::find_if(d.effects.begin(), d.effects.end(), [&](const EffectFinding& f) { return f.key == key; });
+    return finding != d.effects.end() && finding->status == EffectStatus::possible ? Answer::open : Answer::named;
+  }
+  if (held != d.ladder.end()) return held->added == key && held->equivalent.empty() ? Answer::named : Answer::open;
+  for (const Effect& other : question.asked) {
+    const std::string rival = describe(other).key;
+    for (const Rung& rung : d.ladder) {
+      if (rival != key && among(rung, rival)) return Answer::wrong;
+    }
+  }
+  return Answer::open;
+}
+
+namespace {
+
+/// Every draw of every model: [model][draw]; empty where they could not be simulated.
+std::vector<std::vector<std::vector<SimulatedRun>>> draws_to_see(const OpenQuestion& question,
+                                                                 const Experiment& experiment,
+                                                                 const PlanOptions& options) {
+  std::vector<std::vector<std::vector<SimulatedRun>>> out(question.models.size());
+  for (auto& draws : out) draws.resize(kDrawsToSee);
+  run_tasks(question.models.size() * kDrawsToSee, options.threads, [&](std::size_t t) {
+    const std::size_t model = t / kDrawsToSee, draw = t % kDrawsToSee;
+    out[model][draw] = runs_of(question, experiment, model, seed_of(options, model, 1000 + draw));
+  });
+  return out;
+}
+
+struct MeanAndSpread {
+  double mean = std::numeric_limits<double>::quiet_NaN(), spread = 0;
+};
+/// Of those that are known, where most are.
+MeanAndSpread spread_of(const std::vector<double>& values) {
+  double sum = 0, squares = 0, n = 0;
+  for (const double v : values) {
+    if (std::isfinite(v)) sum += v, n += 1;
+  }
+  if (n < 2 || 2 * n < static_cast<double>(values.size())) return {};
+  for (const double v : values) {
+    if (std::isfinite(v)) squares += std::pow(v - sum / n, 2);
+  }
+  return {sum / n, std::sqrt(squares / (n - 1))};
+}
+
+/// By how many of their spreads two models are apart that are furthest.
+double apart(const std::vector<MeanAndSpread>& models) {
+  double most = 0;
+  for (const MeanAndSpread& a : models) {
+    for (const MeanAndSpread& b : models) {
+      const double spread = std::hypot(a.spread, b.spread);
+      if (std::isfinite(a.mean) && std::isfinite(b.mean) && spread > 0)
+        most = std::max(most, std::abs(a.mean - b.mean) / spread);
+    }
+  }
+  return most;
+}
+
+RunView view_of(const OpenQuestion& question) {
+  for (const Effect& effect : question.asked) {
+    const SketchView view = describe(effect).sketch.view;
+    if (view == SketchView::stick_time) return RunView::stick_time;
+    if (view == SketchView::time || view == SketchView::distance || view == SketchView::angle) return RunView::time;
+  }
+  return RunView::loop;
+}
+
+/// y at `x` of points in order of x, by straight lines; NaN outside.
+double interpolate(const RunCurve& points, double x) {
+  const auto at = std::lower_bound(points.x.begin(), points.x.end(), x);
+  if (at == points.x.end() || (at == points.x.begin() && *at > x)) return std::numeric_limits<double>::quiet_NaN();
+  if (at == points.x.begin()) return points.y.front();
+  const auto k = static_cast<std::size_t>(at - points.x.begin());
+  return points.y[k - 1] + (points.y[k] - points.y[k - 1]) * (x - points.x[k - 1]) / (points.x[k] - points.x[k - 1]);
+}
+
+/// Means of the points between equal steps of x (of its logarithm).
+RunCurve binned(const RunCurve& points, double low, double high, bool logarithmic, std::size_t bins) {
+  RunCurve out;
+  std::vector<double> sum(bins, 0), at(bins, 0), n(bins, 0);
+  for (std::size_t k = 0; k < points.x.size(); ++k) {
+    const double u =
+        logarithmic ? std::log(points.x[k] / low) / std::log(high / low) : (points.x[k] - low) / (high - low);
+    const auto bin =
+        static_cast<std::size_t>(std::clamp(u * static_cast<double>(bins), 0.0, static_cast<double>(bins - 1)));
+    sum[bin] += points.y[k], at[bin] += points.x[k], n[bin] += 1;
+  }
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    if (n[bin] > 0) out.x.push_back(at[bin] / n[bin]), out.y.push_back(sum[bin] / n[bin]);
+  }
+  return out;
+}
+
+/// One curve with a band from the curves of the draws.
+PredictedCurves::OfModel band_of(const std::vector<RunCurve>& draws, RunView view) {
+  PredictedCurves::OfModel out;
+  if (draws.empty()) return out;
+  const auto add = [&](double x, const std::vector<double>& values) {
+    const MeanAndSpread s = spread_of(values);
+    if (!std::isfinite(s.mean)) return;
+    out.x.push_back(x);
+    out.y.push_back(s.mean);
+    out.lower95.push_back(s.mean - 1.96 * s.spread);
+    out.upper95.push_back(s.mean + 1.96 * s.spread);
+  };
+  if (view == RunView::loop) {  // the same phases of the slip
+    for (std::size_t k = 0; k < draws.front().x.size(); ++k) {
+      std::vector<double> x, y;
+      for (const RunCurve& draw : draws) x.push_back(draw.x[k]), y.push_back(draw.y[k]);
+      add(spread_of(x).mean, y);
+    }
+    return out;
+  }
+  double low = 1e300, high = -1e300;
+  for (const RunCurve& draw : draws) {
+    for (const double x : draw.x) low = std::min(low, x), high = std::max(high, x);
+  }
+  if (!(high > low)) return out;
+  const bool logarithmic = view == RunView::stick_time && low > 0;
+  constexpr std::size_t kBins = 24;
+  std::vector<RunCurve> means;
+  for (const RunCurve& draw : draws) means.push_back(binned(draw, low, high, logarithmic, kBins));
+  for (std::size_t k = 0; k < means.front().x.size(); ++k) {
+    std::vector<double> y;
+    for (const RunCurve& mean : means) y.push_back(interpolate(mean, means.front().x[k]));
+    add(means.front().x[k], y);
+  }
+  return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// What a tap shows, within what can be read off it.
+std::vector<Prediction> predict_tap(const OpenQuestion& question, double rate) {
+  const double edge = std::hypot(kReadingOfEdge, kPartOfSample / rate);
+  Prediction shift{"shift between the edges of the channels", "ms", 1e-3},
+      filter{"time of the edge of friction", "ms", 1e-3};
+  for (std::size_t m = 0; m < question.models.size(); ++m) {
+    const TapShows shows = tap_shows(question, m);
+    shift.models.push_back({shows.shift, shows.shift - 2 * edge, shows.shift + 2 * edge});
+    filter.models.push_back(
+        {shows.filter, shows.filter - 2 * kPartOfSample / rate, shows.filter + 2 * kPartOfSample / rate});
+    shift.apart = std::max(shift.apart, std::abs(shows.shift) / edge);
+    filter.apart = std::max(filter.apart, shows.filter * rate / kPartOfSample);
+  }
+  std::vector<Prediction> out;
+  if (shift.apart > 0) out.push_back(std::move(shift));
+  if (filter.apart > 0) out.push_back(std::move(filter));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Prediction> predict_seen(const OpenQuestion& question, const Experiment& experiment,
+                                     const PlanOptions& options) {
+  std::vector<Prediction> out;
+  if (experiment.tap > 0) return predict_tap(question, experiment.tap);
+  if (experiment.runs.empty()) return out;
+  const auto draws = draws_to_see(question, experiment, options);
+  const std::vector<RunMeasure>& measures = run_measures();
+  const std::size_t last = experiment.runs.size() - 1;
+  std::vector<std::vector<std::vector<double>>> values(draws.size());  // [model][draw][measure]
+  for (std::size_t m = 0; m < draws.size(); ++m) {
+    for (const auto& runs : draws[m]) {
+      values[m].push_back(runs.empty() ? std::vector<double>(measures.size(), std::nan("")) : measure_run(runs[last]));
+    }
+  }
+  for (std::size_t k = 0; k < measures.size(); ++k) {
+    std::vector<MeanAndSpread> spreads;
+    Prediction one{measures[k].name, measures[k].unit, measures[k].si, 0, {}};
+    for (const auto& model : values) {
+      std::vector<double> own;
+      for (const auto& draw : model) own.push_back(draw[k]);
+      spreads.push_back(spread_of(own));
+      const MeanAndSpread& s = spreads.back();
+      one.models.push_back({s.mean, s.mean - 1.96 * s.spread, s.mean + 1.96 * s.spread});
+    }
+    one.apart = apart(spreads);
+    if (one.apart > 0) out.push_back(std::move(one));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Prediction& a, const Prediction& b) { return a.apart > b.apart; });
+  return out;
+}
+
+std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const Experiment& experiment,
+                                            const PlanOptions& options) {
+  if (experiment.runs.empty()) return {};
+  const auto draws = draws_to_see(question, experiment, options);
+  std::vector<PredictedCurves> out;
+  std::vector<RunView> views = {RunView::loop};
+  if (view_of(question) != RunView::loop) views.insert(views.begin(), view_of(question));
+  for (const RunView view : views) {
+    PredictedCurves curves;
+    curves.name = view == RunView::loop ? "sliding speed v_{r}" : view == RunView::time ? "time" : "stick time";
+    curves.unit = view == RunView::loop ? "mm/s" : "s";
+    curves.si = view == RunView::loop ? 1e-3 : 1;
+    curves.quantity = view == RunView::loop   ? "friction of the mean slip"
+                      : view == RunView::time ? "mean friction of a slip"
+                                              : "friction at break-away";
+    for (const auto& model : draws) {
+      std::vector<RunCurve> own;
+      for (const auto& runs : model) {
+        if (runs.empty()) continue;
+        RunCurve curve = curve_of_run(runs.back(), view);
+        if (!curve.x.empty()) own.push_back(std::move(curve));
+      }
+      curves.models.push_back(band_of(own, view));
+    }
+    out.push_back(std::move(curves));
+  }
+  return out;
+}
+
+}  // namespace tribofit

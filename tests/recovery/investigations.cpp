@@ -1,0 +1,344 @@
+#include "investigations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <optional>
+
+#include "hidden_recipes.hpp"
+#include "tribofit/ingest/units.hpp"
+#include "tribofit/pipeline.hpp"
+
+namespace recovery {
+
+using namespace tribofit;
+
+namespace {
+
+constexpr double kLength = 0.5, kNoise = 2;
+
+/// What a lab of the rig of [D] can do.
+Means usual_lab(const Case& c) {
+  Means means;
+  for (const double rpm : {1.0, 2.0, 4.0, 8.0}) means.speeds.push_back(rpm * kRpm);
+  means.radii = {0.009, 0.018};
+  means.loads = {0.5 * c.load, 2 * c.load};
+  means.springs = {4 * c.rig.stiffness};
+  means.longest_pause = 6;
+  means.reversing = true;
+  means.tap = true;
+  means.longest = 120;
+  return means;
+}
+
+std::string text_of(const std::vector<Name>& names) {
+  std::string text;
+  for (const Name& name : names) {
+    text += (text.empty() ? "" : ", ") + name.added;
+    for (const std::string& other : name.equivalent) text += "|" + other;
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+std::string key_of(const Case& c) {
+  return c.hidden.front().key;
+}
+
+bool holds_truth(const Case& c, const Name& name) {
+  return name.added == key_of(c) ||
+         std::find(name.equivalent.begin(), name.equivalent.end(), key_of(c)) != name.equivalent.end();
+}
+
+bool is_alone(const Case& c, const std::vector<Name>& names) {
+  return names.size() == 1 && names[0].equivalent.empty() && names[0].added == key_of(c);
+}
+
+bool is_wrong(const Case& c, const std::vector<Name>& names) {
+  return !names.empty() && std::none_of(names.begin(), names.end(), [&](const Name& n) { return holds_truth(c, n); });
+}
+
+double corner_of_tap(double rate) {
+  return rate / 4;
+}
+
+/// What a tap shows: delay and bandwidth for the instruments file. True where it shows the truth itself: an edge that
+/// is shifted is a delay, one that is slower than the samples a filter.
+bool tap(const Case& c, double rate, Instruments& instruments) {
+  const Ingredient& what = c.hidden.front();
+  const EffectInfo effect = describe(make_effect(what.key));
+  std::vector<std::string> keys;
+  for (const Effect& other : effect_catalogue()) {
+    const EffectInfo info = describe(other);
+    if (info.declared_by == InstrumentValue::vibrometer_delay) keys.push_back(info.key);
+  }
+  const Instruments read = measured_by_hand(c, keys);
+  if (read.vibrometer.delay) {
+    instruments.vibrometer.delay = read.vibrometer.delay;
+    instruments.vibrometer.delay->uncertainty = std::hypot(0.02e-3, 0.3 / rate);
+  }
+  const bool is_filter = effect.declared_by == InstrumentValue::force_bandwidth;
+  if (is_filter && what.values[0] < corner_of_tap(rate)) return true;
+  instruments.force_sensor.bandwidth = Declared{corner_of_tap(rate), 0.1 * corner_of_tap(rate)};
+  return effect.declared_by == InstrumentValue::vibrometer_delay &&
+         std::abs(what.values[0]) * 1e-3 > 3 * instruments.vibrometer.delay->uncertainty;
+}
+
+/// An investigation as it goes on.
+struct Bench {
+  const Case& c;
+  recovery::Experiment made;  ///< so far
+  Instruments instruments;
+  bool shown_by_hand = false;
+
+  DiagnosedTraces diagnose() const {
+    Simulated simulated = simulate_case(c, made);
+    simulated.instruments = instruments;
+    return diagnose_case(simulated);
+  }
+
+  void make(const tribofit::Experiment& experiment, const RunConditions& own) {
+    if (experiment.tap > 0) shown_by_hand |= tap(c, experiment.tap, instruments);
+    for (const RunConditions& run : experiment.runs) {
+      made.runs.push_back({.setting = Setting::fast,
+                           .speed = run.speed / c.speed,
+                           .radius = run.radius,
+                           .duration = run.duration / c.length,
+                           .rate = run.rate,
+                           .stiffness = std::abs(run.stiffness - own.stiffness) < 1e-6 * own.stiffness
+                                            ? 1
+                                            : run.stiffness / c.rig.stiffness,
+                           .load = run.load / own.load,
+                           .more_mass = run.mass_below,
+                           .reversing = run.reversing,
+                           .pauses = run.pauses});
+    }
+  }
+};
+
+std::string what_of(const tribofit::Experiment& experiment, const RunConditions& own) {
+  if (experiment.tap > 0) return "tap";
+  std::string text;
+  for (const RunConditions& run : experiment.runs) {
+    text += fmt::format("{}{:.3g} rpm", text.empty() ? "" : " + ", run.speed / kRpm);
+    if (run.radius != own.radius) text += fmt::format(" {:.3g} mm", 1e3 * run.radius);
+    if (std::abs(run.load - own.load) > 1e-9 * own.load) text += fmt::format(" {:.3g} N", run.load);
+    if (std::abs(run.stiffness - own.stiffness) > 1e-9 * own.stiffness) text += " other spring";
+    if (!run.pauses.empty()) text += " pauses";
+    if (run.reversing > 0) text += " reversing";
+    text += fmt::format(" {:.0f} s", run.duration);
+  }
+  return text;
+}
+
+FurtherRun further_run(Bench& bench, const PlannedExperiment& one, const RunConditions& own,
+                       DiagnosedTraces& diagnosed) {
+  FurtherRun out{what_of(one.experiment, own), one.probability, one.expected, one.minutes(), false, false, {}};
+  bench.make(one.experiment, own);
+  diagnosed = bench.diagnose();
+  const std::vector<Name> names = names_of(diagnosed.diagnosis);
+  // Shown by hand, it is corrected: nothing is left of it, or it stands with nobody who fits as well.
+  const bool rivals_left =
+      std::any_of(names.begin(), names.end(), [&](const Name& n) { return n.added != key_of(bench.c); });
+  out.alone = bench.shown_by_hand ? !rivals_left || is_alone(bench.c, names) : is_alone(bench.c, names);
+  out.wrong = bench.shown_by_hand ? rivals_left && is_wrong(bench.c, names) : is_wrong(bench.c, names);
+  out.names = text_of(names);
+  return out;
+}
+
+double processor_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+RunPlan plan_for(const Bench& bench, const DiagnosedTraces& diagnosed, const InvestigationOptions& options,
+                 std::uint64_t seed) {
+  tribofit::PlanOptions plan;
+  plan.means = usual_lab(bench.c);
+  if (bench.made.measured.empty() && bench.instruments.vibrometer.delay) plan.means.tap = false;
+  plan.threads = 1;
+  plan.seed = seed;
+  plan.effort = options.effort;
+  plan.instruments = bench.instruments;
+  return plan_runs(diagnosed, plan);
+}
+
+bool leaves_open(const Case& c, const RunPlan& plan) {
+  return plan.answered() && plan.models.size() > 1 &&
+         std::any_of(plan.models.begin(), plan.models.end(),
+                     [&](const ModelInQuestion& m) { return m.name.substr(0, m.name.find(':')) == key_of(c); });
+}
+
+void investigate_by_chance(const Case& c, const RunPlan& first, const InvestigationOptions& options,
+                           Investigation& out) {
+  Bench bench{c, {}, {}, false};
+  Random random(c.seed ^ 0xabcdefu);
+  DiagnosedTraces diagnosed;
+  while (out.random.size() < options.most_random) {
+    const PlannedExperiment& one = first.experiments[random.below(first.experiments.size())];
+    out.random.push_back(further_run(bench, one, first.own, diagnosed));
+    if (out.random.back().alone) return;
+  }
+}
+
+}  // namespace
+
+std::size_t Investigation::runs_until_alone(const std::vector<FurtherRun>& runs) {
+  return !runs.empty() && runs.back().alone ? runs.size() : 0;
+}
+
+std::vector<Case> investigated_cases(std::size_t count, std::uint64_t seed) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const auto& [a, b] : look_alike_pairs()) {
+    const bool plain = !is_kinematic(make_effect(a)) && !is_kinematic(make_effect(b)) &&
+                       recipe(a).programme == Programme::stick_slip && recipe(b).programme == Programme::stick_slip;
+    if (!plain) continue;
+    pairs.emplace_back(a, b);
+    pairs.emplace_back(b, a);
+  }
+  std::vector<Case> cases;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [key, partner] = pairs[i % pairs.size()];
+    const Recipe& r = recipe(key);
+    const std::string name = fmt::format("investigation:{}~{}:{}", key, partner, i / pairs.size());
+    const std::uint64_t own = hash(name, seed);
+    Random random(own);
+    Case c = draw_case(name, i, Kind::look_alike, r.setting == Setting::four_speeds ? Setting::fast : r.setting, own,
+                       random);
+    c.hidden = {ingredient(r.effect, r.effect.hidden.sizes[random.below(r.effect.hidden.sizes.size())], random)};
+    c.partner = partner;
+    c.length = kLength * random.uniform(0.4, 1);
+    c.noise = kNoise * random.uniform(0.5, 2);
+    cases.push_back(std::move(c));
+  }
+  return cases;
+}
+
+Investigation investigate(const Case& c, const InvestigationOptions& options) {
+  Investigation out;
+  out.tested = c;
+  try {
+    Bench bench{c, {}, {}, false};
+    DiagnosedTraces diagnosed = bench.diagnose();
+    const std::vector<Name> names = names_of(diagnosed.diagnosis);
+    out.first = text_of(names);
+    const bool possible =
+        std::any_of(diagnosed.diagnosis.effects.begin(), diagnosed.diagnosis.effects.end(),
+                    [&](const EffectFinding& f) { return f.status == EffectStatus::possible && f.key == key_of(c); });
+    const bool grouped = std::any_of(names.begin(), names.end(),
+                                     [&](const Name& n) { return holds_truth(c, n) && !n.equivalent.empty(); });
+    if (!possible && !grouped) return out;
+    std::optional<RunPlan> first;
+    while (out.planned.size() < options.most_runs) {
+      const double begin = processor_seconds();
+      const RunPlan plan = plan_for(bench, diagnosed, options, c.seed + out.planned.size());
+      if (!first) {
+        out.seconds = processor_seconds() - begin;
+        out.open = leaves_open(c, plan);
+        if (!out.open) return out;
+        first = plan;
+      }
+      if (!plan.answered() || plan.experiments.empty() || plan.hopeless) {
+        out.hopeless = true;
+        break;
+      }
+      out.planned.push_back(further_run(bench, plan.experiments.front(), plan.own, diagnosed));
+      if (out.planned.back().alone) break;
+    }
+    if (options.most_random > 0 && !first->hopeless) investigate_by_chance(c, *first, options, out);
+  } catch (const std::exception& e) {
+    out.failure = e.what();
+  }
+  return out;
+}
+
+namespace {
+
+/// Upper and lower end of the two-sided 95 % interval of a share (Wilson).
+std::string share_of(double hits, double n) {
+  if (n == 0) return "-";
+  const double z = 1.96, p = hits / n, middle = (p + z * z / (2 * n)) / (1 + z * z / n),
+               half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+  return fmt::format("{:.0f} % ({:.0f} of {}; {:.0f} to {:.0f} %)", 100 * p, hits, static_cast<std::size_t>(n),
+                     100 * (middle - half), 100 * (middle + half));
+}
+
+/// Of the runs of each arm, how many named the truth alone after so many.
+std::string progress_table(const std::vector<const Investigation*>& open, std::size_t most) {
+  std::string text = "| further runs | planned: truth alone | at random: truth alone |\n|---|---|---|\n";
+  const auto within = [&](std::vector<FurtherRun> Investigation::*arm, std::size_t runs) {
+    return static_cast<double>(std::count_if(open.begin(), open.end(), [&](const Investigation* one) {
+      const std::size_t until = Investigation::runs_until_alone(one->*arm);
+      return until > 0 && until <= runs;
+    }));
+  };
+  const auto n = static_cast<double>(open.size());
+  for (std::size_t k = 1; k <= most; ++k) {
+    text += fmt::format("| {} | {} | {} |\n", k, k <= 3 ? share_of(within(&Investigation::planned, k), n) : "",
+                        share_of(within(&Investigation::random, k), n));
+  }
+  return text;
+}
+
+std::string calibration_table(const std::vector<const Investigation*>& open) {
+  struct Tenth {
+    double n = 0, stated = 0, hits = 0;
+  };
+  std::array<Tenth, 10> tenths{};
+  for (const Investigation* one : open) {
+    for (const auto* arm : {&one->planned, &one->random}) {
+      // At random: the first run only, before which the probability was stated.
+      const std::size_t count = arm == &one->planned ? arm->size() : std::min<std::size_t>(1, arm->size());
+      for (std::size_t k = 0; k < count; ++k) {
+        const FurtherRun& run = (*arm)[k];
+        Tenth& tenth = tenths[std::min<std::size_t>(9, static_cast<std::size_t>(10 * run.probability))];
+        tenth.n += 1;
+        tenth.stated += run.probability;
+        tenth.hits += run.alone ? 1 : 0;
+      }
+    }
+  }
+  std::string text = "| stated | runs | mean stated | named alone |\n|---|---|---|---|\n";
+  for (std::size_t k = 0; k < tenths.size(); ++k) {
+    const Tenth& t = tenths[k];
+    if (t.n == 0) continue;
+    text += fmt::format("| {} to {} % | {} | {:.0f} % | {} |\n", 10 * k, 10 * (k + 1), static_cast<std::size_t>(t.n),
+                        100 * t.stated / t.n, share_of(t.hits, t.n));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string investigations_tables(const std::vector<Investigation>& all) {
+  std::vector<const Investigation*> open, planned;
+  double failures = 0, hopeless = 0, wrong = 0, wrong_random = 0, runs = 0, random_runs = 0;
+  for (const Investigation& one : all) {
+    failures += one.failure.empty() ? 0 : 1;
+    if (!one.open) continue;
+    open.push_back(&one);
+    if (one.planned.empty()) {
+      hopeless += 1;
+      continue;
+    }
+    planned.push_back(&one);
+    for (const FurtherRun& run : one.planned) wrong += run.wrong ? 1 : 0, runs += 1;
+    for (const FurtherRun& run : one.random) wrong_random += run.wrong ? 1 : 0, random_runs += 1;
+  }
+  std::string text = fmt::format(
+      "First records: {}; open after them: {}; of these {} where the first plan said that nothing settles it; "
+      "failures: "
+      "{}.\n\n",
+      all.size(), open.size(), static_cast<std::size_t>(hopeless), static_cast<std::size_t>(failures));
+  text += progress_table(planned, 6);
+  text += fmt::format("\nWrong names: {} of the diagnoses after planned runs, {} after random ones.\n\n",
+                      share_of(wrong, runs), share_of(wrong_random, random_runs));
+  return text + calibration_table(planned);
+}
+
+}  // namespace recovery
