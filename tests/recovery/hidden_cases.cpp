@@ -85,12 +85,14 @@ double mean_of_sine(double duration, double period, double phase) {
 Drive drive_of(const Case& c, const Run& run, double duration, Random& random) {
   Drive drive;
   drive.radius = run.radius > 0 ? run.radius : c.radius;
-  drive.mean_load = c.load;
+  drive.mean_load = run.load * c.load;
   const double speed = run.speed * c.speed;
   drive.speed = constant_speed(speed);
   if (c.programme != Programme::stick_slip) drive.speed = sliding_speed(c.programme, speed, random);
   const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
   if (back) drive.speed = reversing_speed(speed, random.uniform(0.1, 0.2));
+  if (run.reversing > 0) drive.speed = reversing_speed(speed, run.reversing);
+  if (!run.pauses.empty()) drive.speed = stepped_speed({0}, {speed}, run.pauses);
   if (run.setting == Setting::pauses) {
     std::vector<Pause> pauses;
     for (double t = random.uniform(1, 2); t < 55;) {
@@ -149,13 +151,15 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
   Rig rig = c.rig;
   rig.stiffness *= run.stiffness;
   rig.damping *= std::sqrt(run.stiffness);
-  const bool back = run.setting == Setting::both_directions || run.setting == Setting::load_both_directions;
+  rig.mass += run.more_mass;
+  const bool back =
+      run.setting == Setting::both_directions || run.setting == Setting::load_both_directions || run.reversing > 0;
   if (!back) options.settle = slides ? 0.2 : settling_time(rig, drive, truth.p);
   if (!slides) options.scatter = {c.scatter, c.wander};
   options.seed = c.seed + number;
   Sensors sensors;
-  sensors.friction_noise = c.flicker ? 0 : kFrictionNoise;
-  sensors.velocity_noise = 0.02e-3;
+  sensors.friction_noise = c.flicker ? 0 : c.noise * kFrictionNoise;
+  sensors.velocity_noise = c.noise * 0.02e-3;
   sensors.noise_colour = c.colour;
   sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
   return simulate_recording(truth.model, truth.p, rig, drive, options, sensors);

@@ -33,36 +33,6 @@ std::size_t size_of(const Name& name) {
   return 1 + name.equivalent.size();
 }
 
-/// The ladder beyond the base law. Effects that show in the motion and not in the error count as named when they were
-/// found there, those that correct the plateau as one group.
-std::vector<Name> names_of(const Diagnosis& diagnosis) {
-  std::vector<EffectInfo> kinematic_effects;
-  for (const Effect& effect : effect_catalogue()) {
-    if (is_kinematic(effect)) kinematic_effects.push_back(describe(effect));
-  }
-  std::vector<Name> names;
-  for (const Rung& rung : diagnosis.ladder) {
-    const bool counted_below = std::any_of(kinematic_effects.begin(), kinematic_effects.end(),
-                                           [&](const EffectInfo& info) { return info.key == rung.added; });
-    if (!rung.added.empty() && !counted_below) names.push_back({rung.added, rung.equivalent});
-  }
-  for (const EffectInfo& info : kinematic_effects) {
-    const EffectFinding* found = finding(diagnosis, info.key);
-    if (found == nullptr || found->status != EffectStatus::found) continue;
-    Name name{info.key, {}};
-    for (const EffectInfo& other : kinematic_effects) {
-      const EffectFinding* twin = finding(diagnosis, other.key);
-      const bool both_of_plateau =
-          info.plateau_correction != PlateauCorrection::none && other.plateau_correction != PlateauCorrection::none;
-      if (both_of_plateau && twin != nullptr && twin->status == EffectStatus::equivalent) {
-        name.equivalent.push_back(other.key);
-      }
-    }
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
 /// Which of the names hold what was hidden; each name is used once.
 Naming judge(const Case& c, Outcome& out) {
   std::vector<bool> used(out.names.size(), false);
@@ -174,6 +144,34 @@ double processor_time() {
 std::string_view to_string(Naming naming) {
   constexpr std::string_view kNames[] = {"alone", "group", "beside", "partly", "wrong", "missed"};
   return kNames[static_cast<std::size_t>(naming)];
+}
+
+std::vector<Name> names_of(const Diagnosis& diagnosis) {
+  std::vector<EffectInfo> kinematic_effects;
+  for (const Effect& effect : effect_catalogue()) {
+    if (is_kinematic(effect)) kinematic_effects.push_back(describe(effect));
+  }
+  std::vector<Name> names;
+  for (const Rung& rung : diagnosis.ladder) {
+    const bool counted_below = std::any_of(kinematic_effects.begin(), kinematic_effects.end(),
+                                           [&](const EffectInfo& info) { return info.key == rung.added; });
+    if (!rung.added.empty() && !counted_below) names.push_back({rung.added, rung.equivalent});
+  }
+  for (const EffectInfo& info : kinematic_effects) {
+    const EffectFinding* found = finding(diagnosis, info.key);
+    if (found == nullptr || found->status != EffectStatus::found) continue;
+    Name name{info.key, {}};
+    for (const EffectInfo& other : kinematic_effects) {
+      const EffectFinding* twin = finding(diagnosis, other.key);
+      const bool both_of_plateau =
+          info.plateau_correction != PlateauCorrection::none && other.plateau_correction != PlateauCorrection::none;
+      if (both_of_plateau && twin != nullptr && twin->status == EffectStatus::equivalent) {
+        name.equivalent.push_back(other.key);
+      }
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 DiagnosedTraces diagnose_case(const Simulated& simulated) {

@@ -18,6 +18,7 @@
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/oscillator/drive.hpp"
 #include "tribofit/oscillator/rig.hpp"
 
 namespace recovery {
@@ -89,6 +90,7 @@ struct Case {
   Programme programme = Programme::stick_slip;
   double slowness = 1;  ///< of the rig over that of [D]: times grow by it, speeds fall
   double length = 1;    ///< of the record over that of its setting
+  double noise = 1;     ///< of the channels over the usual one
   std::string partner;  ///< look-alikes: the one to distinguish it from
 };
 
@@ -132,6 +134,10 @@ struct Run {
   double duration = 0;   ///< [s]; 0: that of the setting
   double rate = 0;       ///< [Hz]; 0: that of the setting
   double stiffness = 1;  ///< of that of the rig, whose damping ratio stays
+  double load = 1;       ///< of that of the case
+  double more_mass = 0;  ///< on the block [kg]
+  double reversing = 0;  ///< frequency at which the disc turns forth and back [Hz]; 0: as the setting says
+  std::vector<tribofit::Pause> pauses = {};  ///< of the disc
 
   bool operator==(const Run&) const = default;
 };
@@ -189,6 +195,10 @@ enum class Naming {
   missed   ///< nothing named
 };
 std::string_view to_string(Naming naming);
+
+/// The names that a diagnosis gives: its ladder beyond the base law. Effects that show in the motion and not in the
+/// error count as named when they were found there, those that correct the plateau as one group.
+std::vector<Name> names_of(const tribofit::Diagnosis& diagnosis);
 
 /// What came of a case.
 struct Outcome {
