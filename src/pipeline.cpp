@@ -27,7 +27,7 @@ Trace read_file(const TraceInput& input, const IdentifyOptions& options) {
 }
 
 /// What a trace is read for.
-enum class Purpose { law, rig };
+enum class Purpose { anything, law, rig };
 
 /// The stages up to the cycles: read, move, segment, check.
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,
@@ -46,13 +46,14 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
       compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects), options.threads);
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   stop_point();
-  const bool has_spectrum = !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
+  const bool driven = is_driven_in_steps(out.motion.kind);
+  const bool has_spectrum = !driven && !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
   run_tasks(2, options.threads, [&](std::size_t k) {
     if (k == 0) out.segmentation = find_cycles(out.motion);
     if (k == 1 && has_spectrum) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   });
   stop_point();
-  exclude(options.selection, out.motion, out.segmentation);
+  if (!driven) exclude(options.selection, out.motion, out.segmentation);
   if (out.motion.kind == RecordKind::force_only) out.force_statistics = force_statistics(out.motion);
   if (out.motion.kind == RecordKind::motion_only) out.friction_levels = friction_levels(out.motion, out.segmentation);
   out.notes.insert(out.notes.end(), out.motion.notes.begin(), out.motion.notes.end());
@@ -61,10 +62,24 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   for (std::string& warning :
        warnings_beside_declared(out.motion.conditions, options.instruments, purpose == Purpose::rig))
     out.warnings.push_back(std::move(warning));
-  require_channels(options.effects, out);
-  for (std::string& obstacle : obstacles(out.motion, out.segmentation, purpose == Purpose::law))
+  require_channels(options.effects, out.motion, out);
+  if (driven && purpose == Purpose::anything) return out;
+  for (std::string& obstacle : obstacles(out.motion, out.segmentation, purpose != Purpose::rig))
     out.refuse(std::move(obstacle));
   return out;
+}
+
+/// Rate-and-state friction of a contact whose load point is driven in steps.
+void fit_driven(const IdentifyOptions& options, Identification& trace) {
+  if (!options.effects.empty())
+    trace.refuse("effects are of laws of sliding speed: velocity steps and holds are fitted by rate and state alone");
+  if (!trace.analysed) return;
+  RateStateOptions own = options.rate_state;
+  own.threads = options.threads;
+  own.excluded = options.selection.excluded;
+  trace.rate_state = fit_rate_state(trace.motion, own);
+  for (const std::string& message : trace.rate_state->messages) trace.warnings.push_back(message);
+  if (!trace.rate_state->fitted()) trace.refuse(trace.rate_state->reason);
 }
 
 }  // namespace
@@ -82,15 +97,22 @@ std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyO
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {
   IdentifyOptions kinematic = options;  // what effects of friction need is checked when they are fitted
   kinematic.effects = kinematic_effects(options.effects);
-  return prepare(input, kinematic, options.motion, Purpose::law);
+  return prepare(input, kinematic, options.motion, Purpose::anything);
 }
 
 void fit_trace(const IdentifyOptions& options, Identification& trace) {
+  if (!is_driven_in_steps(trace.motion.kind)) return fit_trace(options, trace.motion, trace);
   trace.fits.clear();
   trace.best = 0;
-  require_channels(friction_effects(options.effects), trace);
-  require_formulas(options.effects, trace);
-  if (trace.analysed) fit_laws(options, trace);
+  fit_driven(options, trace);
+}
+
+void fit_trace(const IdentifyOptions& options, const Motion& motion, TracePart& part) {
+  part.fits.clear();
+  part.best = 0;
+  require_channels(friction_effects(options.effects), motion, part);
+  require_formulas(options.effects, motion, part);
+  if (part.analysed) fit_laws(options, motion, part);
 }
 
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& options) {
@@ -134,7 +156,7 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
 
 TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions& options, const TwinOptions& more) {
   TwinIdentification out{prepare(input, options, options.motion, Purpose::rig), {}, {}};
-  require_formulas(options.effects, out.trace);
+  require_formulas(options.effects, out.trace.motion, out.trace);
   require_stick_slip(out.trace);
   fit_machines(options, out);
   compare_machines(options, more, out);

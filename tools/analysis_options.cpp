@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "console.hpp"
+#include "driven_options.hpp"
 #include "exit_status.hpp"
 #include "machine_options.hpp"
 #include "parameter_options.hpp"
@@ -112,6 +113,12 @@ std::optional<RecordKind> kind_from(const Settings& s) {
     throw UsageError(fmt::format("{} says --kind {}, and --kind {} another", option, to_string(kind), s.kind));
   };
   if (s.never_sticks) refuse_beside("--never-sticks", RecordKind::sliding);
+  if (names_load_point_speeds(s)) {
+    const auto stated = find_record_kind(s.kind);
+    if (stated && !is_driven_in_steps(stated))
+      throw UsageError("--speed by time is that of a load point: --kind velocity-steps or slide-hold-slide");
+    return stated ? stated : RecordKind::velocity_steps;
+  }
   const bool is_motion_only = !s.damping.empty() || !s.rubs_on.empty();
   if (is_motion_only) refuse_beside("--damping or --rubs-on", RecordKind::motion_only);
   if (is_motion_only || s.kind == to_string(RecordKind::motion_only)) return RecordKind::motion_only;
@@ -148,7 +155,7 @@ void read_conditions(const Settings& s, Conditions& conditions, std::vector<doub
       step_radii = radii;
     }
   }
-  const bool of_spring = kind_from(s) == RecordKind::spring_slider;
+  const bool of_spring = kind_from(s) == RecordKind::spring_slider || is_driven_in_steps(kind_from(s));
   if (!s.speed.empty() && !of_spring) conditions.speed = {speed_from(s.speed, conditions.radius), source};
   if (!s.load.empty()) conditions.load = {positive(s.load, Quantity::force, "--load"), source};
 }
@@ -236,6 +243,8 @@ IdentifyOptions options_from(const Settings& s) {
   options.motion.trim = s.trim;
   options.read.kind = kind_from(s);
   options.read.spring = spring_from(s);
+  options.read.load_point = load_point_from(s, options.read.kind);
+  options.rate_state = driven_options_from(s);
   if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
   if (options.read.kind && options.read.kind != RecordKind::stick_slip && !s.stick_below.empty())
     throw UsageError("--stick-below is for records that stick and slip, and excludes --never-sticks and other kinds");
@@ -274,6 +283,7 @@ TerminalOptions terminal_options(const Settings& s, const std::vector<std::strin
   options.width = terminal_width();
   options.instruments_declared = !s.instruments.empty();
   options.csv_written = !s.csv.empty();
+  options.report_written = !s.report.empty();
   options.arguments = arguments;
   return options;
 }

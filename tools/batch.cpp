@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -18,6 +14,7 @@
 
 #include "analysis_options.hpp"
 #include "console.hpp"
+#include "memory.hpp"
 #include "options.hpp"
 #include "results.hpp"
 #include "summary.hpp"
@@ -54,15 +51,6 @@ std::string default_results(const std::string& folder) {
   fs::path path = fs::weakly_canonical(folder, ignored);
   if (!path.has_filename()) path = path.parent_path();
   return path.filename().string() + "-results";
-}
-
-/// Blocks of the size of a channel go back to the system when they are freed, whichever thread freed them: else each
-/// thread's own heap keeps the largest trace it has seen.
-void give_memory_back() {
-#ifdef __GLIBC__
-  ::mallopt(M_MMAP_THRESHOLD, 4 << 20);
-  ::mallopt(M_TRIM_THRESHOLD, 4 << 20);  // small blocks are kept: asking for them anew costs more than they are worth
-#endif
 }
 
 /// What identifies a file; nothing where there is none.
@@ -167,18 +155,13 @@ class Watch {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
     std::string text = fmt::format("[{}/{}] {}", p.done, p.total, p.name);
     if (p.fitted_bytes > 0) {
-      text += "; " + left(elapsed.count() * static_cast<double>(p.left_bytes) / static_cast<double>(p.fitted_bytes));
+      text +=
+          "; " + time_left(elapsed.count() * static_cast<double>(p.left_bytes) / static_cast<double>(p.fitted_bytes));
     }
     line_.show(text, static_cast<double>(p.done) / static_cast<double>(p.total));
   }
 
  private:
-  static std::string left(double seconds) {
-    if (seconds < 90) return fmt::format("{:.0f} s left", seconds);
-    if (seconds < 5400) return fmt::format("{:.0f} min left", seconds / 60);
-    return fmt::format("{:.1f} h left", seconds / 3600);
-  }
-
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   ProgressLine line_;
 };
@@ -283,10 +266,11 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
     return ExitStatus::failed;
   }
   if (!s.quiet) {
-    for (const std::string& note : campaign.notes) print(note + "\n");
+    for (const std::string& note : campaign.notes) print(folded(note) + "\n");
     const std::string folder = as_folder(batch.results);
-    print(fmt::format("{}; results in {}{}\n", counts(outcome), folder,
-                      s.out.empty() ? " (name another folder with --out)" : ""));
+    print(folded(fmt::format("{}; results in {}{}", counts(outcome), folder,
+                             s.out.empty() ? " (name another folder with --out)" : "")) +
+          "\n");
     print(s.shard.empty()
               ? next_after(campaign, outcome, arguments)
               : fmt::format("\nNext, when every shard is done:\n  identify merge {}\n", shell_quoted(folder)));

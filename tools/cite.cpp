@@ -12,6 +12,7 @@
 #include "exit_status.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/friction/laws/all.hpp"
+#include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -39,6 +40,11 @@ std::string source_of(const std::string& name) {
     const std::string key(to_string(law));
     if (key == name) return fmt::format("  {} law: {}; {}\n", name, info.equation, info.source);
     known.push_back(key);
+  }
+  for (const StateEvolution evolution : state_evolutions) {
+    if (law_name(evolution) == name)
+      return fmt::format("  {}: {}; {}\n", name, equation_of(evolution), source_of(evolution));
+    known.push_back(law_name(evolution));
   }
   for (const Effect& effect : effect_catalogue()) {
     const EffectInfo info = describe(effect);
@@ -89,8 +95,9 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
     names.push_back(effect.get<std::string>());
     effects += (effects.empty() ? " with " : " and ") + names.back();
   }
-  const std::string cycles =
-      fit.at("cycles").is_number() ? fmt::format(" over {} cycles", fit.at("cycles").get<int>()) : "";
+  const std::string cycles = fit.at("cycles").is_number() && fit.at("cycles").get<int>() > 0
+                                 ? fmt::format(" over {} cycles", fit.at("cycles").get<int>())
+                                 : "";
   std::string text =
       fmt::format("  From a {} record of {} samples{} the {} law{} was identified with tribofit {}{}: ",
                   trace.at("kind").get<std::string>(), trace.at("samples").get<long long>(), conditions_of(result),
@@ -100,7 +107,7 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
   text += values + " (value +/- standard error [95 % interval]).";
   const Json& error = fit.at("error").at("held_out_rmse");
   if (error.is_number() && fit.at("floor_rmse").is_number()) {
-    text += fmt::format(" The error on cycles held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",
+    text += fmt::format(" The error on what was held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",
                         error.get<double>(), fit.at("floor_rmse").get<double>());
   }
   if (fit.at("conditional").get<bool>())
@@ -156,7 +163,11 @@ void add_cite(const Command& app) {
   const auto what = std::make_shared<std::vector<std::string>>();
   verb.add_option("WHAT", *what, "Laws, effects, results (.json)");
   verb.on_run([what] {
-    print(citation(*what));
+    std::string text;
+    for (const std::string& line : split(citation(*what), '\n'))
+      text += folded(line, line.starts_with("  ") ? 4 : 0) + "\n";
+    while (text.ends_with("\n\n")) text.pop_back();
+    print(text);
     return ExitStatus::done;
   });
 }

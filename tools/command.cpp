@@ -4,6 +4,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -19,7 +20,7 @@ constexpr std::size_t kHelpColumn = 30;
 bool shapes_analysis(const Command::Typed& option) {
   const std::string& s = option.section;
   return !option.is_positional && s != section::kOutput && s != section::kBatch && s != section::kTogether &&
-         s != section::kServer;
+         s != section::kServer && s != section::kMeans;
 }
 
 /// The option meant by a misspelt one, for the message.
@@ -65,6 +66,69 @@ void add_typables(const CLI::App& app, const std::vector<std::string>& verb, std
     add_typables(*sub, longer, out);
   }
 }
+
+/// Where a command of an example may go on in the next line: before an option, else at the last blank.
+std::size_t break_of_command(const std::string& line, std::size_t width) {
+  constexpr std::size_t kContinued = 6;  // blanks before it
+  const std::size_t last = std::min(width - 2, line.size() - 1);
+  const std::size_t option = line.rfind(" -", last), blank = line.rfind(' ', last);
+  if (option != std::string::npos && option > kContinued + 10) return option;
+  return blank != std::string::npos && blank > kContinued ? blank : std::string::npos;
+}
+
+/// A line of an example, "  identify ...    what for", as lines of the width: what it is for below it, where both do
+/// not fit beside each other.
+std::string folded_example(const std::string& line, std::size_t width) {
+  if (line.size() <= width) return line + "\n";
+  const std::size_t gap = line.find("  ", line.find_first_not_of(' '));
+  if (gap != std::string::npos) {
+    const std::string what = line.substr(line.find_first_not_of(' ', gap));
+    return folded_example(line.substr(0, gap), width) + "      " + folded(std::string(6, '#') + what, 6).substr(6) +
+           "\n";
+  }
+  const std::size_t at = break_of_command(line, width);
+  if (at == std::string::npos) return line + "\n";
+  return line.substr(0, at) + " \\\n" + folded_example("      " + line.substr(at + 1), width);
+}
+
+/// The help of CLI11 with lines no wider than the terminal.
+class FoldedHelp : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    constexpr std::size_t kNarrowest = 80, kWidest = 120;
+    const std::size_t width = std::clamp(terminal_width(), kNarrowest, kWidest);
+    std::string out, sentence;  // lines of prose are put together again
+    const auto flush = [&] {
+      if (!sentence.empty()) out += folded(sentence) + "\n";
+      sentence.clear();
+    };
+    for (const std::string& line : tribofit::split(CLI::Formatter::make_help(app, std::move(name), mode), '\n')) {
+      const bool is_prose = !line.empty() && line[0] != ' ' && line.back() != ':' && !line.starts_with("Usage");
+      if (is_prose) {
+        sentence += (sentence.empty() ? "" : " ") + line;
+        continue;
+      }
+      flush();
+      if (line.starts_with("  identify") || line.starts_with("  source") || line.starts_with("      ")) {
+        const bool is_column = line.find_first_not_of(' ') >= kHelpColumn;
+        out += is_column ? line.substr(0, kHelpColumn) + folded_after(line.substr(kHelpColumn)) + "\n"
+                         : folded_example(line, width);
+      } else if (line.size() > kHelpColumn && line.starts_with("  ")) {
+        out += line.substr(0, kHelpColumn) + folded_after(line.substr(kHelpColumn)) + "\n";
+      } else {
+        out += line + "\n";
+      }
+    }
+    flush();
+    while (out.ends_with("\n\n")) out.pop_back();
+    return out;
+  }
+
+ private:
+  static std::string folded_after(const std::string& text) {
+    return folded(std::string(kHelpColumn, '#') + text, kHelpColumn).substr(kHelpColumn);
+  }
+};
 
 ExitStatus wrong_usage(const CLI::App& app, const std::string& text) {
   const auto verbs = app.get_subcommands();
@@ -117,6 +181,13 @@ Option Option::range(double least, double most) const {
 
 Option Option::range(int least, int most) const {
   return checked(parsed_, CLI::Range(least, most));
+}
+
+std::string Command::likely_verb(const std::string& word) const {
+  std::vector<std::string> known;
+  for (const CLI::App* sub : app_->get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(sub->get_name());
+  return tribofit::likely_name(word, known);
 }
 
 Command Command::add_verb(const char* name, const char* help) const {
@@ -225,12 +296,16 @@ ExitStatus run_program(const Program& program, int argc, char** argv,
                        const std::function<void(const Command&)>& setup) {
   CLI::App app(program.description, program.name);
   app.footer(program.footer);
+  app.formatter(std::make_shared<FoldedHelp>());
   app.get_formatter()->column_width(kHelpColumn);
   app.set_version_flag("--version", program.version, "Print the version and exit");
   ExitStatus status = ExitStatus::done;
   setup(Command(app, status));
   try {
-    app.parse(argc, argv);
+    std::vector<const char*> words(argv, argv + argc);
+    // A subject may have the name of a verb, which the parser would take it for.
+    if (argc == 3 && std::string_view(argv[1]) == "help" && argv[2][0] != '-') words.insert(words.begin() + 2, "--");
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ExtrasError& error) {
     return wrong_usage(app, error.what() + nearest_option(app, error.what()));
   } catch (const CLI::ParseError& error) {

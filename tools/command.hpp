@@ -17,7 +17,8 @@ class Option;
 /// a result names.
 namespace section {
 inline constexpr const char *kConditions = "Conditions", *kReading = "Reading", *kOutput = "Output", *kBatch = "Batch",
-                            *kTogether = "Runs together", *kServer = "Server", *kStudy = "Study";
+                            *kTogether = "Runs together", *kMeans = "What can be done", *kServer = "Server",
+                            *kStudy = "Study";
 }
 
 /// One option of a command. It is filled in when the command line is parsed.
@@ -48,6 +49,8 @@ class Command {
   Command(CLI::App& app, ExitStatus& status) : app_(&app), status_(&status) {}
 
   Command add_verb(const char* name, const char* help) const;
+  /// The verb that a word is likely to mean; empty where it is like none.
+  std::string likely_verb(const std::string& word) const;
   void footer(const char* text) const;
   void narrow_help() const;
   /// The verb has kinds of its own; `advice` is the usage error where none is named.

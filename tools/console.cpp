@@ -95,19 +95,71 @@ void progress(const std::string& text) {
 ProgressLine::ProgressLine() : watched_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
-  if (watched_ && next_ != std::chrono::steady_clock::time_point{}) std::fputs("\r\033[K", stderr);
+  end();
+}
+
+void ProgressLine::end() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+}
+
+std::string time_left(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600;
+  char text[32];
+  if (seconds < 1.5 * kMinute) {
+    std::snprintf(text, sizeof text, "%.0f s left", std::max(1.0, seconds));
+  } else if (seconds < 1.5 * kHour) {
+    std::snprintf(text, sizeof text, "%.0f min left", seconds / kMinute);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f h left", seconds / kHour);
+  }
+  return text;
 }
 
 void ProgressLine::show(std::string_view words, double part) {
+  constexpr std::size_t kBar = 20;
   if (!watched_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(100);
-  const std::string what = tribofit::printable(words);
-  const std::size_t room = std::max<std::size_t>(terminal_width(), 20) - 8;  // a line that wraps cannot be rewritten
-  const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
-  std::fprintf(stderr, "\r\033[K%3d %%  %.*s", percent, static_cast<int>(std::min(what.size(), room)), what.data());
+  part = std::clamp(part, 0.0, 1.0);
+  std::string what = tribofit::printable(words);
+  const double elapsed = std::chrono::duration<double>(now - begin_).count();
+  const bool says_time = what.find(" left") != std::string::npos;
+  if (!says_time && elapsed > 1 && part > 0.02) what += "; " + time_left(elapsed * (1 - part) / part);
+  std::string bar(static_cast<std::size_t>(part * kBar), '#');
+  bar.resize(kBar, '-');
+  const std::size_t before = kBar + 10;
+  const std::size_t width = std::max<std::size_t>(terminal_width(), before + 10);
+  const std::size_t room = width - before;  // a line that wraps cannot be rewritten
+  std::fprintf(stderr, "\r\033[K[%s] %3d %%  %.*s", bar.c_str(), static_cast<int>(100 * part),
+               static_cast<int>(std::min(what.size(), room)), what.data());
   std::fflush(stderr);
+  shown_ = true;
+}
+
+std::string folded(const std::string& sentence, std::size_t indent) {
+  constexpr std::size_t kNarrowest = 80, kWidest = 120;
+  const std::size_t width = std::clamp(terminal_width(), kNarrowest, kWidest);
+  std::string out;
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < sentence.size();) {
+    const std::size_t end = std::min(sentence.find(' ', at), sentence.size());
+    const std::string_view word = std::string_view(sentence).substr(at, end - at);
+    const auto length = static_cast<std::size_t>(std::count_if(
+        word.begin(), word.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+    if (column > indent && column + 1 + length > width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (at > 0) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += length;
+    at = end + 1;
+  }
+  return out;
 }
 
 void print_error(const std::string& text) {

@@ -19,6 +19,9 @@ bool wants_unicode();
 /// Columns to write: COLUMNS where it is set, else those of the terminal, else 80.
 std::size_t terminal_width();
 
+/// "45 s left", "3 min left", "1.5 h left".
+std::string time_left(double seconds);
+
 /// One line to standard error, only where a person watches.
 void progress(const std::string& text);
 
@@ -29,13 +32,18 @@ class ProgressLine {
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
-  /// What is being done and the part done, 0 to 1.
+  /// What is being done and the part done, 0 to 1: a bar, and the time left from a second on.
   void show(std::string_view what, double part);
+  /// Takes the line away; the destructor does, too.
+  void end();
 
  private:
-  bool watched_;
-  std::chrono::steady_clock::time_point next_{};
+  bool watched_, shown_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), next_{};
 };
+
+/// A sentence broken to the width of the terminal, at most 120; lines after the first have `indent` blanks.
+std::string folded(const std::string& sentence, std::size_t indent = 0);
 
 /// "identify: error: TEXT" to standard error.
 void print_error(const std::string& text);

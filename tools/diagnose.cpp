@@ -1,21 +1,15 @@
-#include <algorithm>
-#include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "analysis_options.hpp"
 #include "console.hpp"
+#include "diagnosed_runs.hpp"
 #include "inputs.hpp"
 #include "options.hpp"
 #include "results.hpp"
-#include "stated_value.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
@@ -36,113 +30,6 @@ constexpr const char* kDiagnoseFooter =
     "  identify diagnose --radius 15mm trace.csv\n"
     "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"
     "  identify diagnose --confirm runs/r4.csv runs/";
-
-void check_usage(const Settings& s, const Split& split) {
-  if (split.diagnosed.empty())
-    throw UsageError("every trace is held back to confirm the finding; leave one to diagnose");
-  if (split.diagnosed.size() > 1 && (!s.second_file.empty() || !s.continued_in.empty())) {
-    throw UsageError("--with and --continue need one trace at a time");
-  }
-  for (std::size_t k = 0; k < split.diagnosed.size(); ++k) {  // the same evidence may not count twice
-    for (std::size_t earlier = 0; earlier < k; ++earlier) {
-      const std::string& path = split.diagnosed[k].trace.path;
-      if (same_file(split.diagnosed[earlier].trace.path, path)) throw UsageError(path + " is given twice");
-    }
-  }
-  std::vector<std::string> files = input_files(s);
-  for (const auto* inputs : {&split.diagnosed, &split.kept}) {
-    for (const Input& input : *inputs) files.push_back(input.trace.path);
-  }
-  refuse_overwriting(s, files);
-}
-
-std::vector<TraceInput> traces_of(const std::vector<Input>& inputs) {
-  std::vector<TraceInput> traces;
-  for (const Input& input : inputs) traces.push_back(input.trace);
-  return traces;
-}
-
-/// What is known of the inputs besides the data stands with the trace it is about, or with the first.
-void add_remarks(const Split& split, DiagnosedTraces& result) {
-  for (const Input& input : split.diagnosed) {
-    for (Identification& trace : result.traces) {  // copies of a run are not among them
-      if (trace.path != input.trace.path) continue;
-      const bool is_first = &trace == &result.traces.front();
-      if (is_first) trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
-      trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
-    }
-  }
-  if (result.traces.empty()) return;
-  std::vector<std::string>& notes = result.traces.front().notes;
-  notes.insert(notes.end(), split.notes.begin(), split.notes.end());
-  for (const Input& input : split.kept) {
-    std::vector<std::string>& warnings = result.traces.front().warnings;
-    warnings.insert(warnings.end(), input.warnings.begin(), input.warnings.end());
-  }
-}
-
-std::string reason_of(const DiagnosedTraces& result) {
-  for (const Identification& trace : result.traces) {
-    if (!trace.analysed && !trace.warnings.empty()) return trace.path + ": " + trace.warnings.back();
-  }
-  if (!result.diagnosis.messages.empty()) return result.diagnosis.messages.front();
-  return "there are too few cycles to hold any out";
-}
-
-/// Records that are not used, and why.
-struct LeftOut {
-  std::vector<std::string> reasons;
-  bool any_read = false;  ///< one could be read, but not analysed
-};
-
-/// Whether a record can be diagnosed; adds to `left_out` where it cannot.
-bool is_usable(const Input& input, const IdentifyOptions& options, LeftOut& left_out) {
-  std::string reason = input.problem;
-  try {
-    if (reason.empty()) {
-      const Identification trace = prepare_trace(input.trace, options);
-      if (trace.analysed) return true;
-      left_out.any_read = true;
-      reason = input.trace.path + ": " + (trace.warnings.empty() ? "it cannot be analysed" : trace.warnings.back());
-    }
-  } catch (const InputError& error) {
-    reason = error.what();
-  }
-  std::vector<std::string>& reasons = left_out.reasons;  // a run of --confirm may be among the traces, too
-  if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(std::move(reason));
-  return false;
-}
-
-/// The runs that can be used. A single one is taken as it is: the diagnosis itself says what stops it.
-Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& left_out) {
-  FindOptions find;
-  find.errors = ManifestErrors::collect;
-  Campaign campaign = find_runs(s.traces, options.read, find);
-  left_out.reasons = std::move(campaign.problems);
-  std::vector<Input>& runs = campaign.runs;
-  if (runs.size() == 1 && !runs.front().problem.empty()) {
-    find_runs(s.traces, options.read);  // refuses it with its place
-    throw InputError(runs.front().problem, "");
-  }
-  check_usage(s, keep_for_confirmation(runs, s.confirm, options.read));
-  const auto unusable = [&](const Input& input) { return !is_usable(input, options, left_out); };
-  if (runs.size() > 1) std::erase_if(runs, unusable);
-  if (runs.empty()) return {};
-  Split split = keep_for_confirmation(std::move(runs), s.confirm, options.read);
-  if (!s.confirm.empty()) std::erase_if(split.kept, unusable);
-  return split;
-}
-
-/// The moment at which a time that begins now is over.
-std::optional<std::chrono::steady_clock::time_point> end_of(const std::string& time_limit) {
-  using Clock = std::chrono::steady_clock;
-  if (time_limit.empty()) return std::nullopt;
-  constexpr double kLongest = 1e8;  // s, three years
-  const double seconds = stated_value(time_limit, Quantity::time, "--time-limit");
-  if (!(seconds > 0 && seconds < kLongest))
-    throw InputError("--time-limit: '" + time_limit + "' is no time to work in", "give a time such as 10s or 2min");
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);

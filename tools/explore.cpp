@@ -18,6 +18,7 @@
 #include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
+#include "memory.hpp"
 #include "options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -209,11 +210,12 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
     take_over(saved, s);
     arguments = saved_workbench(saved, s.session).arguments;
   }
+  keep_memory();
   WorkbenchSession session(options_for(s, arguments));
   if (!saved.empty()) session.load(saved, s.session);
   allow_many_connections();
   WorkbenchServer server(session, s.port);
-  print("The workbench for " + session.trace().path + " is at\n\n  " + server.address() +
+  print("The workbench for " + session.record().path + " is at\n\n  " + server.address() +
         "\n\nOpen it in a browser on this machine. Ctrl-C ends it.\n");
   serve(server);
   return ExitStatus::done;

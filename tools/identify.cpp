@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -58,7 +61,8 @@ ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions&
               [&](const std::string& folder) { write_csv_folder(folder, result); }});
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  if ((result.analysed && fitted) || result.force_statistics) return ExitStatus::done;
+  const bool driven = result.rate_state && result.rate_state->fitted();
+  if ((result.analysed && (fitted || driven)) || result.force_statistics) return ExitStatus::done;
   std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
   print_error(input.trace.path + ": the analysis could not be done: " + reason);
   return ExitStatus::failed;
@@ -104,6 +108,16 @@ void add_fit_options(const Command& app, Settings& s) {
   app.add_flag("--profile", s.profile, "Profile likelihood intervals as well").group("Law and fit");
 }
 
+/// Usage error: a verb that is misspelt is taken for a trace, and no file has its name.
+void refuse_misspelt_verb(const Command& app, const std::vector<std::string>& traces) {
+  if (traces.empty() || traces.front().find_first_of("./") != std::string::npos) return;
+  if (std::error_code ignored; std::filesystem::exists(traces.front(), ignored)) return;
+  const std::string verb = app.likely_verb(traces.front());
+  if (!verb.empty())
+    throw UsageError(
+        fmt::format("'{}' is neither a verb nor a file; did you mean `identify {}`?", traces.front(), verb));
+}
+
 NamePattern pattern_from(const std::string& text) {
   try {
     return NamePattern(text);
@@ -133,6 +147,7 @@ void add_identify(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   add_input_options(app, *settings);
   add_spring_options(app, *settings);
+  add_driven_options(app, *settings);
   add_fit_options(app, *settings);
   add_output_options(app, *settings);
   add_report_option(app, *settings);
@@ -144,6 +159,7 @@ void add_identify(const Command& app) {
   });
   app.on_run([settings, app] {
     app.refuse_empty_values();
+    refuse_misspelt_verb(app, settings->traces);
     check_seed(*settings);
     return run_identify(*settings, app.own_options());
   });

@@ -23,6 +23,7 @@ constexpr const char* kProgramFooter =
     "  identify --radius 15mm trace.csv\n"
     "  identify --radius 15mm --effect viscous --csv out/ trace.csv\n"
     "  identify diagnose --radius 15mm trace.csv\n"
+    "  identify plan --radius 15mm --speeds 1rpm..8rpm trace.csv   the run that settles what is open\n"
     "  identify rig --radius 15mm --load 50N trace.csv    mass, damping and stiffness behind it\n"
     "  identify twin --radius 15mm --load 50N trace.csv   the motion that law and rig predict\n"
     "  identify runs/                     every trace of a folder, results in runs-results/\n"
@@ -39,6 +40,7 @@ ExitStatus run(int argc, char** argv) {
     add_manifest(identify);
     add_merge(identify);
     add_diagnose(identify);
+    add_plan(identify);
     add_explore(identify);
     add_rig(identify);
     add_twin(identify);

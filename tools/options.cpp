@@ -2,6 +2,7 @@
 
 #include "parameter_options.hpp"
 #include "stated_value.hpp"
+#include "tribofit/fit/rate_state.hpp"
 #include "tribofit/ingest/record_kind.hpp"
 
 void add_input_options(const Command& app, Settings& s) {
@@ -9,7 +10,8 @@ void add_input_options(const Command& app, Settings& s) {
   app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm")
       .group(section::kConditions);
   app.add_option("--speed", s.speed,
-                 "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau)")
+                 "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau); of a load point "
+                 "by time, 0s:2um/s,60s:10um/s")
       .group(section::kConditions);
   app.add_option("--load", s.load, "Normal force, 50N").group(section::kConditions);
   app.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties")
@@ -26,9 +28,9 @@ void add_input_options(const Command& app, Settings& s) {
   input("--with-units", s.second_units, "--units of the second file").one_value_each();
   input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
 
-  input(
-      "--kind", s.kind,
-      "What was recorded, stick-slip, sliding, points, spring-slider, motion-only or force-only (identify help kinds)")
+  input("--kind", s.kind,
+        "What was recorded: stick-slip, sliding, points, spring-slider, motion-only, force-only, velocity-steps or "
+        "slide-hold-slide (identify help kinds)")
       .one_of(tribofit::record_kind_names());
   app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group(section::kReading);
   input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
@@ -47,6 +49,22 @@ void add_spring_options(const Command& app, Settings& s) {
   add("--damping", s.damping, "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
   add("--rubs-on", s.rubs_on, "What the mass rubs on there: ground or base (else as the motion shows it)")
       .one_of({"ground", "base"});
+}
+
+void add_driven_options(const Command& app, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return app.add_option(name, value, help).group("Velocity steps and holds");
+  };
+  add("--evolution", s.evolutions, "Law of the state, ageing or slip (repeatable; default both)")
+      .one_of(tribofit::state_evolution_names())
+      .one_value_each();
+  add("--states", s.states, "State variables, 1 (default) or 2").range(1, 2);
+  add("--detrend", s.detrend,
+      "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
+      .one_of(tribofit::detrend_names());
+  add("--reference-speed", s.reference_speed, "v0, 1um/s (default: the speed before the first step)");
+  add("--from", s.from, "Nothing before this time is used, 120s");
+  add("--to", s.to, "Nothing after this time is used, 900s");
 }
 
 void add_model_options(const Command& app, Settings& s) {

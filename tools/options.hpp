@@ -12,6 +12,8 @@ void add_input_options(const Command& app, Settings& settings);
 /// What draws a slider of which only the pull was recorded.
 void add_spring_options(const Command& app, Settings& settings);
 /// Laws, effects and how they are fitted.
+/// Of a contact whose load point is driven in steps.
+void add_driven_options(const Command& app, Settings& s);
 void add_model_options(const Command& app, Settings& settings);
 /// Which cycles and stretches of time are fitted.
 void add_selection_options(const Command& app, Settings& settings);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "driven_options.hpp"
 #include "exit_status.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -146,11 +147,19 @@ std::vector<GivenParameter> given_from(const Settings& s, const std::vector<Law>
   std::vector<GivenParameter> given;
   if (s.start_values.empty() && s.bounds.empty()) return given;
   const std::vector<Slot> slots = slots_of(laws, effects);
+  // Those of velocity steps are read by driven_options.cpp; the file may yet show that it is a record of them.
+  const auto of_state = [&](const std::string& name) {
+    return is_rate_state_parameter(s, name) && std::none_of(slots.begin(), slots.end(), [&](const Slot& slot) {
+             return slot.parameter.name == name || slot.full_name() == name;
+           });
+  };
   for (const auto& [name, text] : pairs_from(s.start_values, "--start", "NAME=VALUE, as in alpha=0.05s/mm")) {
+    if (of_state(name)) continue;
     const Slot& slot = slot_named(name, slots, "--start");
     entry_of(name, given).start = si_from(number_from(text, "--start"), slot, "--start");
   }
   for (const auto& [name, text] : pairs_from(s.bounds, "--bounds", "NAME=FROM..TO, as in alpha=0.01..0.2s/mm")) {
+    if (of_state(name)) continue;
     const Slot& slot = slot_named(name, slots, "--bounds");
     const auto [low, high] = range_from(text, "--bounds", "alpha=0.01..0.2s/mm");
     const GivenParameter::Bounds bounds = {si_from(low, slot, "--bounds"), si_from(high, slot, "--bounds")};

@@ -1,11 +1,15 @@
 #include "results.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "tribofit/ingest/output_tables.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/report/page.hpp"
 
 using namespace tribofit;
@@ -44,7 +48,41 @@ void check_figures(const Settings& s) {
   }
 }
 
+/// Bytes of a file, or of the files in a folder.
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return std::filesystem::file_size(path, error);
+  std::uintmax_t bytes = 0;
+  for (std::filesystem::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
+    if (std::error_code ignored; at->is_regular_file(ignored)) bytes += at->file_size(ignored);
+  }
+  return bytes;
+}
+
+std::string size_text(std::uintmax_t bytes) {
+  const double size = static_cast<double>(bytes);
+  if (size < 1e3) return fmt::format("{} bytes", bytes);
+  if (size < 1e6) return fmt::format("{:.{}f} kB", size / 1e3, size < 1e4 ? 1 : 0);
+  return fmt::format("{:.{}f} MB", size / 1e6, size < 1e7 ? 1 : 0);
+}
+
+/// "wrote FILE (2.1 MB)", a line each.
+std::string written(const Settings& s, bool with_csv) {
+  std::string text;
+  const auto add = [&](const std::string& path) {
+    if (std::error_code ignored; path.empty() || !std::filesystem::exists(path, ignored)) return;
+    text += (text.empty() ? "\n" : "") + written_line(path);
+  };
+  add(s.json), add(s.report), add(s.figures);
+  if (with_csv) add(s.csv);
+  return text;
+}
+
 }  // namespace
+
+std::string written_line(const std::string& path) {
+  return fmt::format("wrote {} ({})\n", printable(path), size_text(size_of(path)));
+}
 
 ReportFiles::ReportFiles(const Settings& s, const std::function<Report()>& make) {
   if (s.report.empty() && s.figures.empty()) return;
@@ -72,7 +110,8 @@ void deliver(const Settings& s, const Outputs& outputs) {
   if (!s.csv.empty() && outputs.csv) outputs.csv(s.csv);
   drawn.commit();
   if (json) json->commit();
-  if (!s.quiet && s.json != "-") print(outputs.text());
+  if (s.quiet || s.json == "-") return;
+  print(outputs.text() + written(s, outputs.csv != nullptr));
 }
 
 bool same_file(const std::string& a, const std::string& b) {

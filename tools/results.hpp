@@ -32,8 +32,13 @@ struct Outputs {
 };
 
 /// Writes what was asked for of one result (--json, --report, --figures, --csv), all of it or none: the others are on
-/// the disc before the CSV gets its names, and get their own after it. Then prints the text, unless --quiet.
+/// the disc before the CSV gets its names, and get their own after it. Then prints the text and what was written,
+/// unless
+/// --quiet.
 void deliver(const Settings& settings, const Outputs& outputs);
+
+/// "wrote FILE (2.1 MB)"; of a folder with the size of what it holds.
+std::string written_line(const std::string& path);
 
 /// Whether two names lead to one file.
 bool same_file(const std::string& a, const std::string& b);

@@ -10,6 +10,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/json.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
@@ -34,7 +35,10 @@ ExitStatus run_rig(const Settings& s, const std::vector<std::string>& arguments)
   trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
   trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
   deliver(s, {[&] { return render_rig(result, terminal_options(s, arguments_for(input, arguments))); },
-              [&] { return to_json(result, {arguments}); }});
+              [&] { return to_json(result, {arguments}); },
+              [&] {
+                return report_of(result, {arguments, {input.trace.path}, !s.instruments.empty()});
+              }});
   if (result.rig.determined) return ExitStatus::done;
   print_error(trace.path + ": the rig could not be identified: " + result.rig.reason);
   return ExitStatus::failed;
@@ -51,6 +55,7 @@ void add_rig(const Command& app) {
                 "Do not undo a high-pass found on the velocity (one that is declared is undone)")
       .group(section::kReading);
   add_result_options(verb, *settings);
+  add_report_option(verb, *settings);
   verb.on_run([settings, verb] {
     verb.refuse_empty_values();
     return run_rig(*settings, verb.own_options());

@@ -11,9 +11,12 @@ struct Settings {
   std::string second_file;
   std::vector<std::string> second_columns, second_units;
   std::vector<std::string> continued_in;
-  std::vector<std::string> confirm;               // diagnose: runs held back
-  std::string time_limit;                         // diagnose
-  std::string kind;                               // of the record; empty: found
+  std::vector<std::string> confirm;     // diagnose: runs held back
+  std::string time_limit;               // diagnose
+  std::string kind;                     // of the record; empty: found
+  std::vector<std::string> evolutions;  // of velocity steps and holds
+  std::string detrend, reference_speed, from, to;
+  int states = 1;
   std::string stiffness, mass, damping, rubs_on;  // of a mass on a spring
   bool trim = true;
   bool never_sticks = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -16,8 +15,10 @@
 #include <vector>
 
 #include "console.hpp"
+#include "fixed_decimals.hpp"
 #include "machine_options.hpp"
 #include "simulated_drive.hpp"
+#include "simulated_steps.hpp"
 #include "stated_value.hpp"
 #include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/friction/model.hpp"
@@ -47,6 +48,7 @@ struct SimulateRequest {
   std::string seed_text = "1";
   std::uint64_t seed = 1;
   bool quiet = false;
+  StepsRequest steps;
 };
 
 /// What is simulated.
@@ -156,47 +158,6 @@ struct Column {
   double per_si;
   int decimals;
 };
-
-/// Appends value with a fixed number of decimals; the integer route is several times faster than printing a double, and
-/// open to those whose digits fit into an integer.
-void append_fixed(std::string& text, double value, int decimals) {
-  constexpr double kLargest = 1e9;
-  if (!(std::abs(value) < kLargest)) {
-    if (!std::isfinite(value)) {
-      throw InputError("the simulated record holds a value that is no finite number",
-                       "give friction, rig and sensors smaller values");
-    }
-    text += fmt::format("{:.{}f}", value, decimals);
-    return;
-  }
-  constexpr std::array<double, 10> kPower = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-  const auto scaled = std::llround(value * kPower[static_cast<std::size_t>(decimals)]);
-  const auto unit = static_cast<long long>(kPower[static_cast<std::size_t>(decimals)]);
-  std::array<char, 24> digits{};
-  const long long magnitude = scaled < 0 ? -scaled : scaled;
-  if (scaled < 0) text += '-';
-  const auto put = [&](long long n, std::size_t width) {
-    const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr;
-    const auto length = static_cast<std::size_t>(end - digits.data());
-    if (length < width) text.append(width - length, '0');
-    text.append(digits.data(), length);
-  };
-  put(magnitude / unit, 1);
-  if (decimals == 0) return;
-  text += '.';
-  put(magnitude % unit, static_cast<std::size_t>(decimals));
-}
-
-/// Decimals that give every multiple of the sampling interval exactly, at most nine.
-int time_decimals(double rate) {
-  double ticks = 1 / rate;
-  int decimals = 0;
-  while (decimals < 9 && std::abs(ticks - std::round(ticks)) > 1e-9 * ticks) {
-    ticks *= 10;
-    ++decimals;
-  }
-  return decimals;
-}
 
 void write_trace(WholeFile& file, const Trace& trace, const Plan& plan) {
   std::vector<Column> columns = {{"time_s", &trace.time, 1, time_decimals(plan.options.rate)},
@@ -310,11 +271,28 @@ std::string json_path(const std::string& csv) {
   return path;
 }
 
+/// Of a load point that is driven in steps: what is asked of every record, and what of it alone.
+StepsRequest steps_of(const SimulateRequest& request) {
+  if (request.speed_steps.empty())
+    throw InputError("the load point has no speeds", "give --speed-steps 0s:2um/s,60s:10um/s");
+  StepsRequest steps = request.steps;
+  steps.speeds = request.speed_steps;
+  steps.duration = request.duration;
+  steps.rate = request.rate;
+  steps.noise = request.noise_mu;
+  steps.noise_colour = request.noise_colour;
+  steps.out = request.out;
+  steps.seed = request.seed;
+  steps.quiet = request.quiet;
+  return steps;
+}
+
 void run_simulate(const SimulateRequest& request) {
   if (request.out == "-") {
     throw InputError("--out - is not a file", "two files are written, the trace and the truth beside it: give a name");
   }
   const std::string truth_path = json_path(request.out);
+  if (!request.steps.kind.empty()) return simulate_steps(steps_of(request), truth_path);
   const Plan plan = make_plan(request);
   WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
   const auto [motion, recording, floor] = simulate_recording(plan.machine.model, plan.machine.parameters,
@@ -350,11 +328,13 @@ void add_options(const Command& verb, SimulateRequest& r) {
   verb.add_option("--seed", r.seed_text, "Seed of noise and scatter").show_default();
   verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
+  add_steps_options(verb, r.steps);
   const char* rig = "Motion of the disc, load and temperature";
   group(rig, "--run-up", r.run_up, "Start from standstill and reach the speed in this time; else the start is settled");
   group(rig, "--reversing", r.reversing,
         "The disc goes forth and back as a sine of this frequency; --speed is its peak");
-  group(rig, "--speed-steps", r.speed_steps, "Speeds of the disc from times on, e.g. 0s:2rpm,10s:4rpm,20s:-4rpm");
+  group(rig, "--speed-steps", r.speed_steps,
+        "Speeds from times on, of the disc 0s:2rpm,10s:4rpm,20s:-4rpm, of a load point 0s:2um/s,60s:10um/s");
   group(rig, "--pause", r.pauses, "The disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
       .one_value_each();
   group(rig, "--load-swing", r.load_swing,

@@ -116,16 +116,6 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
   return axis;
 }
 
-/// Writes and prints what was asked for of a study.
-void deliver_study(const StudyRequest& r, Outputs outputs) {
-  if (!r.settings.csv.empty()) {
-    outputs.text = [text = std::move(outputs.text), folder = r.settings.csv] {
-      return text() + "\nTables in " + folder + "\n";
-    };
-  }
-  deliver(r.settings, outputs);
-}
-
 /// What every kind begins with.
 struct Begun {
   StudiedMachine machine;
@@ -152,10 +142,10 @@ Begun begin(StudyRequest& r, const Command& kind) {
 
 template <class Study>
 void deliver(const StudyRequest& r, const Begun& b, const Study& study) {
-  deliver_study(
-      r, {[&] { return render_study(b.machine, study, b.terminal); },
-          [&] { return study_json(b.machine, study, b.json); }, [&] { return report_of(b.machine, study, b.report); },
-          [&](const std::string& folder) { write_study(folder, study); }});
+  deliver(r.settings,
+          {[&] { return render_study(b.machine, study, b.terminal); },
+           [&] { return study_json(b.machine, study, b.json); }, [&] { return report_of(b.machine, study, b.report); },
+           [&](const std::string& folder) { write_study(folder, study); }});
 }
 
 void run_speed(StudyRequest& r, const Command& kind) {
@@ -166,7 +156,10 @@ void run_speed(StudyRequest& r, const Command& kind) {
   options.threads = r.settings.threads;
   options.points = r.points;
   if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.machine.machine);
+  ProgressLine line;
+  options.progress = [&line](double part) { line.show("motion over speed", part); };
   const SpeedStudy study = study_speed(b.machine.machine, options);
+  line.end();
   deliver(r, b, study);
 }
 
@@ -200,7 +193,10 @@ void run_sensitivity(StudyRequest& r, const Command& kind) {
   options.count = r.points;
   options.settle = b.settle;
   options.threads = r.settings.threads;
+  ProgressLine line;
+  options.progress = [&line](double part) { line.show("sweeps", part); };
   const std::vector<Sensitivity> study = study_sensitivity(b.machine.machine, options);
+  line.end();
   deliver(r, b, study);
 }
 
@@ -220,9 +216,10 @@ void run_map(StudyRequest& r, const Command& kind) {
     return true;
   });
   file.finish();
-  deliver_study(r, {[&] { return render_map(b.machine, request, file.rows(), measure, b.terminal); },
-                    [&] { return map_json(b.machine, request, file.rows(), b.json); },
-                    [&] { return report_of(b.machine, request, file.rows(), b.report); }});
+  progress.end();
+  deliver(r.settings, {[&] { return render_map(b.machine, request, file.rows(), measure, b.terminal); },
+                       [&] { return map_json(b.machine, request, file.rows(), b.json); },
+                       [&] { return report_of(b.machine, request, file.rows(), b.report); }});
 }
 
 Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,

@@ -84,9 +84,8 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   if (comparison) {
     write_whole(table.string(), comparison_csv(*comparison, groups));
     json = comparison_json(*comparison, groups);
-  } else {
-    std::error_code ignored;
-    fs::remove(table, ignored);  // of an earlier summary; it would not fit this one
+  } else if (std::error_code ignored; fs::exists(table, ignored)) {
+    out.note = table.string() + " is of an earlier run with --compare; give --compare again to renew it";
   }
   ReportFiles drawn(s, [&] { return report_of(results, runs, pooled, comparison, shown); });
   const TerminalOptions options = terminal_options(s, {});
@@ -94,6 +93,7 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   out.summary.table += pooled_table(pooled, options);
   if (comparison) out.summary.table += render_comparison(*comparison, groups, options);
   drawn.commit();
+  if (!out.note.empty()) out.summary.table += folded(out.note) + "\n";
   return out;
 }
 

@@ -25,6 +25,7 @@ struct Summarised {
   };
   tribofit::CampaignSummary summary;
   std::vector<Refusal> refused;
+  std::string note;  ///< what was left as it is; empty: nothing
 };
 
 /// Writes all that is made of the results of a campaign: summary, what the runs say together, figures and, where a

@@ -6,6 +6,7 @@
 #include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
+#include "memory.hpp"
 #include "options.hpp"
 #include "results.hpp"
 #include "tribofit/pipeline.hpp"
@@ -28,6 +29,7 @@ constexpr const char* kTwinFooter =
     "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
 
 ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments) {
+  give_memory_back();
   const IdentifyOptions options = options_from(s);
   const Input input = only_input(s, options.read, "twin");
   TwinIdentification result;

@@ -8,6 +8,7 @@ void add_columns(const Command& app);
 void add_manifest(const Command& app);
 void add_merge(const Command& app);
 void add_diagnose(const Command& app);
+void add_plan(const Command& app);
 void add_explore(const Command& app);
 void add_rig(const Command& app);
 void add_twin(const Command& app);

@@ -36,6 +36,8 @@ Identification prepare_trace(const TraceInput& input, const IdentifyOptions& opt
 /// The stage after them, for a trace that prepare_trace() made with the same effects of the motion and the same
 /// selection: fits take the place of those it has. Warnings are added to those it has.
 void fit_trace(const IdentifyOptions& options, Identification& trace);
+/// The same for a part of a trace whose motion others use at the same time.
+void fit_trace(const IdentifyOptions& options, const Motion& motion, TracePart& part);
 
 /// The stages in order: read, move, segment, fit, diagnose. options.effects are candidates of the user beside the
 /// catalogue (formulas), or part of the model from the start (catalogue effects). `options.read` is not used: each

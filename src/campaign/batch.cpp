@@ -71,7 +71,8 @@ std::string with_place(const InputError& error, const Run& run) {
 std::string failure_of(const Identification& result) {
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  if (result.analysed && fitted) return "";
+  const bool driven = result.rate_state && result.rate_state->fitted();
+  if (result.analysed && (fitted || driven)) return "";
   return result.warnings.empty() ? "no fit converged" : result.warnings.back();
 }
 

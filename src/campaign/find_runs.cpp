@@ -200,7 +200,7 @@ FolderTraces traces_in(const std::string& folder) {
                      "name a folder with .csv, .tsv, .mat, .uff, .unv or .tdms files, or a trace itself",
                      {folder, 0, ""});
   }
-  std::sort(found.paths.begin(), found.paths.end());
+  std::sort(found.paths.begin(), found.paths.end(), in_natural_order);
   return found;
 }
 

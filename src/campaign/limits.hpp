@@ -17,6 +17,10 @@ inline constexpr double kSameReading = 0.02;
 /// Different values of a condition that a trend needs: two determine a line and leave nothing to judge it by.
 inline constexpr std::size_t kFewestValuesOfTrend = 3;
 
+/// Share of its size by which radius, speed or load must vary for a trend: readings off a plateau of one speed differ
+/// by less. Larger: a small step of a condition goes without its trend.
+inline constexpr double kVaries = 0.005;
+
 /// Level of a test, after correction for the number of trends.
 inline constexpr double kSignificant = 0.05;
 

@@ -94,6 +94,29 @@ void take_fact(const RawFact& fact, StatedFields& stated) {
 
 }  // namespace
 
+bool in_natural_order(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, k = 0;
+  while (i < a.size() && k < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[k])) {
+      if (a[i] != b[k]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[k]);
+      ++i, ++k;
+      continue;
+    }
+    const auto number_at = [&](std::string_view text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string_view one = number_at(a, i), other = number_at(b, k);
+    if (one.size() != other.size()) return one.size() < other.size();
+    if (one != other) return one < other;
+  }
+  const std::size_t left = a.size() - i, other_left = b.size() - k;
+  return left != other_left ? left < other_left : a < b;  // 07 and 7 are one number
+}
+
 NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
   const std::string lower = lower_case(pattern);
   with_extension_ = lower.ends_with(".csv") || lower.ends_with(".tsv");

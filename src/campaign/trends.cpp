@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -27,6 +28,18 @@ std::size_t count_values(const std::vector<std::optional<double>>& numbers) {
     if (number) values.insert(*number);
   }
   return values.size();
+}
+
+/// A condition with a unit that stays within what readings of one value differ by: no line over it means anything.
+bool hardly_varies(const ConditionColumn& column) {
+  if (column.unit.empty()) return false;  // of a further column the scale is not known
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& number : column.number) {
+    if (!number) continue;
+    low = std::min(low, *number);
+    high = std::max(high, *number);
+  }
+  return high - low <= kVaries * std::max(std::abs(low), std::abs(high));
 }
 
 /// omega r, by which the surfaces pass one another while the block sticks.
@@ -52,7 +65,8 @@ std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
   ConditionColumn order{"order", "", {}, {}};
   for (const RunResult& run : runs) order.number.push_back(run.order);
   all.push_back(std::move(order));
-  std::erase_if(all, [](const ConditionColumn& column) { return count_values(column.number) < 2; });
+  std::erase_if(all,
+                [](const ConditionColumn& column) { return count_values(column.number) < 2 || hardly_varies(column); });
   return all;
 }
 

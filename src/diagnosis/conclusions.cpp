@@ -78,6 +78,11 @@ double removed_at(const Diagnosis& d, std::size_t rung) {
   return squares(0) > 0 ? std::clamp(1 - squares(rung) / squares(0), -9.99, 1.0) : std::nan("");
 }
 
+double error_of_share(double share, double held_out_rmse, double floor_rmse) {
+  const double above = held_out_rmse * held_out_rmse - floor_rmse * floor_rmse;
+  return above > 0 ? std::sqrt(std::clamp(share, 0.0, 1.0) * above) : 0;
+}
+
 bool is_confirmed(const Confirmation& c) {
   return c.p_value < diagnosis::limits::kChanceOfConfirmation && c.final_rmse < c.base_rmse;
 }

@@ -26,6 +26,9 @@ bool is_most(const Share& share);
 /// The finding about an effect; nullptr where there is none.
 const EffectFinding* finding_of(const Diagnosis& diagnosis, std::string_view key);
 
+/// The error that goes with a share of the squares above the noise floor [as the errors]; 0 where none is above it.
+double error_of_share(double share, double held_out_rmse, double floor_rmse);
+
 /// How a held-out error stands to the noise floor.
 enum class FloorComparison { unknown, below, at, above };
 FloorComparison against_floor(double held_out_rmse, double floor_rmse);

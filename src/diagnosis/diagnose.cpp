@@ -12,6 +12,7 @@
 #include "fit/spectral_lines.hpp"
 #include "imitations.hpp"
 #include "limits.hpp"
+#include "record_evidence.hpp"
 #include "rival_laws.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -36,64 +37,6 @@ class ProgressReporter {
   const std::function<void(std::string_view, double)>& progress_;
   std::mutex mutex_;
 };
-
-/// Everything these data offer to an effect.
-Channels all_channels(std::span<const Record> records) {
-  Channels all;
-  all.acceleration = all.distance = all.reversal_distance = all.stick_time = all.lead = !are_points(records);
-  const auto each = [&](auto has) { return std::all_of(records.begin(), records.end(), has); };
-  all.angle = each([](const Record& r) {
-    return !r.motion->disc_angle.empty() || !r.motion->disc_speed.empty() || r.motion->conditions.speed.known();
-  });
-  all.load = each([](const Record& r) { return !r.motion->load.empty() || r.motion->conditions.load.known(); });
-  all.temperature = each([](const Record& r) { return !r.motion->temperature.empty(); });
-  return all;
-}
-
-/// noise: of a sample of friction [1 or N]; it sets what a stick counts for.
-Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip,
-                         double noise) {
-  std::vector<Observations> parts;
-  for (const Record& record : records) {
-    parts.push_back(observe(*record.motion, *record.segmentation, channels, values_per_slip));
-    add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
-  }
-  return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
-}
-
-std::size_t count_cycles(std::span<const Record> records) {
-  std::size_t cycles = 0;
-  for (const Record& record : records) {
-    if (record.motion->is_points()) {
-      cycles += record.motion->size();
-      continue;
-    }
-    const bool sticks = record.segmentation->kind == MotionKind::stick_slip;
-    const auto& all = record.segmentation->cycles;
-    const auto taken = std::count_if(all.begin(), all.end(),
-                                     [&](const Cycle& cycle) { return record.segmentation->is_selected(cycle); });
-    cycles += sticks ? static_cast<std::size_t>(taken) : limits::kFewestCycles;
-  }
-  return cycles;
-}
-
-/// Sensor noise of all records, without a line that runs through it, and scatter of break-away.
-Floor floor_of(std::span<const Record> records) {
-  double noise = 0, scatter = 0, sampling = 0;
-  for (const Record& record : records) {
-    const Floor floor = estimate_floor(*record.motion, *record.segmentation);
-    const bool has_line = !record.motion->is_points() && floor.sampling == 0;
-    const double own = has_line ? noise_without_line(record, floor.noise) : floor.noise;
-    noise += std::pow(own, 2) / static_cast<double>(records.size());
-    scatter += std::pow(floor.scatter, 2) / static_cast<double>(records.size());
-    sampling += std::pow(floor.sampling, 2) / static_cast<double>(records.size());
-  }
-  Floor out;
-  out.noise = std::sqrt(noise);
-  out.scatter = std::sqrt(scatter);
-  out.sampling = std::sqrt(sampling);
-  return out;
-}
 
 Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
   Diagnosis out;
@@ -262,19 +205,6 @@ void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Dia
       "what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: {}", left_over,
       slow ? "most of it wanders slowly over time, as slow noise does"
            : "it changes from cycle to cycle, or with something that was not recorded"));
-}
-
-/// Values of a slip in which candidates are fitted.
-std::size_t fine_values(std::size_t cycles) {
-  return std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine);
-}
-
-/// And in which they are screened. A filter is not seen in means over more than its time.
-std::size_t coarse_values(std::span<const Record> records, std::size_t cycles) {
-  const bool filtered = std::any_of(records.begin(), records.end(),
-                                    [](const Record& record) { return record.motion->friction_low_pass.any(); });
-  if (filtered) return limits::kFewestFine;
-  return std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse);
 }
 
 }  // namespace

@@ -121,8 +121,8 @@ bool all_can_be_diagnosed(const std::vector<Effect>& effects, const EffectRoles&
                           std::vector<PreparedTrace>& traces) {
   bool all = true;
   for (PreparedTrace& prepared : traces) {
-    require_channels(effects, prepared.trace);
-    require_formulas(roles.candidates, prepared.trace);
+    require_channels(effects, prepared.trace.motion, prepared.trace);
+    require_formulas(roles.candidates, prepared.trace.motion, prepared.trace);
     all &= prepared.trace.analysed;
   }
   return all;
@@ -135,23 +135,6 @@ void take_rungs(std::vector<Fit> rungs, DiagnosedTraces& out) {
   if (rungs.size() > 1) out.fits.push_back(rungs.back());
   out.best = out.fits.size() - 1;
   out.rungs = std::move(rungs);
-}
-
-/// A fit of several records as the first of them has it.
-Fit of_first_record(const Fit& joint) {
-  Fit fit = joint;
-  fit.model = joint.model.of_one_record();
-  fit.parameters.clear();
-  fit.covariance.clear();
-  const std::size_t n = joint.parameters.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (joint.model.is_of_further_record(k)) continue;
-    fit.parameters.push_back(joint.parameters[k]);
-    for (std::size_t i = 0; i < n && !joint.covariance.empty(); ++i) {
-      if (!joint.model.is_of_further_record(i)) fit.covariance.push_back(joint.covariance[k * n + i]);
-    }
-  }
-  return fit;
 }
 
 /// What the run leaves where every parameter is its own.
@@ -192,6 +175,22 @@ std::string copy_of(const Identification& trace, const Identification& other) {
 }
 
 }  // namespace
+
+Fit of_first_record(const Fit& joint) {
+  Fit fit = joint;
+  fit.model = joint.model.of_one_record();
+  fit.parameters.clear();
+  fit.covariance.clear();
+  const std::size_t n = joint.parameters.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (joint.model.is_of_further_record(k)) continue;
+    fit.parameters.push_back(joint.parameters[k]);
+    for (std::size_t i = 0; i < n && !joint.covariance.empty(); ++i) {
+      if (!joint.model.is_of_further_record(i)) fit.covariance.push_back(joint.covariance[k * n + i]);
+    }
+  }
+  return fit;
+}
 
 EffectRoles roles_of(const std::vector<Effect>& effects) {
   EffectRoles roles;

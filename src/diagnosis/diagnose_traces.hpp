@@ -26,6 +26,9 @@ struct EffectRoles {
 };
 EffectRoles roles_of(const std::vector<Effect>& effects);
 
+/// A fit of several records as the first of them has it.
+Fit of_first_record(const Fit& joint);
+
 /// A trace as the diagnosis reads it. A high-pass that nobody declared is not undone where a contact that turns with
 /// the disc lets the plateau sag as well or better; a plateau that is off is corrected; a load that follows friction
 /// within every cycle is freed of it.

@@ -51,6 +51,10 @@ FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentatio
 /// the slip to the record.
 void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out);
 
+/// observe() without slow noise, which takes most of its time: enough to evaluate a model, not to fit one.
+Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
+                            std::size_t values_per_slip = 80);
+
 /// What a model leaves on every sample.
 struct SampleErrors {
   ErrorFigures figures;         ///< held_out_rmse not set

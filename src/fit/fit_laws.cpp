@@ -74,23 +74,23 @@ Observations observations_for(const FrictionModel& model, std::span<const Record
   return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
 }
 
-void fit_laws(const IdentifyOptions& options, Identification& trace) {
+void fit_laws(const IdentifyOptions& options, const Motion& motion, TracePart& part) {
   const std::vector<Effect> effects = friction_effects(options.effects);
-  if (slip_ranges(trace.motion, trace.segmentation).size() < kFewestCycles) {
-    trace.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
+  if (slip_ranges(motion, part.segmentation).size() < kFewestCycles) {
+    part.refuse("there are fewer than three cycles: no law can be fitted with an uncertainty");
     return;
   }
-  const Record record = {&trace.motion, &trace.segmentation};
-  auto fits = planned_fits(options, effects, !trace.motion.is_points());
-  trace.fits.resize(fits.size());
+  const Record record = {&motion, &part.segmentation};
+  auto fits = planned_fits(options, effects, !motion.is_points());
+  part.fits.resize(fits.size());
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
     auto& [model, fit] = fits[k];
     fit.threads = options.threads;  // one of them may take most of the time
     const Observations observations = observations_for(model, {&record, 1});
-    trace.fits[k] = fit_model(model, trace.motion, trace.segmentation, observations, options.instruments, fit);
+    part.fits[k] = fit_model(model, motion, part.segmentation, observations, options.instruments, fit);
   });
-  trace.best = best_of(trace.fits);
-  share_floor(trace.fits, trace.best);
+  part.best = best_of(part.fits);
+  share_floor(part.fits, part.best);
 }
 
 }  // namespace tribofit

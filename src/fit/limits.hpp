@@ -145,4 +145,31 @@ inline constexpr double kPartOfSmoothing = 0.5;
 /// a period follows a sine to 1e-3, and where a slip begins or ends to some more.
 inline constexpr double kSmoothedAcceleration = 1.5e-3;
 
+// ---- velocity steps and holds
+
+/// Part of the sliding at one speed that shows the level before the next step, and that belongs to the step before; of
+/// the sliding before the first step at most as much as is slid behind it: run-in is no level. Larger: steps whose
+/// decay is long lose their end; smaller: the level before a step is less well known.
+inline constexpr double kPartOfSlidingBehind = 0.7, kPartOfSlidingBefore = 0.3;
+/// Samples of a step, without which it shows nothing: a constant, a line and four parameters are asked of it.
+inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
+/// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by
+/// less than 1 % of their errors; and that the search begins with.
+inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
+/// A hold loads the contact as if the speed had changed by e^4.6 (a hundredfold), to begin with.
+inline constexpr double kHoldAsRatio = 4.6;
+/// Second D_c over the first, to begin with.
+inline constexpr double kSecondDistance = 8;
+/// By which the time of a step may be wrong, over the shorter sliding beside it where a person has noted it, and over
+/// the sampling interval where it was read from a recorded speed.
+inline constexpr double kSlackOfStated = 0.1, kSlackOfSpeed = 1;
+/// Bounds of a, b and k over the range of friction, and of D_c and k over what is slid in a sampling interval and in
+/// the longest step: nothing of the response is left to see beyond them.
+inline constexpr double kLeastOfRange = 1e-5, kLargestOfRange = 30, kLeastOfSampling = 0.03, kMostOfSliding = 10,
+                        kStiffestOfSampling = 30;
+/// Upper over lower end of an interval of D_c or k from which the value is not known: not to a factor of two.
+inline constexpr double kWidestInterval = 4;
+/// Degrees of freedom beyond which more make no difference.
+inline constexpr double kLargeFreedom = 1e6;
+
 }  // namespace tribofit

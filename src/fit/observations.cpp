@@ -353,8 +353,8 @@ Observations join(std::vector<Observations> records) {
   return out;
 }
 
-Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
-                     std::size_t values_per_slip) {
+Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
+                            std::size_t values_per_slip) {
   Observations out;
   out.slips = slip_ranges(motion, segmentation);
   out.cycles = out.slips.size();
@@ -384,9 +384,15 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
   add_channels(motion, segmentation, needs, reduce, out);
   stop_point();
   set_extent(out);
-  add_slow_noise(motion, segmentation, out);
   out.scales = scales_of({&out, 1});
   if (needs.lead) add_leads(motion, segmentation, out);
+  return out;
+}
+
+Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
+                     std::size_t values_per_slip) {
+  Observations out = observe_motion(motion, segmentation, needs, values_per_slip);
+  add_slow_noise(motion, segmentation, out);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <variant>
 
+#include "errors.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/segmentation/strokes.hpp"
@@ -35,9 +36,9 @@ std::vector<double> term_of(const Formula& formula, std::span<const double> p, c
 }
 
 /// Why a formula cannot be fitted to a trace, as a sentence. Empty where it can.
-std::string trouble_with(const Formula& formula, const Identification& trace) {
+std::string trouble_with(const Formula& formula, const Motion& motion, const TracePart& part) {
   const FrictionModel model(CoulombLaw{}, {formula});
-  const Observations observations = observe(trace.motion, trace.segmentation, model.needs());
+  const Observations observations = observe_motion(motion, part.segmentation, model.needs());
   const std::string key = formula.info().key;
   bool acts = observations.slips.empty();
   const std::vector<std::vector<double>> corners = corners_of(model);
@@ -83,34 +84,33 @@ MotionOptions with_corrections(MotionOptions options, std::span<const Effect> ef
   return options;
 }
 
-void require_channels(std::span<const Effect> effects, Identification& trace) {
-  const Motion& motion = trace.motion;
+void require_channels(std::span<const Effect> effects, const Motion& motion, TracePart& part) {
   const Channels needs = FrictionModel(ExponentialLaw{}, {effects.begin(), effects.end()}).needs();
   const auto require = [&](bool needed, bool present, const char* channel) {
     if (!needed || present) return;
-    trace.refuse(std::string("an effect needs the channel '") + channel + "', which this trace does not have");
+    part.refuse(std::string("an effect needs the channel '") + channel + "', which this trace does not have");
   };
   require(needs.load, !motion.load.empty(), "load");
   if (needs.force && motion.friction_kind != FrictionKind::force && motion.load.empty() &&
       !motion.conditions.load.known()) {
-    trace.refuse("an effect needs the normal force, which is not known: give it with --load 50N");
+    part.refuse("an effect needs the normal force, which is not known: give it with --load 50N");
   }
   if (needs.time && motion.is_points())
-    trace.refuse("an effect needs to know what came before each sample, and points have no order in time");
-  if (needs.reversal_distance && !strokes_of(motion, trace.segmentation).known())
-    trace.refuse(fmt::format("an effect needs the distance since a reversal: {}",
-                             too_few_reversals(reversals_of(trace.segmentation))));
+    part.refuse("an effect needs to know what came before each sample, and points have no order in time");
+  if (needs.reversal_distance && !strokes_of(motion, part.segmentation).known())
+    part.refuse(fmt::format("an effect needs the distance since a reversal: {}",
+                            too_few_reversals(reversals_of(part.segmentation))));
   require(needs.temperature, !motion.temperature.empty(), "temperature");
   require(needs.angle, !motion.disc_angle.empty() || motion.conditions.speed.known(), "angle");
 }
 
-void require_formulas(std::span<const Effect> effects, Identification& trace) {
-  if (!trace.analysed) return;
+void require_formulas(std::span<const Effect> effects, const Motion& motion, TracePart& part) {
+  if (!part.analysed) return;
   for (const Effect& effect : effects) {
     const auto* formula = std::get_if<Formula>(&effect);
     if (formula == nullptr) continue;
-    const std::string trouble = trouble_with(*formula, trace);
-    if (!trouble.empty()) trace.refuse(trouble);
+    const std::string trouble = trouble_with(*formula, motion, part);
+    if (!trouble.empty()) part.refuse(trouble);
   }
 }
 

@@ -17,11 +17,11 @@ std::vector<Effect> kinematic_effects(std::span<const Effect> effects);
 /// Motion options with the corrections that effects of the motion ask for.
 MotionOptions with_corrections(MotionOptions options, std::span<const Effect> effects);
 
-/// Refuses a trace without the channels that the effects need.
-void require_channels(std::span<const Effect> effects, Identification& trace);
+/// Refuses a part of a trace without the channels that the effects need.
+void require_channels(std::span<const Effect> effects, const Motion& motion, TracePart& part);
 
 /// Refuses a trace on which one of the formulas among the effects cannot be fitted: it is not finite at its starting
 /// values, or zero whatever its parameters are. Nothing is checked on a trace that has been refused already.
-void require_formulas(std::span<const Effect> effects, Identification& trace);
+void require_formulas(std::span<const Effect> effects, const Motion& motion, TracePart& part);
 
 }  // namespace tribofit

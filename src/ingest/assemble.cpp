@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "points.hpp"
+#include "stress.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -35,7 +36,7 @@ class Assembler {
     warn_of_large_coefficient();
     set_velocity();
     settle_speed();
-    trace_.load = std::move(run_[Channel::load]);
+    if (!trace_.normal_stress.known()) trace_.load = std::move(run_[Channel::load]);
     trace_.temperature = std::move(run_[Channel::temperature]);
     trace_.disc_speed = std::move(run_[Channel::speed]);
     trace_.disc_angle = std::move(run_[Channel::angle]);
@@ -167,7 +168,9 @@ class Assembler {
       trace_.notes.push_back("the load is negative throughout and was taken as compression");
     }
     const double mean = sum / static_cast<double>(load.size());
-    if (!trace_.conditions.load.known()) {
+    if (is_stress(run_, Channel::load)) {
+      trace_.normal_stress = {mean, "file"};
+    } else if (!trace_.conditions.load.known()) {
       trace_.conditions.load = {mean, "file"};
       for (Step& step : trace_.steps) {
         if (!step.conditions.load.known()) step.conditions.load = mean_load(load, step);
@@ -219,6 +222,7 @@ class Assembler {
     }
     const bool torque = run_.has(Channel::torque);
     if (!torque && !run_.has(Channel::force)) refuse_columns(run_, "no friction column (mu, force or torque)");
+    if (!torque) refuse_stress_beside_force(run_);
     trace_.friction = std::move(run_[torque ? Channel::torque : Channel::force]);
     if (torque) {
       for (const Step& step : trace_.steps) {
@@ -226,7 +230,7 @@ class Assembler {
         for (std::size_t i = step.begin; i < step.end; ++i) divide_friction(i, radius);
       }
     }
-    divide_by_load(torque ? "torque/radius" : "tangential force");
+    divide_by_load(torque ? "torque/radius" : is_stress(run_, Channel::force) ? "shear stress" : "tangential force");
   }
 
   void divide_by_load(const std::string& force) {
@@ -263,7 +267,8 @@ class Assembler {
       }
       divide_friction(i, load[i]);
     }
-    trace_.notes.push_back("mu is " + force + " over the measured load");
+    trace_.notes.push_back("mu is " + force + " over the measured " +
+                           (trace_.normal_stress.known() ? "normal stress" : "load"));
   }
 
   void warn_of_large_coefficient() {
@@ -293,7 +298,8 @@ class Assembler {
     const bool is_spring_slider = run_.kind == RecordKind::spring_slider,
                is_motion_only = run_.kind == RecordKind::motion_only;
     trace_.velocity_kind = VelocityKind::relative;
-    if (is_spring_slider || run_.kind == RecordKind::force_only) return;   // follows from the pull, or not at all
+    if (is_spring_slider || run_.kind == RecordKind::force_only) return;  // follows from the pull, or not at all
+    if (run_.is_driven()) return set_load_point();
     if (is_motion_only || (run_.has_position() && !block && !relative)) {  // kinematics/ makes it of the displacement
       if (!is_motion_only && !run_.has(Channel::x_d)) trace_.velocity_kind = VelocityKind::block;
       trace_.block_position = std::move(run_[Channel::x_b]);
@@ -316,6 +322,16 @@ class Assembler {
     }
     trace_.notes.push_back(
         fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel), column->name));
+  }
+
+  /// How the load point moved: as stated, else its speed, else its displacement.
+  void set_load_point() {
+    trace_.load_point = options_.load_point;
+    if (!trace_.load_point.empty()) return;
+    trace_.drive_position = std::move(run_[Channel::x_d]);
+    if (trace_.drive_position.empty()) trace_.load_point_speed = std::move(run_[Channel::v_lp]);
+    if (!trace_.drive_position.empty() || !trace_.load_point_speed.empty()) return;
+    refuse_columns(run_, "no displacement (x_d) or speed (v_lp) of the load point");
   }
 
   /// One part turns against the other: the angle between them is the integral of the rotational speed recorded.

@@ -20,7 +20,8 @@ class Clock {
       : recording_(recording),
         time_(recording[Channel::time]),
         step_(recording[Channel::step]),
-        interval_(typical_interval(time_)) {
+        interval_(typical_interval(time_)),
+        any_rate_(recording.is_driven()) {
     ignore_counter();
   }
 
@@ -34,7 +35,7 @@ class Clock {
     for (std::size_t i = 1; i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
       const bool step_changes = begins_step(i);
-      if (interval > 0 && interval <= kGapInterval * interval_ && !step_changes) [[likely]] {
+      if (interval > 0 && (interval <= kGapInterval * interval_ || any_rate_) && !step_changes) [[likely]] {
         time_[i] = now + shift;
       } else {
         if (!(interval > 0)) {
@@ -166,6 +167,7 @@ class Clock {
   std::vector<double>& time_;
   std::vector<double>& step_;
   double interval_;
+  bool any_rate_;           // the sampling may change: what is fitted knows the time of every sample
   std::size_t stated_ = 0;  // the stated step that a row belongs to
   std::vector<std::size_t> gaps_, restarts_;
 };

@@ -35,12 +35,13 @@ const std::vector<Names>& names_of_the_field() {
         "\u6ed1\u52a8\u901f\u5ea6"}},
       {Channel::force,
        {"ft", "frictionforce", "tangentialforce", "fx", "ff", "ffriction", "force", "lateralforce", "tractionforce",
-        "kraft", "reibkraft", "\u6469\u64e6\u529b"}},
+        "kraft", "reibkraft", "shearforce", "shearload", "shearstress", "tau", "\u6469\u64e6\u529b"}},
       {Channel::torque,
        {"torque", "frictiontorque", "m", "moment", "drehmoment", "reibmoment", "\u626d\u77e9", "\u8f6c\u77e9"}},
       {Channel::load,
        {"fn", "normalforce", "load", "normalload", "fz", "weight", "wob", "weightonbit", "ballload", "normalkraft",
-        "\u8f7d\u8377", "\u6b63\u538b\u529b", "\u6cd5\u5411\u529b"}},
+        "normalstress", "effectivenormalstress", "effnormalstress", "sigman", "\u8f7d\u8377", "\u6b63\u538b\u529b",
+        "\u6cd5\u5411\u529b"}},
       {Channel::speed,
        {"discspeed", "diskspeed", "rpm", "speed", "rotationalspeed", "rotaryvelocity", "spindlespeed", "omega",
         "discvelocity", "angularvelocity", "rotaryspeed", "drehzahl", "\u8f6c\u901f"}},
@@ -55,7 +56,12 @@ const std::vector<Names>& names_of_the_field() {
        {"xb", "blockdisplacement", "blockposition", "sliderdisplacement", "sliderposition", "massdisplacement"}},
       {Channel::x_d,
        {"xd", "drivedisplacement", "driveposition", "basedisplacement", "baseposition", "stagedisplacement",
-        "stageposition", "carriagedisplacement", "carriageposition"}},
+        "stageposition", "carriagedisplacement", "carriageposition", "lpdisp", "lpdisplacement",
+        "loadpointdisplacement", "loadpointdisp", "loadpointposition", "loadpoint", "xlp", "ramdisplacement",
+        "pistondisplacement"}},
+      {Channel::v_lp,
+       {"vlp", "loadpointvelocity", "loadpointspeed", "loadpointrate", "lpvelocity", "lpspeed", "drivevelocity",
+        "drivingvelocity", "ramvelocity"}},
       {Channel::step, {kStepColumn, "recipestep", "stepnumber", "segment"}},
   };
   return table;
@@ -63,7 +69,8 @@ const std::vector<Names>& names_of_the_field() {
 
 /// Names that need a unit to be believed: a velocity is as often the carriage's, a position a height.
 bool needs_unit(std::string_view base, Channel channel) {
-  return (channel == Channel::angle && base == "position") || (channel == Channel::torque && base == "m");
+  return (channel == Channel::angle && base == "position") || (channel == Channel::torque && base == "m") ||
+         base == "tau";
 }
 
 /// The longest end of "a_b_c" that is a unit when '_' is read as '/': {"v_b", "mm/s"} of "v_b_mm_s".
@@ -148,9 +155,10 @@ std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quan
 std::span<const Quantity> quantities(Channel channel) {
   static constexpr std::array velocity = {Quantity::velocity, Quantity::angular_velocity};
   static constexpr std::array<Quantity, 1> time = {Quantity::time}, mu = {Quantity::dimensionless},
-                                           force = {Quantity::force}, torque = {Quantity::torque},
-                                           speed = {Quantity::angular_velocity}, angle = {Quantity::angle},
-                                           temperature = {Quantity::temperature}, length = {Quantity::length};
+                                           torque = {Quantity::torque}, speed = {Quantity::angular_velocity},
+                                           angle = {Quantity::angle}, temperature = {Quantity::temperature},
+                                           length = {Quantity::length}, load_point = {Quantity::velocity};
+  static constexpr std::array force_or_stress = {Quantity::force, Quantity::pressure};
   static constexpr std::array friction = {Quantity::dimensionless, Quantity::force, Quantity::torque};
   static constexpr std::array pull = {Quantity::force, Quantity::dimensionless};
   switch (channel) {
@@ -163,7 +171,7 @@ std::span<const Quantity> quantities(Channel channel) {
       return velocity;
     case Channel::force:
     case Channel::load:
-      return force;
+      return force_or_stress;
     case Channel::torque:
       return torque;
     case Channel::speed:
@@ -179,6 +187,8 @@ std::span<const Quantity> quantities(Channel channel) {
     case Channel::x_b:
     case Channel::x_d:
       return length;
+    case Channel::v_lp:
+      return load_point;
     case Channel::step:
       break;
   }
@@ -187,14 +197,19 @@ std::span<const Quantity> quantities(Channel channel) {
 
 std::string_view usual_unit(Channel channel) {
   static constexpr std::array<std::string_view, channel_count> units = {
-      "s", "1", "mm/s", "mm/s", "N", "Nm", "N", "rpm", "deg", "degC", "1", "N", "mm", "mm", ""};
+      "s", "1", "mm/s", "mm/s", "N", "Nm", "N", "rpm", "deg", "degC", "1", "N", "mm", "mm", "um/s", ""};
   return units[index_of(channel)];
 }
 
 std::string_view si_unit(Channel channel) {
   static constexpr std::array<std::string_view, channel_count> units = {
-      "s", "1", "m/s", "m/s", "N", "N m", "N", "rad/s", "rad", "degC", "1", "N", "m", "m", ""};
+      "s", "1", "m/s", "m/s", "N", "N m", "N", "rad/s", "rad", "degC", "1", "N", "m", "m", "m/s", ""};
   return units[index_of(channel)];
+}
+
+bool names_load_point(const std::string& column) {
+  const std::string base = parse_column_name(column).base;
+  return base.starts_with("lp") || base.find("loadpoint") != std::string::npos || base == "xlp";
 }
 
 bool names_rpm(std::string_view base) {

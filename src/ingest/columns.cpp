@@ -32,6 +32,7 @@ class Finder {
       : table_(table),
         two_files_(!options.second_file.empty()),
         needs_no_time_(options.rate.has_value() || options.kind == RecordKind::points),
+        is_driven_(is_driven_in_steps(options.kind)),
         is_spring_slider_(options.kind == RecordKind::spring_slider) {
     read_requests(options);
   }
@@ -41,13 +42,14 @@ class Finder {
       const auto& request = requests_[i];
       if (!request || request->column.empty() || request->ignored()) continue;
       try {
-        taken_[i] = column_index(request->column, static_cast<Channel>(i));
+        taken_[i] = named_column(table_, request->column, static_cast<Channel>(i));
       } catch (const InputError&) {
         if (!two_files_) throw;
       }
     }
     refuse_two_roles();
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
+    if (is_driven_) find_load_point();
     if (is_spring_slider_) choose_one({Channel::spring, Channel::force, Channel::mu, Channel::torque});
     choose_one({Channel::mu, Channel::force, Channel::torque, Channel::spring});
     choose_one({Channel::v_b, Channel::v_r, Channel::x_b});
@@ -109,33 +111,6 @@ class Finder {
                        [&](const RawColumn& c) { return c.name == name; });
   }
 
-  std::size_t column_index(const std::string& wanted, Channel channel) const {
-    const auto& columns = table_.columns;
-    const auto exact =
-        std::find_if(columns.begin(), columns.end(), [&](const RawColumn& c) { return c.named && c.name == wanted; });
-    if (exact != columns.end()) return static_cast<std::size_t>(exact - columns.begin());
-    if (wanted.size() > 1 && wanted[0] == '#') {
-      std::size_t number = 0;
-      const char* end = wanted.data() + wanted.size();
-      const auto [last, error] = std::from_chars(wanted.data() + 1, end, number);
-      if (error == std::errc{} && last == end && number >= 1 && number <= columns.size()) return number - 1;
-      throw InputError(fmt::format("there is no column {} for {}", wanted, to_string(channel)),
-                       fmt::format("the file has {} columns, #1 to #{}; {}", columns.size(), columns.size(),
-                                   lists_columns(table_.path)),
-                       heading());
-    }
-    std::vector<std::size_t> similar;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const bool same_name = lower_case(columns[i].name) == lower_case(wanted);
-      if (same_name || parse_column_name(columns[i].name).base == parse_column_name(wanted).base) similar.push_back(i);
-    }
-    if (similar.size() == 1) return similar.front();
-    const std::vector<std::string> names = table_.names();
-    throw InputError(
-        fmt::format("there is no column '{}' for {}{}", wanted, to_string(channel), did_you_mean(wanted, names)),
-        "the columns are: " + listed(names) + "; " + lists_columns(table_.path), heading());
-  }
-
   void refuse_two_roles() const {
     for (std::size_t i = 0; i < channel_count; ++i) {
       for (std::size_t k = i + 1; k < channel_count; ++k) {
@@ -160,6 +135,26 @@ class Finder {
     if (is_time && needs_no_time_ && !two_files_) return;
     if (channel == Channel::std_error && taken_[index_of(Channel::time)]) return;  // of points
     taken = most_usual(channel, std::nullopt);
+  }
+
+  /// Where the load point is all that moves, what is called a speed or a displacement is its own.
+  void find_load_point() {
+    for (const Channel channel : {Channel::v_b, Channel::v_r, Channel::x_b, Channel::speed, Channel::angle}) {
+      if (!requests_[index_of(channel)]) taken_[index_of(channel)].reset();
+    }
+    const auto find = [&](Channel channel, std::initializer_list<std::string_view> names) {
+      auto& taken = taken_[index_of(channel)];
+      const auto& request = requests_[index_of(channel)];
+      if (taken || (request && request->ignored())) return;
+      for (const std::string_view name : names) {
+        for (std::size_t i = 0; i < table_.columns.size(); ++i)
+          if (!taken && column(i).named && !is_taken(i) && parse_column_name(column(i).name).base == name) taken = i;
+      }
+    };
+    find(Channel::x_d,
+         {"displacement", "disp", "sheardisplacement", "sheardisp", "axialdisplacement", "position", "x"});
+    if (!taken_[index_of(Channel::x_d)])
+      find(Channel::v_lp, {"speed", "velocity", "v", "slidingvelocity", "slidingspeed", "shearvelocity", "rate"});
   }
 
   /// The column with the most usual of the channel's names, of all rows or of these.
@@ -242,7 +237,7 @@ class Finder {
   }
 
   void convert(Channel channel, std::size_t index) {
-    Column used{channel, index, column(index).shown_name()};
+    Column used{channel, index, column(index).shown_name(), column(index).name};
     const auto& request = requests_[index_of(channel)];
     const auto of_column = units_of_columns_.find(index);
     const bool of_channel = request && !request->unit.empty();
@@ -273,6 +268,7 @@ class Finder {
         used.offset = unit->offset;
         used.angular = quantity == Quantity::angular_velocity && channel != Channel::speed;
         used.over_load = quantity == Quantity::dimensionless && channel == Channel::spring;
+        used.stress = quantity == Quantity::pressure;
         return true;
       }
     }
@@ -337,6 +333,7 @@ class Finder {
       case Channel::v_r:
       case Channel::x_b:
       case Channel::x_d:
+      case Channel::v_lp:
       case Channel::speed:
       case Channel::angle:
         break;
@@ -380,7 +377,7 @@ class Finder {
 
   const RawTable& table_;
   const bool two_files_;  // a column may be in the other one
-  const bool needs_no_time_, is_spring_slider_;
+  const bool needs_no_time_, is_driven_, is_spring_slider_;
   Requests requests_;
   std::map<std::size_t, std::string> units_of_columns_;  // that the user states by the name of the column
   std::array<std::optional<std::size_t>, channel_count> taken_;

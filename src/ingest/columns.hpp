@@ -27,9 +27,10 @@ enum class Channel {
   spring,
   x_b,
   x_d,
+  v_lp,
   step
 };
-constexpr std::size_t channel_count = 15;
+constexpr std::size_t channel_count = 16;
 constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);
 }
@@ -43,11 +44,13 @@ std::string_view to_string(Channel channel);
 /// A column that holds a channel, and how its numbers become SI: factor * number + offset.
 struct Column {
   Channel channel{};
-  std::size_t index = 0;  ///< in RawTable::columns
-  std::string name;       ///< as the file gives it, with its place
+  std::size_t index = 0;        ///< in RawTable::columns
+  std::string name;             ///< as the file gives it, with its place
+  std::string plain_name = {};  ///< without its place
   double factor = 1, offset = 0;
   bool angular = false;    ///< a velocity given as a rotational speed [rad/s], to be multiplied by the radius
   bool over_load = false;  ///< the pull of a spring, given over the load
+  bool stress = false;     ///< a force given over an area [Pa]
 };
 
 struct Columns {
@@ -71,5 +74,11 @@ struct ColumnName {
   std::optional<std::string> unit;  ///< as written; absent when the name has none
 };
 ColumnName parse_column_name(std::string_view name);
+
+/// Index of the column that a user names for a channel, by its name or as "#3". Throws InputError where there is none.
+std::size_t named_column(const RawTable& table, const std::string& wanted, Channel channel);
+
+/// Whether a name says that it is the displacement of a load point: such a record is one of velocity steps or holds.
+bool names_load_point(const std::string& column);
 
 }  // namespace tribofit

@@ -74,7 +74,7 @@ std::string likely_channel(const RawColumn& column) {
   if (has_unit && unit->quantity == Quantity::torque) return "torque";
   if (has_unit && unit->quantity == Quantity::temperature) return "temperature";
   if (has_unit && unit->quantity == Quantity::length) {
-    if (contains_any(name.base, {"base", "drive", "stage", "carriage"})) return "x_d";
+    if (contains_any(name.base, {"base", "drive", "stage", "carriage", "lp", "loadp", "ram", "piston"})) return "x_d";
     if (contains_any(name.base, {"displ", "block", "slider", "mass", "vib", "laser"})) return "x_b";
   }
   if (has_unit && unit->quantity == Quantity::velocity)
@@ -82,6 +82,10 @@ std::string likely_channel(const RawColumn& column) {
   if (has_unit && unit->quantity == Quantity::force) {
     if (load) return "load";
     if (contains_any(name.base, {"force", "fric", "trac", "tang", "lateral", "fx", "ft"})) return "force";
+  }
+  if (has_unit && unit->quantity == Quantity::pressure) {
+    if (contains_any(name.base, {"normal", "norm", "sigma", "sn"})) return "load";
+    if (contains_any(name.base, {"shear", "tau"})) return "force";
   }
   const std::size_t end = name.base.find_last_not_of("0123456789");  // "Force1_N"
   RawColumn without_number = column;
@@ -158,8 +162,9 @@ bool select(std::initializer_list<const char*> channels, ColumnListing& listing)
 void select_trace(ColumnListing& listing) {
   if (!select({"time"}, listing) && listing.intervals.empty()) listing.missing.emplace_back("time");
   if (!select({"mu", "force", "torque"}, listing)) listing.missing.emplace_back("friction");
-  if (!select({"v_b", "v_r", "x_b", "speed"}, listing)) listing.missing.emplace_back("velocity");
-  select({"x_d"}, listing);
+  const bool moves = select({"v_b", "v_r", "x_b", "speed", "v_lp"}, listing);
+  const bool is_driven = select({"x_d"}, listing);
+  if (!moves && !is_driven) listing.missing.emplace_back("velocity");
   select({"load"}, listing);
   const bool tabulated = std::all_of(listing.columns.begin(), listing.columns.end(),
                                      [](const ListedColumn& column) { return column.count <= kMostTabulated; });

@@ -8,8 +8,8 @@ namespace tribofit {
 namespace {
 
 // In the order of RecordKind.
-constexpr std::array<std::string_view, 6> kNames = {"stick-slip",    "sliding",     "points",
-                                                    "spring-slider", "motion-only", "force-only"};
+constexpr std::array<std::string_view, 8> kNames = {"stick-slip",  "sliding",    "points",         "spring-slider",
+                                                    "motion-only", "force-only", "velocity-steps", "slide-hold-slide"};
 
 }  // namespace
 

@@ -138,6 +138,16 @@ void recognise_points(const RowsPlan& plan, FileRecord& recording) {
   recording.kind_source = time.empty() ? "no time column" : "the times are in no order";
 }
 
+/// Friction beside a load point, and no motion of the contact, is a record of velocity steps.
+void recognise_steps(FileRecord& recording) {
+  const Column* displacement = recording.columns.find(Channel::x_d);
+  const bool load_point =
+      recording.has(Channel::v_lp) || (displacement != nullptr && names_load_point(displacement->plain_name));
+  if (recording.kind || !load_point || !recording.has_friction() || recording.has_velocity()) return;
+  recording.kind = RecordKind::velocity_steps;
+  recording.kind_source = "the motion of a load point was recorded";
+}
+
 /// The channels of one set of rows, in SI, on a clock that starts at 0; points are numbered instead.
 FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   FileRecord recording;
@@ -163,6 +173,7 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   }
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
   recognise_points(plan, recording);
+  recognise_steps(recording);
   if (!recording.has(Channel::time) && !recording.is_points()) set_time(recording, *plan.sampling);
   exclude(gappy, recording);
   if (recording.is_points()) {

@@ -44,6 +44,7 @@ struct FileRecord {
   std::vector<std::string> notes, warnings;
 
   bool is_points() const { return kind == RecordKind::points; }
+  bool is_driven() const { return is_driven_in_steps(kind); }
   std::vector<double>& operator[](Channel channel) { return channels[index_of(channel)]; }
   const std::vector<double>& operator[](Channel channel) const { return channels[index_of(channel)]; }
   bool has(Channel channel) const { return !channels[index_of(channel)].empty(); }

@@ -33,6 +33,8 @@ constexpr double turn = 2 * std::numbers::pi;
 
 constexpr std::array symbols = {
     Symbol{"m", 1, {1, 0, 0, 0, 0, 0, 0}, "numcdk"},
+    Symbol{"micron", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
+    Symbol{"microns", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"in", 0.0254, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"ft", 0.3048, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"s", 1, {0, 0, 1, 0, 0, 0, 0}, "num"},
@@ -48,6 +50,9 @@ constexpr std::array symbols = {
     Symbol{"kgf", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"gf", 9.80665e-3, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"kp", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
+    Symbol{"Pa", 1, {-1, 1, -2, 0, 0, 0, 0}, "kMG"},
+    Symbol{"bar", 1e5, {-1, 1, -2, 0, 0, 0, 0}, "mk"},
+    Symbol{"psi", 6894.757293168, {-1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"lbf", 4.4482216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"ozf", 0.27801385095378125, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"kip", 4448.2216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
@@ -97,6 +102,7 @@ constexpr std::array kinds = {
     Kind{Quantity::inverse_length, {-1, 0, 0, 0, 0, 0, 0}, "inverse length"},
     Kind{Quantity::inverse_time, {0, 0, -1, 0, 0, 0, 0}, "inverse time"},
     Kind{Quantity::inverse_temperature, {0, 0, 0, 0, -1, 0, 0}, "inverse temperature"},
+    Kind{Quantity::pressure, {-1, 1, -2, 0, 0, 0, 0}, "stress"},
 };
 
 double prefix_factor(char prefix) {
@@ -375,6 +381,8 @@ std::string_view example_of(Quantity quantity) {
       return "0.001 1/s";
     case Quantity::inverse_temperature:
       return "0.002 1/K";
+    case Quantity::pressure:
+      return "5MPa";
   }
   return "a number with a unit";
 }

@@ -118,7 +118,8 @@ std::optional<double> delay_of(const RestickJumps& jumps, double step) {
 }  // namespace
 
 HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor) {
-  HealthItem item{health_check::kChannelDelay, Status::ok, "no re-stick to compare the channels at"};
+  HealthItem item{health_check::kChannelDelay, Status::ok,
+                  health_check::not_checked("no re-stick to compare the channels at")};
   const RestickJumps jumps = jumps_at_restick(motion, plateaus, factor);
   const std::size_t slips = jumps.delays.size();
   if (slips < kFewestForMedian) return item;
@@ -133,8 +134,7 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   }
   const std::optional<double> delay = delay_of(jumps, motion.step);
   if (!delay) {
-    item.message = fmt::format(
-        "friction does not jump at re-stick ({} slips): no statement on a delay between the channels", slips);
+    item.message = fmt::format("{}friction does not jump at re-stick ({} slips)", health_check::kNotChecked, slips);
     return item;
   }
   item.message = fmt::format("friction jumps about {:.2f} ms {} the velocity reaches re-stick ({} slips)",

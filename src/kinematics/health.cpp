@@ -111,7 +111,7 @@ std::string describe(const char* name, const Band& band) {
 }  // namespace
 
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
-  HealthItem item{health_check::kSaggingPlateau, Status::ok, "no stick plateau to look at"};
+  HealthItem item{health_check::kSaggingPlateau, Status::ok, health_check::not_checked("no stick plateau to look at")};
   if (declared) {
     item.message = fmt::format("the declared high-pass of {:.3g} Hz is corrected", *declared);
   } else if (undone) {
@@ -135,7 +135,7 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
         fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +/- {:.4f} Hz ({} plateaus)",
                     estimate.corner, estimate.std_error, estimate.plateaus);
   } else if (sticks) {
-    item.message = "too few plateaus to look for a high-pass";
+    item.message = health_check::not_checked("too few plateaus to look for a high-pass");
   }
   return item;
 }
@@ -206,7 +206,7 @@ HealthItem check_friction_zero(const Motion& motion) {
 }
 
 HealthItem check_revolutions(const Motion& motion) {
-  HealthItem item{health_check::kRevolutions, Status::ok, "the disc's speed is not known"};
+  HealthItem item{health_check::kRevolutions, Status::ok, health_check::not_checked("the disc's speed is not known")};
   double angle = 0;
   if (!motion.disc_angle.empty()) {
     angle = motion.disc_angle.back() - motion.disc_angle.front();
@@ -231,13 +231,14 @@ HealthItem check_revolutions(const Motion& motion) {
 }
 
 HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate) {
-  HealthItem item{health_check::kSpeedRipple, Status::ok, "no stick plateaus to follow over the disc angle"};
+  HealthItem item{health_check::kSpeedRipple, Status::ok,
+                  health_check::not_checked("no stick plateaus to follow over the disc angle")};
   if (!motion.sticks || motion.velocity_kind != VelocityKind::block) return item;
   const DiscRipple& ripple = estimate.ripple;
   if (ripple.order == 0) {
     const bool recorded = !motion.disc_velocity.empty();
-    item.message =
-        recorded ? "the speed of the disc is recorded" : "less than two revolutions or too few plateaus: not known";
+    item.message = recorded ? "the speed of the disc is recorded"
+                            : health_check::not_checked("less than two revolutions or too few plateaus");
     return item;
   }
   item.message =
@@ -263,7 +264,8 @@ HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
 
 HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_was_stated, bool radius_known,
                                const std::optional<RecordedPlateau>& recorded) {
-  HealthItem item{health_check::kPlateauSpeed, Status::ok, "the record has no stick plateau"};
+  HealthItem item{health_check::kPlateauSpeed, Status::ok,
+                  health_check::not_checked("the record has no stick plateau")};
   const auto compare = [&](double block, double disc, const char* origin) {
     item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
     const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;

@@ -11,6 +11,7 @@
 #include "displacement.hpp"
 #include "force_alone.hpp"
 #include "held_values.hpp"
+#include "load_point.hpp"
 #include "motion_channels.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
@@ -19,6 +20,7 @@
 #include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::kinematics {
 
@@ -250,28 +252,23 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
   if (trace.kind == RecordKind::force_only) return kinematics::motion_of_force(std::move(trace));
+  if (is_driven_in_steps(trace.kind)) return kinematics::motion_of_load_point(std::move(trace));
   std::vector<std::string> notes;
   kinematics::keep_fresh_values(trace, threads, notes);
   MotionOptions own = options;
   const bool was_made = kinematics::make_missing_channels(trace, notes);
   if (was_made) own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;  // of a vibrometer
   kinematics::MotionStages stages(std::move(trace), instruments, own, threads);
-  stages.look_at_recording();
-  stages.correct_declared();
-  stages.find_disc();
-  stages.find_plateau();
-  stages.find_direction();
-  stages.undo_high_pass();
-  stages.undo_distortions();
-  stages.find_speed_steps();
-  stages.take_speed_from_plateau();
-  stages.undo_ripple();
-  stages.check_clipping();
-  stages.add_sensor_mass();
-  stages.make_relative_motion();
-  stages.settle_signs_and_levels();
-  stages.check_health();
-  stages.compare_plateau();
+  using Stages = kinematics::MotionStages;
+  for (const auto stage :
+       {&Stages::look_at_recording, &Stages::correct_declared, &Stages::find_disc, &Stages::find_plateau,
+        &Stages::find_direction, &Stages::undo_high_pass, &Stages::undo_distortions, &Stages::find_speed_steps,
+        &Stages::take_speed_from_plateau, &Stages::undo_ripple, &Stages::check_clipping, &Stages::add_sensor_mass,
+        &Stages::make_relative_motion, &Stages::settle_signs_and_levels, &Stages::check_health,
+        &Stages::compare_plateau}) {
+    stop_point();
+    (stages.*stage)();
+  }
   Motion motion = stages.take();
   motion.notes.insert(motion.notes.begin(), notes.begin(), notes.end());
   return motion;

@@ -101,16 +101,17 @@ void run_ahead(std::vector<double>& x, double drift) {
   }
 }
 
-std::vector<double> add_noise(std::vector<double>& x, double deviation, double colour, std::uint64_t seed,
-                              NormalStream::Purpose purpose) {
-  if (deviation == 0) return {};
-  CorrelatedStream stream(deviation, colour, seed, purpose);
-  std::vector<double> noise(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i, stream.next()) {
-    noise[i] = stream.value();
-    x[i] += noise[i];
+/// kept: takes the noise, unless it is nullptr.
+void add_noise(std::vector<double>& x, double deviation, const Sensors& sensors, NormalStream::Purpose purpose,
+               std::vector<double>* kept) {
+  if (deviation == 0) return;
+  CorrelatedStream stream(deviation, sensors.noise_colour, sensors.seed, purpose);
+  if (kept != nullptr) kept->reserve(x.size());
+  for (double& value : x) {
+    value += stream.value();
+    if (kept != nullptr) kept->push_back(stream.value());
+    stream.next();
   }
-  return noise;
 }
 
 void round_to(std::vector<double>& x, double resolution) {
@@ -142,21 +143,23 @@ void sense_record(const E& effect, const double* q, const SimulatedMotion& motio
 }
 
 /// The normal force at the contact [N]: that of the drive, changed where the tangential force loads the contact. Empty
-/// where it is constant.
-std::vector<double> true_load(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p) {
+/// where it is constant. friction: of the motion.
+std::vector<double> true_load(const SimulatedMotion& motion, std::span<const double> friction,
+                              const FrictionModel& model, std::span<const double> p) {
   std::vector<double> load = motion.load;
   for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
     if constexpr (requires { E::load_at_contact(q, 1.0, 0.0); }) {
       if (load.empty()) load.assign(motion.size(), motion.mean_load);
-      for (std::size_t i = 0; i < load.size(); ++i) load[i] = E::load_at_contact(q, load[i], motion.friction[i]);
+      for (std::size_t i = 0; i < load.size(); ++i) load[i] = E::load_at_contact(q, load[i], friction[i]);
     }
   });
   return load;
 }
 
-std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::vector<double>& load,
-                                    const FrictionModel& model, std::span<const double> p, const Sensors& sensors) {
-  std::vector<double> mu = motion.friction;
+/// mu: of the motion.
+std::vector<double> sensed_friction(std::vector<double> mu, const SimulatedMotion& motion,
+                                    const std::vector<double>& load, const FrictionModel& model,
+                                    std::span<const double> p, const Sensors& sensors) {
   Slip whole = whole_record(motion);
   whole.load = load;
   for_each_effect(model, p.data(),
@@ -174,8 +177,8 @@ std::vector<double> sensed_friction(const SimulatedMotion& motion, const std::ve
   return mu;
 }
 
-std::vector<double> sensed_velocity(const SimulatedMotion& motion, const Sensors& sensors) {
-  std::vector<double> v = motion.velocity;
+/// v: of the motion.
+std::vector<double> sensed_velocity(std::vector<double> v, const SimulatedMotion& motion, const Sensors& sensors) {
   for (double& value : v) value *= sensors.velocity_gain;
   if (sensors.velocity_high_pass > 0 && !v.empty()) {
     // In settled stick-slip the displacement comes back to its mean, and the low-pass part follows it: 2 pi f_c (x -
@@ -196,27 +199,28 @@ std::vector<double> sensed_velocity(const SimulatedMotion& motion, const Sensors
   return v;
 }
 
-}  // namespace
-
-Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
-                 const Sensors& stated) {
+Sensors checked_sensors(const Sensors& stated, double rate, const FrictionModel& model, std::span<const double> p) {
   const Sensors sensors = true_sensors(stated, model, p);
   check(sensors);
-  if (sensors.force_bandwidth >= 0.5 * motion.rate && sensors.force_bandwidth > 0) {
+  if (sensors.force_bandwidth >= 0.5 * rate && sensors.force_bandwidth > 0) {
     throw InputError("the bandwidth of the force sensor is above half the sampling rate",
                      "leave it out, or sample faster");
   }
-  Recording recording;
-  Trace& trace = recording.trace;
-  trace.time = motion.time;
-  trace.load = true_load(motion, model, p);
-  trace.friction = sensed_friction(motion, trace.load, model, p, sensors);
-  trace.velocity = sensed_velocity(motion, sensors);
+  return sensors;
+}
+
+/// The trace but for its time, of a motion whose friction and velocity stand beside it. noise: as of add_noise().
+Trace sensed(const SimulatedMotion& motion, std::vector<double> friction, std::vector<double> velocity,
+             const FrictionModel& model, std::span<const double> p, const Sensors& sensors, Recording* noise) {
+  Trace trace;
+  trace.load = true_load(motion, friction, model, p);
+  trace.friction = sensed_friction(std::move(friction), motion, trace.load, model, p, sensors);
+  trace.velocity = sensed_velocity(std::move(velocity), motion, sensors);
   using Purpose = NormalStream::Purpose;
-  recording.friction_noise =
-      add_noise(trace.friction, sensors.friction_noise, sensors.noise_colour, sensors.seed, Purpose::friction);
-  recording.velocity_noise =
-      add_noise(trace.velocity, sensors.velocity_noise, sensors.noise_colour, sensors.seed, Purpose::velocity);
+  add_noise(trace.friction, sensors.friction_noise, sensors, Purpose::friction,
+            noise != nullptr ? &noise->friction_noise : nullptr);
+  add_noise(trace.velocity, sensors.velocity_noise, sensors, Purpose::velocity,
+            noise != nullptr ? &noise->velocity_noise : nullptr);
   round_to(trace.friction, sensors.friction_resolution);
   round_to(trace.velocity, sensors.velocity_resolution);
 
@@ -233,7 +237,27 @@ Recording record(const SimulatedMotion& motion, const FrictionModel& model, std:
     trace.disc_speed = motion.disc_speed;
   }
   trace.steps = {{0, motion.size(), "", trace.conditions}};
+  return trace;
+}
+
+}  // namespace
+
+Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
+                 const Sensors& stated) {
+  const Sensors sensors = checked_sensors(stated, motion.rate, model, p);
+  Recording recording;
+  recording.trace = sensed(motion, motion.friction, motion.velocity, model, p, sensors, &recording);
+  recording.trace.time = motion.time;
   return recording;
+}
+
+Trace recorded_trace(SimulatedMotion motion, const FrictionModel& model, std::span<const double> p,
+                     const Sensors& stated) {
+  const Sensors sensors = checked_sensors(stated, motion.rate, model, p);
+  std::vector<double> friction = std::move(motion.friction), velocity = std::move(motion.velocity);
+  Trace trace = sensed(motion, std::move(friction), std::move(velocity), model, p, sensors, nullptr);
+  trace.time = std::move(motion.time);
+  return trace;
 }
 
 namespace {

@@ -95,9 +95,9 @@ void Simulation::advance(double until) {
 /// From here on samples are taken.
 void Simulation::reserve_samples() {
   samples_ = static_cast<std::size_t>(std::llround(options_.duration * options_.rate));
-  for (auto* channel : {&motion_.time, &motion_.velocity, &motion_.relative_velocity, &motion_.friction})
-    channel->reserve(samples_);
+  for (auto* channel : {&motion_.time, &motion_.velocity, &motion_.friction}) channel->reserve(samples_);
   const SimulatedChannels& kept = options_.channels;
+  if (kept.relative_velocity) motion_.relative_velocity.reserve(samples_);
   if (kept.displacement) motion_.displacement.reserve(samples_);
   if (kept.acceleration) motion_.acceleration.reserve(samples_);
   if (kept.disc) motion_.disc_speed.reserve(samples_), motion_.disc_angle.reserve(samples_);
@@ -139,7 +139,7 @@ void Simulation::write_sample(double t, double x, double v, double friction, boo
   motion_.velocity.push_back(v);
   if (kept.acceleration)
     motion_.acceleration.push_back((load * friction - rig.damping * v - rig.stiffness * x) / rig.mass);
-  motion_.relative_velocity.push_back(sticks ? 0 : setup_.disc_velocity(t) - v);
+  if (kept.relative_velocity) motion_.relative_velocity.push_back(sticks ? 0 : setup_.disc_velocity(t) - v);
   motion_.friction.push_back(friction);
   if (kept.disc) {
     motion_.disc_speed.push_back(setup_.drive.speed.speed(t));

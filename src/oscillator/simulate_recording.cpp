@@ -32,6 +32,19 @@ Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::spa
   return sensors;
 }
 
+SimulatedChannels recorded_channels(const FrictionModel& model, std::span<const double> p, const Drive& drive,
+                                    const Sensors& stated) {
+  const Sensors sensors = true_sensors(stated, model, p);
+  const Channels needs = model.needs();
+  bool senses = sensors.mass_below > 0 || sensors.force_bandwidth > 0 || sensors.friction_delay != 0;
+  for_each_effect(model, p.data(), [&]<class E>(const E&, const double*) { senses |= hooks::SensorEffect<E>; });
+  return {.displacement = sensors.velocity_high_pass > 0,
+          .acceleration = needs.acceleration || sensors.mass_below > 0,
+          .disc = needs.angle || !drive.speed.constant,
+          .distance = needs.distance,
+          .relative_velocity = senses};
+}
+
 SimulatedRecording simulate_recording(const FrictionModel& model, std::span<const double> p, const Rig& rig,
                                       const Drive& drive, const SimulationOptions& options, const Sensors& sensors) {
   SimulatedRecording hidden;

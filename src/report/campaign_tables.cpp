@@ -42,30 +42,20 @@ std::vector<std::string> value_row(const PooledValue& v, const std::string& name
   return row;
 }
 
-/// "1.2 +/- 0.3"; a star where it is that of a single run.
-std::string cell_of(const PooledValue& value) {
-  if (value.runs == 0) return "-";
-  return with_error(value.value, value.std_error) + (value.runs == 1 ? " *" : "");
-}
-std::string cell_of(const ResultParameter& value) {
-  return with_error(value.value, value.std_error);
-}
-
 constexpr const char* kOtherParameters = "other parameters of the law";
 
 /// Three cells: mu_s and mu_k where the law has them, and what else it has, by name and with its unit.
-template <class Value>
-void add_law_cells(const std::vector<Value>& parameters, std::vector<std::string>& row) {
+void add_law_cells(const std::vector<ResultParameter>& parameters, std::vector<std::string>& row) {
   std::string mu_s, mu_k;
   std::vector<std::string> others;
-  for (const Value& p : parameters) {
+  for (const ResultParameter& p : parameters) {
     if (!p.effect.empty()) continue;
     if (p.name == static_level_name) {
-      mu_s = cell_of(p);
+      mu_s = with_error(p.value, p.std_error);
     } else if (p.name == kinetic_level_name) {
-      mu_k = cell_of(p);
+      mu_k = with_error(p.value, p.std_error);
     } else {
-      others.push_back(p.name + " " + cell_of(p) + unit_behind(p.unit));
+      others.push_back(p.name + " " + with_error(p.value, p.std_error) + unit_behind(p.unit));
     }
   }
   row.insert(row.end(), {mu_s, mu_k, fmt::format("{}", fmt::join(others, ", "))});
@@ -102,7 +92,8 @@ ReportTable comparison_table(const EarlierComparison& comparison, std::span<cons
 
 /// Relative errors (Eq 5) by conditions, law and protocol.
 ReportTable error_table(const Statements& statements, std::span<const PooledGroup> groups) {
-  ReportTable table("Relative error (Eq 5), slip samples and means in 40 bins of v_r", "summary.json");
+  ReportTable table("Relative error |(measured - law)/measured|, slip samples and means in 40 bins of v_r",
+                    "summary.json");
   const std::string limit = published_error_limit_text;
   table.text({"conditions", "law", "protocol"}).numbers({"samples below " + limit, "mean", "largest"});
   table.numbers({"bins below " + limit, "largest of bins"});
@@ -190,20 +181,26 @@ void add_shared(const Pooled& pooled, ReportSection& section) {
 }  // namespace
 
 ReportTable repeats_table(std::span<const PooledGroup> groups) {
-  ReportTable table("Repeats together (joint fit; +/- is one standard error, from run to run)", "pooled.csv");
-  table.text({"conditions"})
-      .numbers({"runs"})
-      .text({"law"})
-      .numbers({static_level_name, kinetic_level_name})
-      .text({kOtherParameters});
-  table.numbers({"best in"});
+  ReportTable table("Repeats together (joint fit; intervals from run to run)", "pooled.csv");
+  table.text({"conditions"}).text({"law", "parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
+  table.numbers({"runs", "degrees of freedom", "best in"});
+  table.columns[7].brief = "dof";
   for (const PooledGroup& group : groups) {
+    bool first_of_group = true;
     for (const PooledGroup::OfFit& fit : group.fits) {
       if (fit.protocol != to_string(Protocol::joint)) continue;
-      std::vector<std::string> row = {conditions_text(group), std::to_string(group.runs.size()), fit.law};
-      add_law_cells(fit.parameters, row);
-      row.push_back(std::to_string(fit.best_in));
-      table.rows.push_back(std::move(row));
+      bool first_of_law = true;
+      for (const PooledValue& v : fit.parameters) {
+        const bool known = v.runs > 0 && std::isfinite(v.std_error) && v.std_error > 0;
+        const int places = known ? places_for(v.std_error) : 4;
+        const std::string value = v.runs == 0 ? "-" : known ? fixed(v.value, places) : significant(v.value, 4);
+        table.rows.push_back({first_of_group ? conditions_text(group) : "", first_of_law ? fit.law : "", full_name(v),
+                              value + (v.runs == 1 ? " *" : ""),
+                              known ? interval_text(v.lower95, v.upper95, places) : "-", v.unit == "1" ? "" : v.unit,
+                              std::to_string(v.runs), v.runs > 1 ? std::to_string(v.runs - 1) : "-",
+                              first_of_law ? std::to_string(fit.best_in) : ""});
+        first_of_group = first_of_law = false;
+      }
     }
   }
   return table;

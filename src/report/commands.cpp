@@ -6,6 +6,7 @@
 
 #include "terminal_text.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/report/page.hpp"
 
 namespace tribofit {
 namespace {
@@ -69,6 +70,23 @@ std::vector<std::string> words_of(std::vector<std::string> words, const std::vec
 
 std::string diagnose_command(const std::vector<std::string>& arguments, const std::string& path) {
   return command_line(words_of({"diagnose"}, arguments, {"--profile"}, {"--protocol"}), {path});
+}
+
+std::vector<Suggestion> ways_to_look(const std::string& verb, const std::vector<std::string>& arguments,
+                                     const std::string& path, bool report_written) {
+  if (!has_report_page()) return {};
+  const std::vector<std::string> begin = verb.empty() ? std::vector<std::string>{} : std::vector{verb};
+  const std::string page = std::filesystem::path(path).stem().string() + ".html";
+  std::vector<Suggestion> ways;
+  if (!report_written) {
+    ways.push_back({"to see it as a page of charts",
+                    command_line(joined(words_of(begin, arguments), {"--report", page}), {path})});
+  }
+  ways.push_back(
+      {"to switch effects on and off in a browser",
+       command_line(words_of({"explore"}, arguments, {"--profile"}, {"--protocol", "--confirm", "--time-limit"}),
+                    {path})});
+  return ways;
 }
 
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {

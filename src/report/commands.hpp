@@ -26,6 +26,11 @@ std::vector<std::string> words_of(std::vector<std::string> verb, const std::vect
                                   const std::vector<std::string>& flags = {},
                                   const std::vector<std::string>& valued = {});
 
+/// The page and the workbench for the same trace: `arguments` without verb and outputs as that command takes them.
+/// report: the file of the page; empty: it is written already. verb: "diagnose", or empty for identify itself.
+std::vector<Suggestion> ways_to_look(const std::string& verb, const std::vector<std::string>& arguments,
+                                     const std::string& path, bool report_written);
+
 /// `words` with `more` behind them.
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
 

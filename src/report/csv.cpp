@@ -145,10 +145,68 @@ void add_files(WholeFolder& files, const Identification& trace, std::span<const 
   write_errors(files, trace, model, member);
 }
 
+constexpr double kMicron = 1e-6;
+
+void write_response(WholeFolder& folder, const RateStateAnalysis& analysis) {
+  struct Value {
+    const RateStateCurve& curve;
+    std::size_t i;
+  };
+  std::vector<CsvColumn<Value>> columns = {
+      {"step_number", [](const Value& v) { return v.curve.step + 1; }},
+      {"time_s", [](const Value& v) { return v.curve.time[v.i]; }},
+      {"load_point_um", [](const Value& v) { return v.curve.displacement[v.i] / kMicron; }},
+      {"mu", [](const Value& v) { return v.curve.friction[v.i]; }},
+      {"mu_model", [](const Value& v) { return v.curve.model[v.i]; }},
+      {"mu_other", [](const Value& v) { return v.curve.other.empty() ? std::nan("") : v.curve.other[v.i]; }},
+  };
+  CsvTable table(folder, "response.csv", std::move(columns), kMeasuredDigits);
+  for (const RateStateCurve& curve : analysis.curves) {
+    for (std::size_t i = 0; i < curve.time.size(); ++i) table.row({curve, i});
+  }
+}
+
+void write_steps(WholeFolder& folder, const RateStateAnalysis& analysis) {
+  std::vector<CsvColumn<std::size_t>> columns = {
+      {"step_number", [](std::size_t s) { return s + 1; }},
+      {"time_s", [&](std::size_t s) { return analysis.steps[s].time; }},
+      {"from_um_s", [&](std::size_t s) { return analysis.steps[s].before / kMicron; }},
+      {"to_um_s", [&](std::size_t s) { return analysis.steps[s].after / kMicron; }},
+      {"hold_s", [&](std::size_t s) { return analysis.steps[s].hold; }},
+  };
+  const auto own = [&](std::size_t s) -> const RateStateFit* {
+    if (analysis.each.empty()) return s == 0 && analysis.fitted() ? &analysis.fits[analysis.best] : nullptr;
+    return analysis.each[s].converged ? &analysis.each[s] : nullptr;
+  };
+  if (analysis.fitted()) {
+    const std::vector<FitParameter>& parameters = analysis.fits[analysis.best].parameters;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const Parameter& p = parameters[k].parameter;
+      const std::string unit = p.unit == "1" ? "" : p.unit == "um" ? "_um" : "_per_um";
+      const auto cell = [own, k](std::size_t s, double FitParameter::*value) {
+        const RateStateFit* fit = own(s);
+        return fit == nullptr ? std::nan("") : shown(fit->parameters[k], fit->parameters[k].*value);
+      };
+      columns.emplace_back(p.name + unit, [cell](std::size_t s) { return cell(s, &FitParameter::value); });
+      columns.emplace_back(p.name + "_std_error" + unit,
+                           [cell](std::size_t s) { return cell(s, &FitParameter::std_error); });
+    }
+    columns.emplace_back("mu_0", [&](std::size_t s) { return analysis.fits[analysis.best].base_friction[s].value; });
+  }
+  CsvTable table(folder, "steps.csv", std::move(columns), kMeasuredDigits);
+  for (std::size_t s = 0; s < analysis.steps.size(); ++s) table.row(s);
+}
+
 }  // namespace
 
 void write_csv_folder(const std::string& folder, const Identification& result) {
   WholeFolder files(folder);
+  if (result.rate_state) {
+    write_response(files, *result.rate_state);
+    write_steps(files, *result.rate_state);
+    files.commit();
+    return;
+  }
   add_files(files, result, result.fits, result.best);
   files.commit();
 }

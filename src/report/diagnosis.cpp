@@ -169,13 +169,19 @@ void add_verdict(const DiagnosedTraces& result, TerminalText& text) {
   for (std::size_t k = said ? 1 : 0; k < d.messages.size(); ++k) text.line("note: " + d.messages[k]);
 }
 
-/// Parameters of the effects that were found.
+/// Parameters of what was found before any fit, which are no part of the law.
 ReportTable found_table(const DiagnosedTraces& result) {
   ReportTable table;
   table.text({"parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
+  const std::vector<FitParameter> none;
+  const std::vector<FitParameter>& of_law =
+      result.best < result.fits.size() ? result.fits[result.best].parameters : none;
   for (const Rung& rung : found_effects(result.diagnosis)) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
     if (finding == nullptr) continue;
+    const bool stands_in_law = std::any_of(of_law.begin(), of_law.end(),
+                                           [&](const FitParameter& p) { return p.effect.starts_with(finding->key); });
+    if (stands_in_law) continue;
     for (const FitParameter& p : finding->parameters) {
       const int places = places_of(p);
       table.rows.push_back({finding->key + "." + p.parameter.name, fixed(shown(p, p.value), places),
@@ -186,17 +192,30 @@ ReportTable found_table(const DiagnosedTraces& result) {
   return table;
 }
 
-void add_found(const DiagnosedTraces& result, TerminalText& text) {
-  const ReportTable table = found_table(result);
-  if (table.rows.empty()) return;
-  text.heading("Effects found");
+/// A table of four columns, or its rows on two lines each where it is too wide.
+void add_parameters(const ReportTable& table, TerminalText& text) {
   if (widest(aligned(table, 2)) <= text.width()) {
     text.table(table);
-  } else {
-    for (const std::vector<std::string>& row : table.rows) {
-      text.line(row[0]);
-      text.line(row[1] + " " + row[2] + " " + row[3], 4);
-    }
+    return;
+  }
+  for (const std::vector<std::string>& row : table.rows) {
+    text.line(row[0]);
+    text.line(row[1] + " " + row[2] + " " + row[3], 4);
+  }
+}
+
+/// The final model whole: the law with its parameters, then what was found beside it, and the equations.
+void add_law(const DiagnosedTraces& result, TerminalText& text) {
+  const ReportTable table = found_table(result);
+  if (result.best < result.fits.size() && !result.fits[result.best].parameters.empty()) {
+    const Fit& fit = result.fits[result.best];
+    text.heading("The whole law: " + curve_name(fit));
+    add_parameters(law_table(fit, result.traces.front().motion), text);
+    text.line(std::string(describe(fit.model.law()).equation));
+  }
+  if (!table.rows.empty()) {
+    text.heading("Found beside it");
+    add_parameters(table, text);
   }
   for (const Rung& rung : found_effects(result.diagnosis)) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
@@ -239,7 +258,6 @@ std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOption
   add_ladder(result, text);
   add_where(result, text);
   add_verdict(result, text);
-  add_found(result, text);
   add_experiment(d, text);
   add_by_reason(d, EffectStatus::untried, "Not tried", text);
   add_by_reason(d, EffectStatus::untestable, "What these data cannot show", text);
@@ -247,7 +265,11 @@ std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOption
   for (const Confirmation& c : d.confirmations) text.line(confirmation_sentence(c, result));
   if (!d.formula.empty()) text.heading("A closed form of what remains");
   if (!d.formula.empty()) text.line(d.formula);
+  add_law(result, text);
   text.next(next_after_diagnosis(result, options));
+  if (result.traces.size() == 1 && d.verdict != Verdict::not_enough_data) {
+    text.look(ways_to_look("diagnose", options.arguments, result.traces.front().path, options.report_written));
+  }
   return text.take();
 }
 

@@ -48,42 +48,52 @@ Chart ladder_chart(const DiagnosedTraces& result) {
   return chart;
 }
 
-/// Shares of the law and of the final model beside the same variables.
-Chart where_chart(const Diagnosis& d) {
+/// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
+Chart where_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
   Chart chart{.id = "where",
-              .title = "What the error above the noise floor varies with",
-              .note = where_sentence(d.where) + " Shares overlap where variables go together.",
-              .x = {"share", "%", 0, 105},
-              .height = 120 + 34 * static_cast<int>(std::max<std::size_t>(3, d.where.size())),
+              .title = "Where the error goes: what it varies with",
+              .note = where_sentence(d.where) +
+                      " Each bar is the error that a free function of the variable would take away; on top the whole "
+                      "held-out error. Bars overlap where variables go together.",
+              .x = {.quantity = "error", .unit = level_unit(result).empty() ? "1" : "N", .from_zero = true},
+              .marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}},
+              .height = 150 + 40 * static_cast<int>(std::max<std::size_t>(3, d.where.size() + 1)),
               .half = true};
+  if (d.ladder.empty()) return chart;
   ChartAxis& names = chart.panels[0].axis;
   ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
+  const Rung &first = d.ladder.front(), &last = d.ladder.back();
   for (auto share = d.where.rbegin(); share != d.where.rend(); ++share) {  // the largest on top
     names.names.emplace_back(to_string(share->variable));
-    before.values.push_back(100 * share->share);
+    before.values.push_back(error_of_share(share->share, first.held_out_rmse, d.floor_rmse));
     const auto left = std::find_if(d.remaining.begin(), d.remaining.end(),
                                    [&](const Share& other) { return other.variable == share->variable; });
-    after.values.push_back(left == d.remaining.end() ? 0 : 100 * left->share);
+    after.values.push_back(left == d.remaining.end() ? 0
+                                                     : error_of_share(left->share, last.held_out_rmse, d.floor_rmse));
   }
+  names.names.emplace_back("whole error");
+  before.values.push_back(first.held_out_rmse);
+  after.values.push_back(last.held_out_rmse);
   chart.bars.push_back(std::move(before));
   if (d.ladder.size() > 1) chart.bars.push_back(std::move(after));
   return chart;
 }
 
-/// Of the effects that were fitted, by the value of EffectStatus.
 /// Of what was fitted, in the order of EffectStatus.
 constexpr std::array<Stroke, 5> kStatusStrokes = {
     dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
     dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
     dots(Colour::grey, Symbol::triangle_down, 9)};
 
-/// By their status, then by their held-out error.
-std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d) {
+enum class Order { status, error };
+/// By their status, then by their held-out error; or by that error alone.
+std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d, Order by) {
   std::vector<const EffectFinding*> order;
   for (const EffectFinding& finding : d.effects) order.push_back(&finding);
   const auto error = [](const EffectFinding* f) { return std::isfinite(f->held_out_rmse) ? f->held_out_rmse : 1e300; };
   std::stable_sort(order.begin(), order.end(), [&](const EffectFinding* a, const EffectFinding* b) {
-    return a->status != b->status ? a->status < b->status : error(a) < error(b);
+    return by == Order::status && a->status != b->status ? a->status < b->status : error(a) < error(b);
   });
   return order;
 }
@@ -92,13 +102,14 @@ std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d) {
 Chart candidates_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart = errors_chart(result, "candidates", "Each candidate: held-out error with it",
-                             "At the rung where it was judged last; bars are one standard error, from cycle to cycle. "
-                             "Dashed: the noise floor; dotted: the bare law.");
+                             "Sorted by the error. Each was judged last at a rung of its own, so errors of different "
+                             "statuses need not compare: what is superseded helps alone but not beside what was added, "
+                             "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
   chart.panels[0].axis.digits = 6;
   for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
     chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
   }
-  for (const EffectFinding* finding : sorted_findings(d)) {
+  for (const EffectFinding* finding : sorted_findings(d, Order::error)) {
     const auto status = static_cast<std::size_t>(finding->status);
     if (status >= kStatusStrokes.size() || !std::isfinite(finding->held_out_rmse)) continue;
     ChartLine& line = chart.lines[status];
@@ -114,7 +125,7 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
   table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
   table.folded = true;
-  for (const EffectFinding* f : sorted_findings(d)) {
+  for (const EffectFinding* f : sorted_findings(d, Order::status)) {
     std::string parameters;
     if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {
@@ -132,7 +143,7 @@ ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& mot
   const Diagnosis& d = result.diagnosis;
   ReportSection section{"diagnosis", "Effects found", {}};
   section.add(ladder_chart(result));
-  section.add(where_chart(d));
+  section.add(where_chart(result));
   section.heading("Next experiment");
   section.plain(d.next_experiment.empty() ? "None is needed." : d.next_experiment);
   if (!d.formula.empty()) {
@@ -161,7 +172,11 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   for (const Identification& trace : result.traces) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
-  if (count == 1) report.facts = facts_of(result.traces.front());
+  report.facts = model_facts("final model", result.fits, result.best, motion);
+  if (count == 1) {
+    const Facts record = facts_of(result.traces.front());
+    report.facts.insert(report.facts.end(), record.begin(), record.end());
+  }
   const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
   const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
   const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
@@ -181,6 +196,7 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   if (count > 0) sections.trace.add(health_table(result.traces));
   add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
+  sections.add_sources();
   report.add({diagnosis_section(result, motion), sections.trace, sections.law, sections.errors, sections.cycles,
               run_section(diagnose_command(result, options), result.traces, next_after_diagnosis(result, options))});
   return report;

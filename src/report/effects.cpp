@@ -7,6 +7,7 @@
 
 #include "numbers.hpp"
 #include "terminal_text.hpp"
+#include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 
@@ -109,6 +110,11 @@ std::string render_laws(std::span<const Law> laws, const TerminalOptions& option
     text.line(info.statement, 4);
     text.line(info.equation, 4);
     text.raw("    " + text.dim(wrapped(parameters_text(info.parameters), text.width(), 4)) + "\n");
+  }
+  text.heading("Rate and state of velocity steps and holds (--evolution; identify help kinds)");
+  for (const StateEvolution evolution : state_evolutions) {
+    text.raw("  " + text.bold(std::string(to_string(evolution))) + "\n");
+    text.line(fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c), {}", equation_of(evolution)), 4);
   }
   text.raw("\n");
   return text.take();

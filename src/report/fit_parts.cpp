@@ -86,7 +86,7 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
                         fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter), slow);
   section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} ({}).", level(fit.error.rmse),
                            level(fit.error.held_out_rmse), level(fit.floor.rmse), parts));
-  section.soft(fmt::format("Relative error (Eq 5) mean {}, largest {}; explains {} of the error above the noise floor.",
+  section.soft(fmt::format("Relative error mean {}, largest {}; explains {} of the error above the noise floor.",
                            percent(fit.error.mean_relative), percent(fit.error.max_relative),
                            share_text(fit.explained)));
   if (fit.model.acts_in_stick() && std::isfinite(fit.stick_rmse)) {
@@ -150,6 +150,28 @@ void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSectio
 }
 
 }  // namespace
+
+Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion) {
+  Facts facts;
+  if (best >= fits.size() || fits[best].parameters.empty()) return facts;
+  facts.emplace_back(name, curve_name(fits[best]));
+  for (const FitParameter& p : fits[best].parameters) facts.emplace_back(full_name(p), value_text(p, motion));
+  return facts;
+}
+
+ReportTable law_table(const Fit& fit, const Motion& motion) {
+  ReportTable table;
+  table.text({"parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
+  for (const FitParameter& p : fit.parameters) {
+    const int places = places_of(p);
+    const std::string limits = limits_text(p);
+    table.rows.push_back({full_name(p), p.determined ? fixed(shown(p, p.value), places) : "not determined",
+                          p.determined ? interval_text(shown(p, p.lower95), shown(p, p.upper95), places)
+                                       : (limits.empty() ? "-" : limits),
+                          shown_unit(p, motion) + (p.at_bound ? " (at bound)" : "")});
+  }
+  return table;
+}
 
 void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
               ReportSection& section) {

@@ -5,6 +5,7 @@
 
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
+#include "rate_state.hpp"
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
 #include "tribofit/kinematics/health_names.hpp"
@@ -78,23 +79,39 @@ bool is_unusable(const Identification& r) {
   return r.fits.empty() || quality_of(r.fits[r.best]) == FitQuality::unusable;
 }
 
-/// The best law and its parameters: what a reader looks for first.
-Facts result_facts(const Identification& result) {
-  Facts facts;
-  if (result.fits.empty() || result.fits[result.best].parameters.empty()) return facts;
-  const Fit& best = result.fits[result.best];
-  facts.emplace_back("best law", curve_name(best));
-  for (const FitParameter& p : best.parameters) facts.emplace_back(full_name(p), value_text(p, result.motion));
-  return facts;
+/// Of what the motion shows, in the order of RecordKind.
+constexpr std::array<const char*, 8> kHeadings = {
+    "Stick-slip", "Sliding",        "Points",         "Stick-slip",
+    "Motion",     "Friction alone", "Velocity steps", "Slide, hold, slide"};
+
+std::string render_driven(const Identification& result, const TerminalOptions& options) {
+  TerminalText text(options);
+  add_record(result, text);
+  ReportSection section;
+  if (result.rate_state) add_rate_state(*result.rate_state, result.motion, section);
+  text.items(section.items);
+  text.result(result.warnings, verdict(result), next_command(result, options));
+  return text.take();
 }
 
-/// Of what the motion shows, in the order of RecordKind.
-constexpr std::array<const char*, 6> kHeadings = {"Stick-slip", "Sliding", "Points",
-                                                  "Stick-slip", "Motion",  "Friction alone"};
+Report report_of_driven(const Identification& result, const ReportOptions& options) {
+  Report report = titled_report("friction law", file_name(result.path), "Rate and state", verdict(result));
+  report.warnings = result.warnings;
+  report.facts = facts_of(result);
+  ReportSection response{"trace", "Model and measurement", {}}, law{"law", "Rate and state", {}};
+  if (result.rate_state) {
+    response.add(rate_state_charts(*result.rate_state));
+    add_rate_state(*result.rate_state, result.motion, law);
+  }
+  report.add({response, law,
+              run_section(command_line(options, {}, result.path), {&result, 1}, next_command(result, options))});
+  return report;
+}
 
 }  // namespace
 
 std::string verdict(const Identification& result) {
+  if (result.rate_state) return verdict_on(*result.rate_state);
   if (!result.analysed) return "No law was fitted; what the trace does show stands above.";
   if (is_unusable(result)) return "No fit can be trusted here; the notes at the fits say why.";
   const Fit& best = result.fits[result.best];
@@ -104,6 +121,10 @@ std::string verdict(const Identification& result) {
 Suggestion next_command(const Identification& result, const ReportOptions& options) {
   const auto same_with = [&](const std::vector<std::string>& more) { return command_line(options, more, result.path); };
   const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
+  if (result.rate_state && result.rate_state->fitted()) {
+    if (!options.csv_written) return {"to plot the response and to go on with the values of each step", same_with(csv)};
+    return {"to see the response on a page of charts", same_with({"--report", "steps.html"})};
+  }
   if (result.force_statistics) return {"to see what else the file holds", command_line({"columns"}, {result.path})};
   if (!result.analysed || is_unusable(result)) {
     if (result.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim")) {
@@ -124,6 +145,7 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
 }
 
 std::string render_terminal(const Identification& result, const TerminalOptions& options) {
+  if (is_driven_in_steps(result.motion.kind)) return render_driven(result, options);
   TerminalText text(options);
   add_record(result, text);
   text.heading(style_of(kind_of_record(result.motion, result.segmentation), kHeadings));
@@ -142,28 +164,42 @@ std::string render_terminal(const Identification& result, const TerminalOptions&
   add_comparisons(result.fits, result.best, result.motion, laws);
   text.items(laws.items);
   text.result(result.warnings, verdict(result), next_command(result, options));
+  if (result.analysed && !is_unusable(result)) {
+    text.look(ways_to_look("", options.arguments, result.path, options.report_written));
+  }
   return text.take();
 }
 
 Report report_of(const Identification& result, const ReportOptions& options) {
+  if (is_driven_in_steps(result.motion.kind)) return report_of_driven(result, options);
   constexpr std::size_t kDrawnModels = 3;
   Report report = titled_report("friction law", file_name(result.path), "Friction law", verdict(result));
   report.warnings = result.warnings;
   report.facts = facts_of(result);
-  const Facts best = result_facts(result);
+  const Facts best = model_facts("best law", result.fits, result.best, result.motion);
   report.facts.insert(report.facts.begin(), best.begin(), best.end());
   const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
   const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
   const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
   TraceSections sections;
-  sections.add_trace(DrawnTrace(result, models, curves, "t1"));
+  const DrawnTrace drawn(result, models, curves, "t1");
+  sections.add_models(drawn);
+  if (!options.leave_out_cycles) sections.add_cycles(drawn);
   sections.trace.add(health_table({&result, 1}));
   add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::all, sections.law);
   add_comparisons(result.fits, result.best, result.motion, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
+  sections.add_sources();
   report.add({sections.trace, sections.law, sections.errors, sections.cycles,
               run_section(command_line(options, {}, result.path), {&result, 1}, next_command(result, options))});
   return report;
+}
+
+ReportSection cycles_section(const Identification& result) {
+  const std::vector<const Fit*> none;
+  TraceSections sections;
+  sections.add_cycles(DrawnTrace(result, none, none, "t1"));
+  return sections.cycles;
 }
 
 }  // namespace tribofit

@@ -1,4 +1,5 @@
 #include "tribofit/report/json.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
+#include "rate_state.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/version.hpp"
 
@@ -120,7 +122,9 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
 
 Json health_json(const Motion& motion) {
   return list_of(motion.health, [](const HealthItem& item) {
-    return object("check", item.check, "status", to_string(item.status), "message", item.message);
+    const bool made = health_check::was_made(item.message);
+    return object("check", item.check, "status", made ? to_string(item.status) : "not-checked", "message",
+                  item.message);
   });
 }
 
@@ -230,12 +234,18 @@ Json record_json(const Identification& trace, const JsonOptions& options) {
 
 Json identification_json(const Identification& r, const JsonOptions& options) {
   Json json = record_json(r, options);
-  add_members(json, "fits", fits_json(r.fits, r.motion), "best", r.fits.empty() ? Json(nullptr) : Json(r.best),
+  const bool driven = r.rate_state && !r.rate_state->fits.empty();
+  if (r.rate_state) json["rate_state"] = rate_state_json(*r.rate_state, r.motion);
+  add_members(json, "fits", driven ? rate_state_fits_json(*r.rate_state, r.motion) : fits_json(r.fits, r.motion),
+              "best",
+              driven           ? Json(r.rate_state->best)
+              : r.fits.empty() ? Json(nullptr)
+                               : Json(r.best),
               "law_comparison", comparisons_json(r.fits, r.best), "analysed", r.analysed, "warnings", r.warnings);
   return json;
 }
 
-std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
+Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options) {
   const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const bool one = result.traces.size() == 1;
@@ -253,7 +263,11 @@ std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
     mark_as_shared(json["fits"]);
     mark_as_shared(json["diagnosis"]["effects"]);
   }
-  return text_of(json);
+  return json;
+}
+
+std::string to_json(const DiagnosedTraces& result, const JsonOptions& options) {
+  return text_of(diagnosed_json(result, options));
 }
 
 std::string to_json(const Identification& result, const JsonOptions& options) {

@@ -27,8 +27,12 @@ Json rig_json(const RigFit& rig);
 
 /// The whole result of one trace.
 Json identification_json(const Identification& result, const JsonOptions& options);
+/// The whole result of a diagnosis.
+Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options);
 /// A report as the page takes it: its members under their own names, those that have their default value left out,
 /// numbers with no more digits than are drawn.
 Json report_json(const Report& report);
+/// One of its sections.
+Json section_json(const ReportSection& section);
 
 }  // namespace tribofit

@@ -15,6 +15,12 @@ int leading_power(double value, int digits) {
   return std::stoi(text.substr(text.find('e') + 1));
 }
 
+/// "0.0" for "-0.0" and "+0.0": what is rounded away has no sign.
+std::string without_sign_of_zero(std::string text) {
+  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
+  return is_zero && (text[0] == '-' || text[0] == '+') ? text.substr(1) : text;
+}
+
 }  // namespace
 
 std::string significant(double value, int digits) {
@@ -26,7 +32,10 @@ std::string significant(double value, int digits) {
 }
 
 std::string brief(double value) {
-  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+  constexpr double kWritable = 1e7;  // beyond it zeros are no longer counted at a glance
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  return size >= 1e4 && size < kWritable ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
 }
 
 int places_for(double std_error) {
@@ -37,13 +46,13 @@ int places_for(double std_error) {
 
 std::string fixed(double value, int places) {
   if (!std::isfinite(value)) return "-";
-  if (places >= 0) return fmt::format("{:.{}f}", value, std::min(places, 12));
+  if (places >= 0) return without_sign_of_zero(fmt::format("{:.{}f}", value, std::min(places, 12)));
   const double step = std::pow(10.0, -places);
   return fmt::format("{:.0f}", std::round(value / step) * step);
 }
 
 std::string with_sign(double value, int places, std::string_view more) {
-  return std::isfinite(value) ? fmt::format("{:+.{}f}{}", value, places, more) : "-";
+  return std::isfinite(value) ? without_sign_of_zero(fmt::format("{:+.{}f}", value, places)) + std::string(more) : "-";
 }
 
 std::string with_error(double value, double std_error) {

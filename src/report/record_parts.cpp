@@ -6,11 +6,13 @@
 #include <limits>
 
 #include "numbers.hpp"
+#include "rate_state.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/kinematics/health_names.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -151,7 +153,9 @@ std::string spring_text(const Condition& known, double unit, std::string_view na
   return fmt::format("{} {} ({})", brief(known.value / unit), name, known.source);
 }
 
-Facts condition_facts(const Motion& motion) {
+Facts condition_facts(const Identification& r) {
+  const Motion& motion = r.motion;
+  const RateStateAnalysis* analysis = r.rate_state ? &*r.rate_state : nullptr;
   constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
   const SpringDrive& s = motion.spring;
   const auto& [of_radius, of_speed, of_load] = condition_infos;
@@ -171,6 +175,11 @@ Facts condition_facts(const Motion& motion) {
             load};
   }
   if (motion.kind == RecordKind::force_only) return {load};
+  if (is_driven_in_steps(motion.kind)) {
+    Facts facts = load_point_facts(motion, analysis);
+    if (!motion.load.empty()) facts.push_back(load);
+    return facts;
+  }
   return {{std::string(of_radius.name), condition(motion, of_radius)}, {"disc speed", speed_text(motion)}, load};
 }
 
@@ -184,7 +193,15 @@ void add_health(const Motion& motion, TerminalText& text) {
         check.status == HealthItem::Status::problem ? text.in_red("problem ") : text.in_yellow("warning ");
     text.raw(fmt::format("  {} {:<16} {}\n", head, check.check, wrapped(check.message, text.width(), 28)));
   }
-  if (!found) text.raw(fmt::format("  no problems found ({} checks)\n", motion.health.size()));
+  const auto made =
+      static_cast<std::size_t>(std::count_if(motion.health.begin(), motion.health.end(), [](const HealthItem& check) {
+        return health_check::was_made(check.message);
+      }));
+  const std::size_t not_made = motion.health.size() - made;
+  if (!found) {
+    text.raw(fmt::format("  no problems found ({} checks{})\n", made,
+                         not_made > 0 ? fmt::format(", {} not possible", not_made) : ""));
+  }
 }
 
 /// Level and fall of the pull over the cycles, which need no velocity.
@@ -213,6 +230,7 @@ std::string record_sentence(const Identification& r) {
 
 Facts stick_slip_facts(const Identification& r) {
   if (r.motion.is_points()) return point_facts(r.motion);
+  if (is_driven_in_steps(r.motion.kind)) return {};
   if (r.force_statistics) return force_facts(*r.force_statistics, friction_unit(r.motion));
   const Segmentation& s = r.segmentation;
   Facts facts = {{"cycles", cycles_text(s)}};
@@ -250,7 +268,7 @@ Facts stick_slip_facts(const Identification& r) {
 
 Facts facts_of(const Identification& r) {
   Facts facts = {{"kind of record", kind_text(r)}, {"record", record_sentence(r)}};
-  for (const Facts& more : {condition_facts(r.motion), stick_slip_facts(r)}) {
+  for (const Facts& more : {condition_facts(r), stick_slip_facts(r)}) {
     facts.insert(facts.end(), more.begin(), more.end());
   }
   return facts;
@@ -262,18 +280,23 @@ ReportTable health_table(std::span<const Identification> traces) {
   ReportTable table("Health of the data");
   if (several) table.text({"trace"});
   table.text({"check", "status", "what was found"});
-  for (const HealthItem::Status status :
-       {HealthItem::Status::problem, HealthItem::Status::warning, HealthItem::Status::ok}) {
+  const auto add = [&](HealthItem::Status status, bool made) {
     for (const Identification& trace : traces) {
       for (const HealthItem& item : trace.motion.health) {
-        if (item.status != status) continue;
+        if (item.status != status || health_check::was_made(item.message) != made) continue;
         std::vector<std::string> row = {
             item.check, kSigns.at(static_cast<std::size_t>(status)) + std::string(to_string(status)), item.message};
+        if (!made) row = {item.check, "– not checked", item.message.substr(health_check::kNotChecked.size())};
         if (several) row.insert(row.begin(), trace.path);
         table.rows.push_back(std::move(row));
       }
     }
+  };
+  for (const HealthItem::Status status :
+       {HealthItem::Status::problem, HealthItem::Status::warning, HealthItem::Status::ok}) {
+    add(status, true);
   }
+  add(HealthItem::Status::ok, false);
   return table;
 }
 
@@ -291,11 +314,11 @@ void add_record(const Identification& r, TerminalText& text) {
     if (std::find(elsewhere.begin(), elsewhere.end(), note) == elsewhere.end()) text.line(note);
   }
   text.heading("Conditions");
-  for (const auto& [name, value] : condition_facts(m)) text.item(name, value);
+  for (const auto& [name, value] : condition_facts(r)) text.item(name, value);
   if (m.friction_kind == FrictionKind::force) {
     text.item("friction", "is a force in newtons: no normal force is known");
   }
-  add_health(m, text);
+  if (!is_driven_in_steps(m.kind)) add_health(m, text);
 }
 
 }  // namespace tribofit

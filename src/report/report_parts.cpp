@@ -73,7 +73,19 @@ std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std:
   return curves;
 }
 
+void TraceSections::add_sources() {
+  if (errors.items.empty()) return;
+  errors.soft(
+      "Source of the relative error and of its line at 8 %: the disc-block study with four friction radii of 2023, "
+      "Eq 5 and Fig 12.");
+}
+
 void TraceSections::add_trace(const DrawnTrace& drawn) {
+  add_models(drawn);
+  add_cycles(drawn);
+}
+
+void TraceSections::add_models(const DrawnTrace& drawn) {
   if (drawn.trace.motion.is_points()) {
     law.add(points_chart(drawn));
     errors.add(error_charts(drawn));
@@ -81,12 +93,16 @@ void TraceSections::add_trace(const DrawnTrace& drawn) {
   }
   std::vector<Chart> windows = cycle_charts(drawn);
   if (drawn.trace.motion.size() < 2) return;
-  ReportSection& whole = windows.empty() ? trace : cycles;
+  if (windows.empty()) windows.push_back(record_chart(drawn));
   trace.add(std::move(windows));
   law.add(law_chart(drawn));
   errors.add(error_charts(drawn));
+}
+
+void TraceSections::add_cycles(const DrawnTrace& drawn) {
+  if (drawn.trace.motion.is_points() || drawn.trace.motion.size() < 2) return;
   cycles.add(measure_charts(drawn));
-  whole.add(record_chart(drawn));
+  if (shows_cycles(drawn)) cycles.add(record_chart(drawn));
 }
 
 ReportSection run_section(const std::string& command, const std::string& more) {

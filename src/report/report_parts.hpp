@@ -41,6 +41,11 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
 /// Per-cycle extremes beside the joint fit and by how much they differ, then the best law against each other one.
 void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section);
 
+/// A model and its parameters: what a reader looks for first. name: "best law"; nothing where there is no fit.
+Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion);
+/// Value, 95 % interval and unit of each parameter of a model.
+ReportTable law_table(const Fit& fit, const Motion& motion);
+
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
 
@@ -58,6 +63,10 @@ struct TraceSections {
   ReportSection trace{"trace", "Model and measurement", {}}, law{"law", "Friction law", {}},
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
   void add_trace(const DrawnTrace& drawn);
+  /// A footnote below the errors: where their measure comes from.
+  void add_sources();
+  void add_models(const DrawnTrace& drawn);  ///< all of it but the cycles
+  void add_cycles(const DrawnTrace& drawn);
 };
 
 /// What was run: the command and what made the report; `more` is said behind that.

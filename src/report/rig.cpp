@@ -42,23 +42,31 @@ ReportTable rig_table(const RigFit& rig) {
   return table;
 }
 
+/// Where the values come from, how they were checked, and what limits them.
+Facts behind_rig(const RigFit& rig) {
+  Facts facts;
+  if (rig.stiffness.determined && rig.mass.determined) {
+    facts.emplace_back(
+        "from", fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} "
+                            "ms)",
+                            rig.cycles, significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
+                            significant(rig.smoothing / kMillisecond, 2)));
+    if (rig.stick_slope_stiffness.determined) {
+      facts.emplace_back("check", fmt::format("the stiffness from the force balance is {} standard errors from that by "
+                                              "the slope of stick, N (dmu/dt)/(omega r)",
+                                              with_sign(rig.stick_slope_difference, 1)));
+    }
+  }
+  for (const std::string& message : rig.messages) facts.emplace_back("note", message);
+  return facts;
+}
+
 void add_rig(const RigFit& rig, TerminalText& text) {
   const ReportTable table = rig_table(rig);
   if (table.rows.empty() && rig.messages.empty()) return;
   text.heading("Rig");
   if (!table.rows.empty()) text.table(table);
-  if (rig.stiffness.determined && rig.mass.determined) {
-    text.item("from",
-              fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} ms)", rig.cycles,
-                          significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
-                          significant(rig.smoothing / kMillisecond, 2)));
-    if (rig.stick_slope_stiffness.determined) {
-      text.item("check", fmt::format("the stiffness from the force balance is {:+.1f} standard errors from that by the "
-                                     "slope of stick, N (dmu/dt)/(omega r)",
-                                     rig.stick_slope_difference));
-    }
-  }
-  for (const std::string& message : rig.messages) text.item("note", message);
+  for (const auto& [name, value] : behind_rig(rig)) text.item(name, value);
 }
 
 Suggestion next_of(const RigIdentification& result, const TerminalOptions& options) {
@@ -127,6 +135,34 @@ std::string render_rig(const RigIdentification& result, const TerminalOptions& o
   add_rig(result.rig, text);
   text.result(result.trace.warnings, verdict_on(result.rig), next_of(result, options));
   return text.take();
+}
+
+Report report_of(const RigIdentification& result, const ReportOptions& options) {
+  const Identification& trace = result.trace;
+  const RigFit& rig = result.rig;
+  Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
+  report.warnings = trace.warnings;
+  for (const ShownRigValue& q : shown_rig(rig).all()) {
+    if (!q.value.determined) continue;
+    report.facts.emplace_back(q.name, with_error(q.value.value / q.si, q.value.std_error / q.si) + unit_behind(q.unit));
+  }
+  const Facts record = facts_of(trace);
+  report.facts.insert(report.facts.end(), record.begin(), record.end());
+  ReportSection values{"rig", "The rig", {}};
+  values.add(rig_table(rig));
+  for (const auto& [name, text] : behind_rig(rig)) values.item(capitalised(name) + ": " + text);
+  const std::vector<const Fit*> none;
+  TraceSections sections;
+  sections.add_trace(DrawnTrace(trace, none, none, "t1"));
+  sections.trace.title = "The record";
+  sections.trace.add(health_table({&trace, 1}));
+  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
+  TerminalOptions as_typed;
+  static_cast<ReportOptions&>(as_typed) = options;
+  report.add({std::move(values), std::move(sections.trace), std::move(sections.cycles),
+              run_section(command_line(words_of({"rig"}, options.arguments), {path}), {&trace, 1},
+                          next_of(result, as_typed))});
+  return report;
 }
 
 std::string to_json(const RigIdentification& result, const JsonOptions& options) {

@@ -5,11 +5,65 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <variant>
+
+#include "numbers.hpp"
 
 namespace tribofit {
 
 constexpr std::size_t kIndent = 2;  // of tables
+
+namespace {
+
+/// The columns of a table up to a level of detail.
+ReportTable with_columns(const ReportTable& table, const std::vector<std::size_t>& kept) {
+  ReportTable out;
+  for (const std::size_t k : kept) out.columns.push_back(table.columns[k]);
+  for (const std::vector<std::string>& row : table.rows) {
+    std::vector<std::string>& own = out.rows.emplace_back();
+    for (const std::size_t k : kept) own.push_back(k < row.size() ? row[k] : "");
+  }
+  return out;
+}
+
+/// Lines of a table that is too wide, in blocks of as many columns as fit; each block begins with the columns of text
+/// before the first number, which say what a row is of.
+std::vector<std::vector<std::string>> in_blocks(const ReportTable& table, std::size_t width) {
+  std::vector<std::size_t> heads, others;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    if (table.columns[k].detail > 0) continue;
+    (others.empty() && (heads.empty() || !table.columns[k].number) ? heads : others).push_back(k);
+  }
+  std::set<std::string> first;
+  for (const std::vector<std::string>& row : table.rows) first.insert(row.empty() ? "" : row[0]);
+  if (heads.size() > 1 && first.size() == table.rows.size() &&
+      first.count("") == 0) {  // its name says what a row is of
+    others.insert(others.begin(), heads.begin() + 1, heads.end());
+    heads.resize(1);
+  }
+  const auto lines_of = [&](std::vector<std::size_t> columns, const std::vector<std::size_t>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+    return aligned(with_columns(table, columns), kIndent);
+  };
+  while (heads.size() > 1 && widest(lines_of(heads, {})) > width / 2) {  // leave room for what they are of
+    others.insert(others.begin(), heads.back());
+    heads.pop_back();
+  }
+  std::vector<std::vector<std::string>> blocks;
+  for (std::size_t begin = 0, end = 0; begin < others.size(); begin = end) {
+    std::vector<std::size_t> columns;
+    for (end = begin; end < others.size(); ++end) {
+      columns.push_back(others[end]);
+      if (end > begin && widest(lines_of(heads, columns)) > width) break;
+    }
+    if (end < others.size()) columns.pop_back();
+    blocks.push_back(lines_of(heads, columns));
+  }
+  return blocks;
+}
+
+}  // namespace
 
 TerminalText::TerminalText(const TerminalOptions& options)
     : width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {
@@ -71,8 +125,17 @@ void TerminalText::table(const ReportTable& all, std::size_t most) {
     rows = aligned(table, kIndent, detail);
     if (widest(rows) <= width_) break;
   }
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    text_ += (k == 0 ? dim(rows[k]) : rows[k]) + "\n";
+  const auto show = [&](const std::vector<std::string>& lines) {
+    for (std::size_t k = 0; k < lines.size(); ++k) text_ += (k == 0 ? dim(lines[k]) : lines[k]) + "\n";
+  };
+  if (widest(rows) <= width_ || table.columns.size() < 3) {
+    show(rows);
+  } else {
+    const auto blocks = in_blocks(table, width_);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      if (b > 0) text_ += "\n";
+      show(blocks[b]);
+    }
   }
   if (all.rows.size() > most) line(fmt::format("... and {} more in {}", all.rows.size() - most, all.file));
 }
@@ -98,6 +161,12 @@ void TerminalText::section(const ReportSection& section) {
 
 void TerminalText::next(const Suggestion& next) {
   text_ += "\n" + wrapped("Next, " + next.reason + ":", width_, 0) + "\n" + folded_command(next.command, width_) + "\n";
+}
+
+void TerminalText::look(const std::vector<Suggestion>& ways) {
+  for (const Suggestion& way : ways) {
+    text_ += wrapped(capitalised(way.reason) + ":", width_, 0) + "\n" + folded_command(way.command, width_) + "\n";
+  }
 }
 
 void TerminalText::result(const std::vector<std::string>& warnings, std::string_view verdict, const Suggestion& then) {

@@ -32,13 +32,15 @@ class TerminalText {
   void item(std::string_view name, std::string_view text, std::size_t name_width = 18);
   void warning(std::string_view text);
   /// A table with its caption as heading, if it has rows: the first `most` of them, without the columns of most detail
-  /// where the terminal is narrow.
+  /// where the terminal is narrow, and in blocks one below the other where it is too narrow for the others.
   void table(const ReportTable& table, std::size_t most = kAll);
   /// What a page shows of a section; charts, and tables that it folds, are left out.
   void items(const std::vector<ReportItem>& items);
   /// The same under the title of the section, if there are any.
   void section(const ReportSection& section);
   void next(const Suggestion& next);
+  /// Ways to look at the same result, behind the next command.
+  void look(const std::vector<Suggestion>& ways);
   /// What it comes to: warnings, the verdict and the next command.
   void result(const std::vector<std::string>& warnings, std::string_view verdict, const Suggestion& next);
 

@@ -363,7 +363,7 @@ RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation
 Segmentation find_cycles(const Motion& motion) {
   if (motion.is_points()) return slips_of_points(motion);
   Segmentation result;
-  if (motion.kind == RecordKind::force_only) {
+  if (motion.kind == RecordKind::force_only || is_driven_in_steps(motion.kind)) {
     result.kind = MotionKind::always_sticking;
     return result;
   }

@@ -40,6 +40,9 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
     return {
         "friction alone was recorded: a law needs the sliding velocity (a column v_b, v_r, x_b or the disc's speed), "
         "or of a slider on a spring --kind spring-slider with --speed and --stiffness"};
+  if (is_driven_in_steps(motion.kind))
+    return {
+        "a contact whose load point is driven in steps has no cycles: `identify` alone fits rate-and-state friction"};
   if (motion.kind == RecordKind::spring_slider && !must_slip)
     return {"the velocity was made from the pull with the stated stiffness: the pull balances it whatever the rig is"};
   if (!motion.is_points() && motion.size() < kinematics::kFewestSamples)

@@ -69,4 +69,31 @@ inline constexpr double kKinkSquares = 3, kBetterWindow = 2;
 /// signal does beside: at a turning point it is a third.
 inline constexpr double kLoneSample = 6, kLoneSteepness = 3;
 
+// ---- noise that wanders
+
+/// Logarithm of the largest ratio of the variances of wandering and white noise, and of the smallest: beyond it one of
+/// them is not seen.
+inline constexpr double kLargestNoiseRatio = 14;
+/// Fall of minus twice the logarithm of the likelihood from which on noise is said to wander: the price of its two
+/// parameters by Akaike's criterion. White noise reaches it in one series of ten or fewer.
+inline constexpr double kLikelihoodOfWandering = 4;
+
+// ---- lines with corners
+
+/// Change of a slope, over the larger one, that is a corner: a drive keeps a speed to a few per cent, and steps of it
+/// are by half at least. Smaller: a drive that hunts has corners where nobody set any; larger: small steps are missed.
+inline constexpr double kLeastChangeOfSlope = 0.15;
+/// Distance of a corner from the straight line over it, over the noise (its square is what a corner must save in
+/// squares of the noise, where noise alone saves twenty), and way of a level over the noise; slope of a level over
+/// those beside it, which is below any step that people make.
+inline constexpr double kCornerOfNoise = 8, kLevelBeside = 2e-3;
+/// Samples of a piece, and those beside a corner that do not count for its lines, as a drive takes time to change.
+inline constexpr std::size_t kFewestOfPiece = 4, kMarginOfPiece = 5;
+/// Samples among which corners are looked for first: without a corner the work grows with their square.
+inline constexpr std::size_t kMostSplit = 4000;
+/// What numbers are rounded to, over the whole way: a displacement without noise has corners all the same.
+inline constexpr double kRoundingOfWay = 1e-9;
+/// Intervals beside the samples of a corner within which the lines must meet: farther off one of them is no line.
+inline constexpr double kNearCorner = 2;
+
 }  // namespace tribofit

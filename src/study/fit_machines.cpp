@@ -46,7 +46,12 @@ void compare_machines(const IdentifyOptions& options, TwinOptions more, TwinIden
   Identification& trace = out.trace;
   if (trace.analysed) {
     more.threads = options.threads;
-    out.twin = compare_twins(trace.motion, trace.segmentation, trace.fits, out.rigs, more);
+    // A long record and those that are simulated beside it do not fit into memory together.
+    const auto release = [&] {
+      std::vector<double>().swap(trace.motion.friction);
+      std::vector<double>().swap(trace.motion.relative_velocity);
+    };
+    out.twin = compare_twins(trace.motion, trace.segmentation, trace.fits, out.rigs, more, release);
   } else {
     out.twin.reason = trace.warnings.back();
   }

@@ -50,6 +50,9 @@ inline constexpr double kPeriodsOfGrowth = 6;
 /// Machines drawn within the uncertainty have critical speeds within this factor.
 inline constexpr double kFarMachine = 3;
 
+/// A speed of stability is drawn up to this multiple of the speed at which stick vanishes. Larger: an empty picture.
+inline constexpr double kFarBeyondStick = 3;
+
 // ---- uncertainty
 
 /// Draws for each machine until one can be.
@@ -82,5 +85,47 @@ inline constexpr std::size_t kNoisePiece = 400, kNoiseSticks = 50, kFewestNoise 
 
 /// Cycles that show a correlation of break-away.
 inline constexpr std::size_t kFewestLevels = 10;
+
+// ---- the plan
+
+/// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer.
+inline constexpr double kSamplesOfSlip = 200;
+
+/// By which the evidence between two models is weakened before it counts as odds: no model is exact.
+inline constexpr double kTemper = 2, kMostBehind = 60;
+
+/// Cycles of a run: fewer show their scatter badly, more take time to diagnose and show little that is new.
+inline constexpr double kFewestPlannedCycles = 40, kMostPlannedCycles = 120;
+
+/// Revolutions of the disc where a question is about what comes back with its angle, or goes on over time.
+inline constexpr double kPlannedRevolutions = 4;
+
+/// Speeds of a stated range, in equal ratios, and those beside the record's own where nothing is stated.
+inline constexpr std::size_t kLevelsOfRange = 4;
+inline constexpr double kUsualSpeeds[] = {0.25, 0.5, 2, 4};
+
+/// Of the gain that an accelerometer shows: standard uncertainty of its calibration.
+inline constexpr double kErrorOfAccelerometer = 0.01;
+
+/// Conditions closer than this to those of the record are the same.
+inline constexpr double kSameCondition = 0.05;
+
+/// What a minute of measuring must add to the probability.
+inline constexpr double kCostOfMinute = 0.01;
+
+/// Below this probability so far a model is not simulated as the true one: it would hardly change the mean.
+inline constexpr double kLeastLikely = 0.02;
+
+/// Draws of each model for the expected difference, and experiments, the best, for which there is more than one; those
+/// and draws that are diagnosed in full, and the weight of the expected chance beside them, in diagnoses.
+inline constexpr std::size_t kDrawsOfModel = 2, kExperimentsDrawnAgain = 3, kExperimentsInFull = 2,
+                             kMostDrawsInFull = 4;
+inline constexpr double kWeightOfExpected = 3;
+
+/// Cycles, old and new, that are diagnosed in full in all; a core diagnoses some hundred a second.
+inline constexpr double kMostDiagnosedCycles = 1500;
+
+/// Draws of each model for the ranges of what is seen, and experiments of which that is said.
+inline constexpr std::size_t kDrawsToSee = 6, kExperimentsToSee = 4;
 
 }  // namespace tribofit

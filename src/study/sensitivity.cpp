@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "step_counter.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/study/sweep.hpp"
 
@@ -31,7 +32,10 @@ std::vector<Sensitivity> study_sensitivity(const Machine& machine, const Sensiti
     throw InputError("a sweep needs a factor above 1 and at least two values", "give e.g. a factor of 2 and 21 values");
   }
   std::vector<Sensitivity> out;
-  for (const std::string& name : options.variables.empty() ? default_variables(machine) : options.variables) {
+  const std::vector<std::string> names = options.variables.empty() ? default_variables(machine) : options.variables;
+  StepCounter counter(names.size() * (options.count + 2), options.progress);
+  const auto step = [&] { counter.step(); };
+  for (const std::string& name : names) {
     Sensitivity one;
     one.variable = variable_named(machine, name);
     one.base = value_of(machine, name);
@@ -40,10 +44,10 @@ std::vector<Sensitivity> study_sensitivity(const Machine& machine, const Sensiti
     }
     one.values = evenly_spaced(one.base / options.factor, one.base * options.factor, options.count, true);
     if (name == "ratio") std::erase_if(one.values, [](double r) { return r > 1; });
-    one.settled = sweep(machine, name, one.values, options.settle, options.threads);
+    one.settled = sweep(machine, name, one.values, options.settle, options.threads, step);
     constexpr double kStep = 0.01;
     const std::vector<double> beside = {one.base / (1 + kStep), one.base * (1 + kStep)};
-    const std::vector<Settled> at = sweep(machine, name, beside, options.settle, options.threads);
+    const std::vector<Settled> at = sweep(machine, name, beside, options.settle, options.threads, step);
     for (const MeasureInfo& measure : measures()) {
       const double below = at[0].*measure.value, above = at[1].*measure.value;
       const bool comparable = at[0].regime == at[1].regime && below > 0 && above > 0;

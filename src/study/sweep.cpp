@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "step_counter.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -14,8 +15,12 @@ namespace {
 std::vector<double> default_velocities(const Machine& machine, const CriticalSpeed& critical, std::size_t count) {
   const double own = machine.disc_velocity();
   double highest = 2 * own;
-  for (const double v : critical.linear) highest = std::max(highest, 1.2 * v);
-  if (!std::isnan(critical.stick_vanishes)) highest = std::max(highest, 1.2 * critical.stick_vanishes);
+  const bool vanishes = !std::isnan(critical.stick_vanishes);
+  if (vanishes) highest = std::max(highest, 1.2 * critical.stick_vanishes);
+  for (const double v : critical.linear) {
+    // A stability that is lost far beyond the last stick would leave most of the picture empty.
+    if (!vanishes || v < kFarBeyondStick * critical.stick_vanishes) highest = std::max(highest, 1.2 * v);
+  }
   return evenly_spaced(0.1 * own, highest, count, highest > 20 * own);
 }
 
@@ -36,10 +41,12 @@ std::vector<double> evenly_spaced(double low, double high, std::size_t count, bo
 }
 
 std::vector<Settled> sweep(const Machine& machine, std::string_view variable, std::span<const double> values,
-                           const SettleOptions& options, int threads) {
+                           const SettleOptions& options, int threads, const std::function<void()>& done) {
   std::vector<Settled> out(values.size());
-  run_tasks(values.size(), threads,
-            [&](std::size_t i) { out[i] = settle(with_value(machine, variable, values[i]), options); });
+  run_tasks(values.size(), threads, [&](std::size_t i) {
+    out[i] = settle(with_value(machine, variable, values[i]), options);
+    if (done) done();
+  });
   return out;
 }
 
@@ -54,8 +61,11 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
   SettleOptions up = options.settle, down = options.settle;
   up.start = StartFrom::stick;
   down.start = StartFrom::sliding;
-  out.up = sweep(machine, "velocity", out.velocity, up, options.threads);
-  out.down = sweep(machine, "velocity", out.velocity, down, options.threads);
+  const std::size_t drawn = options.covariance.empty() ? 0 : options.draws;
+  StepCounter counter(2 * out.velocity.size() + drawn, options.progress);
+  const auto step = [&] { counter.step(); };
+  out.up = sweep(machine, "velocity", out.velocity, up, options.threads, step);
+  out.down = sweep(machine, "velocity", out.velocity, down, options.threads, step);
   for (const double v : out.velocity) {
     out.growth_rate.push_back(steady_sliding(with_value(machine, "velocity", v)).growth_rate());
   }
@@ -73,6 +83,7 @@ SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options)
   run_tasks(draws.size(), options.threads, [&](std::size_t i) {
     criticals[i] = critical_speed(draws[i], around);
     settled[i] = settle(draws[i], options.settle);
+    counter.step();
   });
   const auto over_draws = [&](const auto& list, const auto& number) {
     std::vector<double> values;

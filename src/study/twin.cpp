@@ -12,7 +12,9 @@
 #include <numbers>
 #include <utility>
 
+#include "fit_machines.hpp"
 #include "motion_measures.hpp"
+#include "simulated_run.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
@@ -44,10 +46,17 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   };
 }
 
-SpeedProfile speed_of(const Motion& motion, double radius, double grid) {
+/// What a simulation takes from the record: its length, and the conditions it was run under.
+struct RecordedConditions {
+  explicit RecordedConditions(const Motion& recorded) : motion(recorded), duration(recorded.duration()) {}
+  const Motion& motion;  ///< whose friction and v_r are not read
+  double duration;       ///< [s]
+};
+
+SpeedProfile speed_of(const Motion& motion, double duration, double radius, double grid) {
   std::vector<double> times, speeds;
   const std::function<double(double)> velocity = follow(motion.disc_velocity, motion.step, grid);
-  for (double t = 0; t < motion.duration(); t += grid) {
+  for (double t = 0; t < duration; t += grid) {
     times.push_back(t);
     speeds.push_back(velocity(t) / radius);
   }
@@ -55,10 +64,11 @@ SpeedProfile speed_of(const Motion& motion, double radius, double grid) {
 }
 
 /// The machine's drive at the record's own conditions.
-Drive drive_of(const Machine& machine, const Motion& motion) {
+Drive drive_of(const Machine& machine, const RecordedConditions& recorded) {
+  const Motion& motion = recorded.motion;
   Drive drive = machine.drive();
   const double grid = 2 * std::numbers::pi / machine.rig.natural_frequency() / kConditionsAPeriod;
-  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, machine.radius, grid);
+  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, recorded.duration, machine.radius, grid);
   if (!motion.load.empty() && motion.friction_kind == FrictionKind::coefficient) {
     drive.load = follow(motion.load, motion.step, grid);
   }
@@ -71,22 +81,6 @@ Drive drive_of(const Machine& machine, const Motion& motion) {
   return drive;
 }
 
-/// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
-double noise_colour(const Motion& motion, const Segmentation& segmentation) {
-  Remainder all;
-  std::size_t used = 0;
-  for (const Cycle& cycle : segmentation.cycles) {
-    const std::size_t n = std::min(kNoisePiece, cycle.stick.size() / 2);
-    if (n < kFewestNoise || ++used > kNoiseSticks) continue;
-    const std::span<const double> piece =
-        std::span(motion.friction).subspan(cycle.stick.begin + cycle.stick.size() / 4, n);
-    Parabola line = fit_parabola(piece);
-    line.curvature = 0;
-    all += remainder_about(line, piece);
-  }
-  return all.correlation(kMostNoiseCorrelation);
-}
-
 /// N/k of a machine: what the spring gives for a unit of friction [m].
 double compliance(const Machine& machine) {
   return machine.load / machine.rig.stiffness;
@@ -94,23 +88,18 @@ double compliance(const Machine& machine) {
 
 /// One simulated record as the measured one is read. shown: takes three cycles of it where it is given.
 MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter& scatter, Sensors sensors,
-                                  const Motion& motion, std::uint64_t seed, BlockMotion* shown) {
-  const Drive drive = drive_of(machine, motion);
+                                  const RecordedConditions& recorded, std::uint64_t seed, BlockMotion* shown) {
+  const Drive drive = drive_of(machine, recorded);
   SimulationOptions options;
-  options.duration = motion.duration();
-  options.rate = 1 / motion.step;
+  options.duration = recorded.duration;
+  options.rate = 1 / recorded.motion.step;
   options.scatter = scatter;
   options.seed = seed;
   if (drive.speed.constant) options.settle = settling_time(machine.rig, drive, machine.parameters);
-  const Channels needs = machine.model.needs();  // what neither sensors nor effects ask for would fill the memory
-  options.channels = {.displacement = true_sensors(sensors, machine.model, machine.parameters).velocity_high_pass > 0,
-                      .acceleration = needs.acceleration || sensors.mass_below > 0,
-                      .disc = needs.angle || !drive.speed.constant,
-                      .distance = needs.distance};
+  options.channels = recorded_channels(machine.model, machine.parameters, drive, sensors);
   sensors.seed = seed + 0x9e3779b97f4a7c15u;
-  Trace trace = record(simulate(machine.rig, drive, machine.model, machine.parameters, options), machine.model,
-                       machine.parameters, sensors)
-                    .trace;
+  Trace trace = recorded_trace(simulate(machine.rig, drive, machine.model, machine.parameters, options), machine.model,
+                               machine.parameters, sensors);
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
   const Motion twin = compute_motion(std::move(trace), {},
@@ -118,7 +107,7 @@ MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter
                                       .undo_high_pass = false,
                                       .undo_speed_ripple = false,
                                       .undo_distortions = false,
-                                      .stick = motion.stick});
+                                      .stick = recorded.motion.stick});
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   if (shown != nullptr) *shown = block_motion(twin, cycles, compliance(machine));
@@ -182,13 +171,14 @@ double portrait_distance(const std::vector<Estimate>& measured, const Prediction
 }
 
 std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified, const Sensors& sensors,
-                                            const Motion& motion, std::size_t count, const TwinOptions& options,
-                                            const std::function<void()>& done, BlockMotion& shown) {
+                                            const RecordedConditions& recorded, std::size_t count,
+                                            const TwinOptions& options, const std::function<void()>& done,
+                                            BlockMotion& shown) {
   const std::vector<Machine> machines = draws_of(identified.machine, identified.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
     try {
-      out[k] = simulated_measures(machines[k], identified.scatter, sensors, motion, options.seed * 1000003 + k,
+      out[k] = simulated_measures(machines[k], identified.scatter, sensors, recorded, options.seed * 1000003 + k,
                                   k == 0 ? &shown : nullptr);
     } catch (const InputError&) {  // numbers that cannot be simulated: one prediction less
     }
@@ -265,6 +255,12 @@ bool TwinIdentification::law_falls_short() const {
 
 Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
                    std::span<const RigFit> rigs, const TwinOptions& options) {
+  return compare_twins(motion, segmentation, fits, rigs, options, [] {});
+}
+
+Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
+                   std::span<const RigFit> rigs, const TwinOptions& options,
+                   const std::function<void()>& measured_all) {
   Twin twin;
   if (segmentation.kind != MotionKind::stick_slip) {
     twin.reason = "the block does not stick and slip: there is no cycle to compare";
@@ -291,11 +287,10 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
   const auto affordable = static_cast<std::size_t>(kMostSimulatedSamples / static_cast<double>(motion.size()));
   twin.simulations = std::max(kFewestSimulations, std::min(options.simulations, affordable));
-  Sensors sensors;
-  sensors.friction_noise = fits.empty() ? 0 : fits[0].floor.noise;
-  sensors.velocity_noise = motion.velocity_noise;
-  sensors.noise_colour = noise_colour(motion, segmentation);
+  const Sensors sensors = noise_of_record(motion, segmentation, fits.empty() ? Floor{} : fits[0].floor);
   if (!machines.empty()) twin.measured = block_motion(motion, segmentation, compliance(machines.back().machine));
+  const RecordedConditions recorded(motion);
+  measured_all();
   std::mutex mutex;
   std::size_t finished = 0;
   for (std::size_t c = 0; c < machines.size(); ++c) {
@@ -307,7 +302,7 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
                        static_cast<double>(finished) / static_cast<double>(machines.size() * twin.simulations));
     };
     const auto simulations =
-        simulate_column(machines[c], sensors, motion, twin.simulations, options, done, twin.simulated.emplace_back());
+        simulate_column(machines[c], sensors, recorded, twin.simulations, options, done, twin.simulated.emplace_back());
     twin.columns.push_back(fits[c].model.name());
     add_column(measured, simulations, twin);
   }

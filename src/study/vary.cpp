@@ -114,7 +114,7 @@ const std::vector<MeasureInfo>& measures() {
       {"frequency", "Hz", 1, &Settled::frequency, "frequency_hz", "Hz", "response frequency: cycles a second"},
       {"stick-time", "s", 1, &Settled::stick_time, "stick_time_s", "stick s",
        "time in stick in each cycle (the stick period of [C])"},
-      {"peak-to-peak", "mm", 1e-3, &Settled::peak_to_peak, "peak_to_peak_mm", "peak-peak mm",
+      {"peak-to-peak", "mm", 1e-3, &Settled::peak_to_peak, "peak_to_peak_mm", "p-p mm",
        "of the displacement of the block"},
       {"energy", "mJ", 1e-3, &Settled::energy, "energy_mJ", "energy mJ", "before break-away, k (x2 - x1)^2/2 [C]"},
       {"peak-speed", "mm/s", 1e-3, &Settled::peak_speed, "peak_speed_mm_s", "peak mm/s", "largest relative velocity"}};

@@ -6,6 +6,7 @@
 #include "choice_json.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/friction/effects/all.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit::workbench {
 
@@ -94,25 +95,61 @@ Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parame
 
 Json rungs_json(const WorkbenchSession& session) {
   Json list = Json::array();
-  for (const WorkbenchRung& rung : session.rungs()) list.push_back(rung_json(rung, session.trace().motion, false));
+  for (const WorkbenchRung& rung : session.rungs()) list.push_back(rung_json(rung, session.motion(), false));
   return list;
 }
 
 Json begin_json(const WorkbenchSession& session) {
-  const Identification& trace = session.trace();
-  return {{"trace", trace_json(trace)},
-          {"cycles", trace.segmentation.cycles.size()},
-          {"sticks", trace.segmentation.kind == MotionKind::stick_slip},
+  const WorkbenchRecord& record = session.record();
+  return {{"trace", Json::parse(record.json)},
+          {"cycles", record.cycles},
+          {"sticks", record.sticks},
           {"laws", law_keys()},
-          {"effects", catalogue_json(trace.motion)},
+          {"effects", catalogue_json(session.motion())},
           {"begin", choice_json(session.begin())},
           {"rungs", rungs_json(session)}};
 }
 
-Json picture_json(const WorkbenchPicture& picture, const WorkbenchSession& session) {
-  return {{"rung", rung_json(picture.rung, session.trace().motion, true)},
-          {"rungs", rungs_json(session)},
-          {"report", report_json(picture.report)}};
+std::string text_of_answer(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string WrittenSections::text_of(const std::shared_ptr<const ReportSection>& section) {
+  constexpr std::size_t kMostKept = 4;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [known, text] : kept_) {
+      if (known == section) return text;
+    }
+  }
+  std::string text = text_of_answer(section_json(*section));
+  const std::lock_guard lock(mutex_);
+  if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
+  kept_.emplace_back(section, text);
+  return text;
+}
+
+std::string picture_text(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session,
+                         WrittenSections& written) {
+  Json report = report_json(picture.report);
+  const Json sections = std::move(report["sections"]);
+  report.erase("sections");
+  std::string list;
+  const auto add = [&](const std::string& section) { list += (list.empty() ? "" : ",") + section; };
+  for (const Json& section : sections) {
+    if (&section == &sections.back() && !picture.cycles->items.empty()) add(written.text_of(picture.cycles));
+    add(text_of_answer(section));
+  }
+  const Json others = {
+      {"rung", rung_json(picture.rung, session.motion(), true)}, {"rungs", rungs_json(session)}, {"turn", turn}};
+  std::string out = text_of_answer(others), shown = text_of_answer(report);
+  out.pop_back(), shown.pop_back();  // the closing braces
+  return out + ",\"report\":" + shown + ",\"sections\":[" + list + "]}}";
+}
+
+Json curve_json(const Curve& curve) {
+  constexpr int kDigits = 5;
+  return {{"x", rounded_list(in_unit(curve.velocity, kMillimetre), kDigits)}, {"y", rounded_list(curve.mu, kDigits)}};
 }
 
 Json diagnosis_json(const WorkbenchDiagnosis& diagnosis) {

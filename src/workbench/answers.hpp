@@ -1,6 +1,10 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "report/json_parts.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -20,8 +24,25 @@ Json begin_json(const WorkbenchSession& session);
 Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters);
 Json rungs_json(const WorkbenchSession& session);
 
-Json picture_json(const WorkbenchPicture& picture, const WorkbenchSession& session);
+std::string text_of_answer(const Json& json);
 
+/// The text of sections that many answers share, each written once.
+class WrittenSections {
+ public:
+  std::string text_of(const std::shared_ptr<const ReportSection>& section);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::pair<std::shared_ptr<const ReportSection>, std::string>> kept_;
+};
+
+/// {"rung", "rungs", "turn", "report"} as text: the sections of the report, which are long, are put into it as they
+/// are.
+std::string picture_text(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session,
+                         WrittenSections& written);
+
+/// A law over |v_r| [mm/s].
+Json curve_json(const Curve& curve);
 Json diagnosis_json(const WorkbenchDiagnosis& diagnosis);
 
 }  // namespace tribofit::workbench

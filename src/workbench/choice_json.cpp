@@ -191,6 +191,14 @@ Json choice_json(const WorkbenchChoice& choice) {
   return json;
 }
 
+std::vector<std::pair<std::string, double>> values_from(const Json& json) {
+  constexpr std::size_t kMost = 64;
+  if (!json.is_object() || json.size() > kMost) refuse("'values' is no set of named values", "write {\"mu_s\": 0.5}");
+  std::vector<std::pair<std::string, double>> values;
+  for (const auto& [name, value] : json.items()) values.emplace_back(name, finite(value, "the value of " + name));
+  return values;
+}
+
 WorkbenchChoice choice_from(const Json& json) {
   if (!json.is_object()) refuse("this is not a choice", "send law, effects and formulas");
   WorkbenchChoice choice;

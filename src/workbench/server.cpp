@@ -42,7 +42,7 @@ enum Status {
 
 void answer(httplib::Response& response, const Json& json, int status = kDone) {
   response.status = status;
-  response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), kUncompressed);
+  response.set_content(text_of_answer(json), kUncompressed);
 }
 
 void refuse(httplib::Response& response, int status, const std::string& why, const std::string& suggestion) {
@@ -65,6 +65,7 @@ struct WorkbenchServer::State {
   std::string token = fresh_token();
   int port = 0;
   ServedPage page;
+  WrittenSections written;
   std::atomic<bool> stopping{false};
   std::mutex mutex;
   std::map<std::string, double> newest;  ///< turn of each page
@@ -142,9 +143,7 @@ void WorkbenchServer::State::show(const Json& asked, httplib::Response& response
   const WorkbenchChoice choice = choice_from(asked.at("choice"));
   const WorkbenchPicture picture = session.show(
       choice, detail, [&] { return !stopping && is_newest(name, turn); }, !asked.value("passing", false));
-  Json json = picture_json(picture, session);
-  json["turn"] = turn;
-  answer(response, json);
+  response.set_content(picture_text(picture, turn, session, written), kUncompressed);
 }
 
 void WorkbenchServer::State::add_handlers() {
@@ -164,6 +163,9 @@ void WorkbenchServer::State::add_handlers() {
     answer(response, diagnosis_json(session.diagnosis()));
   });
   post("/api/show", [this](const Json& asked, httplib::Response& response) { show(asked, response); });
+  post("/api/curve", [this](const Json& asked, httplib::Response& response) {
+    answer(response, curve_json(session.curve(choice_from(asked.at("choice")), values_from(asked.at("values")))));
+  });
   post("/api/diagnose", [this](const Json& asked, httplib::Response& response) {
     const bool begun = session.begin_diagnosis(choice_from(asked.at("choice")));
     answer(response, {{"begun", begun}});
@@ -176,7 +178,7 @@ void WorkbenchServer::State::add_handlers() {
 
 WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(std::make_unique<State>(session)) {
   State& s = *state_;
-  s.page = served_page(session.trace().path);
+  s.page = served_page(session.record().path);
   s.http.set_payload_max_length(kLargestBody);
   s.http.set_socket_options([](socket_t) {});  // by default it would share its port
   s.http.set_default_headers({{"Content-Security-Policy", s.page.policy},

@@ -11,8 +11,10 @@
 #include <thread>
 #include <utility>
 
+#include "by_hand.hpp"
 #include "choice_json.hpp"
 #include "diagnosis_run.hpp"
+#include "prepared.hpp"
 #include "report/report_parts.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
@@ -26,34 +28,8 @@ using namespace workbench;
 namespace {
 
 constexpr std::size_t kMostRungs = 200;
-
-/// A trace with one set of corrections of its motion, and what it said before any part of it was excluded or fitted.
-struct Prepared {
-  explicit Prepared(Identification prepared)
-      : trace(std::move(prepared)),
-        notes(trace.notes),
-        warnings(trace.warnings),
-        segmentation_notes(trace.segmentation.notes),
-        analysed(trace.analysed) {}
-
-  Identification trace;
-  std::vector<std::string> notes, warnings, segmentation_notes;
-  bool analysed;
-
-  /// The trace with the part that is selected, as before any fit.
-  Identification& with(const Selection& selection) {
-    trace.notes = notes;
-    trace.warnings = warnings;
-    trace.analysed = analysed;
-    trace.segmentation.notes = segmentation_notes;
-    trace.segmentation.left_out.clear();
-    trace.fits.clear();
-    exclude(selection, trace.motion, trace.segmentation);
-    const auto said = trace.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(segmentation_notes.size());
-    trace.notes.insert(trace.notes.end(), said, trace.segmentation.notes.end());
-    return trace;
-  }
-};
+/// Fits at the same time: more would only take memory from each other.
+constexpr int kMostFits = 16;
 
 Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions identify) {
   identify.selection = {};
@@ -71,15 +47,6 @@ std::vector<std::string> corrections_of(const std::vector<Effect>& effects) {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-bool same_part(const Selection& a, const Selection& b) {
-  const auto ends = [](const Selection::Cycles& c) { return std::pair(c.first, c.last); };
-  const auto alike = [](const Selection::Stretch& x, const Selection::Stretch& y) {
-    return x.from == y.from && x.to == y.to;
-  };
-  const bool cycles = a.cycles && b.cycles ? ends(*a.cycles) == ends(*b.cycles) : !a.cycles && !b.cycles;
-  return cycles && std::equal(a.excluded.begin(), a.excluded.end(), b.excluded.begin(), b.excluded.end(), alike);
 }
 
 /// What is drawn beside a rung: the law alone, from the data, fitted to the same part of the record.
@@ -105,19 +72,35 @@ std::unique_lock<std::mutex> turn_in(std::mutex& mutex) {
   return lock;
 }
 
+/// A fit among a few at the same time; who waits can be stopped.
+class FitPlace {
+ public:
+  explicit FitPlace(std::atomic<int>& under_way) : under_way_(under_way) {
+    while (++under_way_ > kMostFits) {
+      --under_way_;
+      stop_point();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  ~FitPlace() { --under_way_; }
+  FitPlace(const FitPlace&) = delete;
+  FitPlace& operator=(const FitPlace&) = delete;
+
+ private:
+  std::atomic<int>& under_way_;
+};
+
 }  // namespace
 
 struct WorkbenchSession::State {
   WorkbenchOptions options;
-  std::shared_ptr<const Identification> uncorrected;  ///< the whole trace; set once, so that it needs no lock
-  /// Traces prepared for fits of one kind, which are made one at a time. A full fit may take a while; quick ones go on
-  /// beside it.
-  struct Lane {
-    std::mutex fitting;
-    std::optional<Prepared> plain, corrected;
-    std::vector<std::string> corrections;  ///< of `corrected`, the last that were asked for
-  };
-  Lane quick, full;
+  std::shared_ptr<Prepared> uncorrected;  ///< the whole trace; set once, so that it needs no lock
+  /// With corrections of its motion, the last that were asked for.
+  std::shared_ptr<Prepared> corrected;
+  std::vector<std::string> corrections;
+  std::mutex correcting;  ///< guards both
+  std::atomic<int> fits_under_way{0};
+  WorkbenchRecord record;
   std::vector<WorkbenchRung> rungs;
   mutable std::mutex visited;  ///< guards the rungs and options.begin
   DiagnosisRun diagnosis;
@@ -133,19 +116,17 @@ struct WorkbenchSession::State {
     return out;
   }
 
-  /// The trace with the corrections that the effects ask for and the part that is selected, as before any fit.
-  Identification& fresh(const IdentifyOptions& identify, Lane& lane) {
-    std::vector<std::string> corrections = corrections_of(identify.effects);
-    if (corrections.empty()) {
-      if (!lane.plain) lane.plain.emplace(*uncorrected);
-      return lane.plain->with(identify.selection);
+  /// The trace with the corrections that the effects ask for.
+  std::shared_ptr<Prepared> prepared(const IdentifyOptions& identify) {
+    std::vector<std::string> asked = corrections_of(identify.effects);
+    if (asked.empty()) return uncorrected;
+    const std::unique_lock lock = turn_in(correcting);
+    if (!corrected || corrections != asked) {
+      corrected.reset();
+      corrected = std::make_shared<Prepared>(whole_trace(options, identify));
+      corrections = std::move(asked);
     }
-    if (!lane.corrected || lane.corrections != corrections) {
-      lane.corrected.reset();
-      lane.corrected.emplace(whole_trace(options, identify));
-      lane.corrections = std::move(corrections);
-    }
-    return lane.corrected->with(identify.selection);
+    return corrected;
   }
 
   std::optional<WorkbenchRung> visited_rung(const WorkbenchChoice& choice) const {
@@ -178,29 +159,29 @@ struct WorkbenchSession::State {
   }
 
   WorkbenchRung fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify, FitDetail detail,
-                       Identification& trace) const;
+                       const Motion& motion, TracePart& part) const;
 };
 
 WorkbenchRung WorkbenchSession::State::fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify,
-                                              FitDetail detail, Identification& trace) const {
+                                              FitDetail detail, const Motion& motion, TracePart& part) const {
   const auto begin = std::chrono::steady_clock::now();
-  const std::size_t said = trace.warnings.size();
-  fit_trace(identify, trace);
+  const std::size_t said = part.warnings.size();
+  fit_trace(identify, motion, part);
   WorkbenchRung rung;
   rung.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const bool fits = trace.analysed && !trace.fits.empty() && !trace.fits[0].parameters.empty();
+  const bool fits = part.analysed && !part.fits.empty() && !part.fits[0].parameters.empty();
   if (!fits) {
     std::string why = "no fit is possible";
-    if (trace.warnings.size() > said) {
-      why = trace.warnings.back();
-    } else if (!trace.fits.empty() && !trace.fits[0].messages.empty()) {
-      why = trace.fits[0].messages.front();
+    if (part.warnings.size() > said) {
+      why = part.warnings.back();
+    } else if (!part.fits.empty() && !part.fits[0].messages.empty()) {
+      why = part.fits[0].messages.front();
     }
     throw InputError(why, "choose another effect, or more of the record");
   }
   rung.choice = choice;
   rung.detail = detail;
-  rung.fit = trace.fits[0];
+  rung.fit = part.fits[0];
   return rung;
 }
 
@@ -211,17 +192,23 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
   s.options.identify.selection = {};
   s.options.identify.fit.given.clear();
   s.options.input.trace = read_input(s.options.input, s.options.identify);
-  s.uncorrected = std::make_shared<const Identification>(whole_trace(s.options, s.options.identify));
-  const Identification& trace = *s.uncorrected;
+  Identification trace = whole_trace(s.options, s.options.identify);
   if (!trace.analysed) {
     throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
                      "`identify` without 'explore' says more", {trace.path, 0, ""});
+  }
+  if (is_driven_in_steps(trace.motion.kind)) {
+    throw InputError("the workbench adds effects to laws of sliding speed; velocity steps and holds have none",
+                     "`identify` with --report draws the fitted response", {trace.path, 0, ""});
   }
   if (trace.motion.is_points()) {
     throw InputError("the workbench follows a record over time, and points have none",
                      "`identify` and `identify diagnose` with --report draw them", {trace.path, 0, ""});
   }
   model_of(s.options.begin);
+  s.record = {trace.path, trace.segmentation.cycles.size(), trace.segmentation.kind == MotionKind::stick_slip,
+              trace_json(trace).dump()};
+  s.uncorrected = std::make_shared<Prepared>(std::move(trace));
 }
 
 WorkbenchSession::~WorkbenchSession() {
@@ -233,40 +220,50 @@ WorkbenchChoice WorkbenchSession::begin() const {
   return state_->options.begin;
 }
 
-const Identification& WorkbenchSession::trace() const {
-  return *state_->uncorrected;
+const WorkbenchRecord& WorkbenchSession::record() const {
+  return state_->record;
+}
+
+const Motion& WorkbenchSession::motion() const {
+  return state_->uncorrected->motion();
 }
 
 WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail detail,
                                         const std::function<bool()>& wanted, bool keep) {
   State& s = *state_;
-  State::Lane& lane = detail == FitDetail::full ? s.full : s.quick;
   const StopScope scope(wanted ? [&wanted] { return !wanted(); } : std::function<bool()>());
-  const std::unique_lock lock = turn_in(lane.fitting);
+  const FitPlace place(s.fits_under_way);
   const IdentifyOptions identify = s.identify_options(choice, detail);
   const std::optional<WorkbenchRung> known = s.visited_rung(choice);
-  Identification& trace = s.fresh(identify, lane);
+  const std::shared_ptr<Prepared> prepared = s.prepared(identify);
+  TracePart part = prepared->part(choice.selection);
   WorkbenchPicture picture;
   if (known && (known->detail == FitDetail::full || detail == FitDetail::quick)) {
     picture.rung = *known;
   } else {
-    picture.rung = s.fitted(choice, identify, detail, trace);
+    picture.rung = s.fitted(choice, identify, detail, prepared->motion(), part);
     picture.rung.command = command_of(choice);
     if (keep) s.note(picture.rung);
   }
-  trace.fits = {picture.rung.fit};  // what note() left, which another page may have fitted more finely meanwhile
-  trace.best = 0;
+  part.fits = {picture.rung.fit};  // what note() left, which another page may have fitted more finely meanwhile
+  part.best = 0;
   {
     const std::lock_guard visited(s.visited);
-    if (const WorkbenchRung* other = beside(picture.rung, s.rungs)) trace.fits.push_back(other->fit);
+    if (const WorkbenchRung* other = beside(picture.rung, s.rungs)) part.fits.push_back(other->fit);
   }
+  stop_point();
   ReportOptions report;
   report.arguments = s.options.arguments;
   const std::vector<std::string> own = arguments_of(picture.rung.choice);
   report.arguments.insert(report.arguments.end(), own.begin(), own.end());
   report.instruments_declared = s.options.instruments_declared;
-  picture.report = report_of(trace, report);
+  picture.report = prepared->draw(std::move(part), choice.selection, std::move(report), picture.cycles);
   return picture;
+}
+
+Curve WorkbenchSession::curve(const WorkbenchChoice& choice,
+                              const std::vector<std::pair<std::string, double>>& values) const {
+  return curve_by_hand(rungs(), choice, values);
 }
 
 std::vector<WorkbenchRung> WorkbenchSession::rungs() const {

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "runs.hpp"
 #include "tribofit/campaign/run.hpp"
@@ -53,6 +56,13 @@ TEST(NamePatternTest, RefusesWhatIsNoPattern) {
   for (const char* pattern : {"r{radius", "radius}", "plain.csv", "{}", "{lot}_{lot}", "{radius}{radius}"}) {
     EXPECT_THROW(NamePattern{pattern}, InputError) << pattern;
   }
+}
+
+TEST(NaturalOrder, NumbersCountAsNumbers) {
+  std::vector<std::string> names = {"r12mm_1", "r9mm_10", "r18mm_1", "r9mm_2", "a", "r9mm_02"};
+  std::sort(names.begin(), names.end(), in_natural_order);
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "r9mm_02", "r9mm_2", "r9mm_10", "r12mm_1", "r18mm_1"}));
+  EXPECT_FALSE(in_natural_order("a1", "a1"));
 }
 
 TEST(UsualFields, RecognisesTheUsualWaysOfNaming) {

@@ -11,8 +11,10 @@
 
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 
@@ -47,6 +49,20 @@ TEST(Completion, VerbsOptionsAndWordsAreOffered) {
   EXPECT_THAT(offered(shop, "--format \"\""), ElementsAre("pdf", "png", "svg"));
   EXPECT_THAT(offered(shop, "--effect visc"), ElementsAre("viscous"));
   EXPECT_THAT(offered(shop, "help sta"), ElementsAre("statistics"));
+}
+
+/// Of the other shells the scripts are read where the shell is there, and hold every verb in any case.
+TEST(Completion, ScriptsForZshAndFishAreRead) {
+  const Workshop shop;
+  for (const std::string shell : {"zsh", "fish"}) {
+    const Outcome script = shop.identify("completion " + shell);
+    ASSERT_EQ(script.status, 0);
+    EXPECT_THAT(script.out, AllOf(HasSubstr("study speed"), HasSubstr("diagnose"), HasSubstr("confirm")));
+    shop.write("completion." + shell, script.out);
+    const Outcome read =
+        shop.shell("command -v " + shell + " >/dev/null || exit 0; " + shell + " -n completion." + shell);
+    EXPECT_EQ(read.status, 0) << read.err;
+  }
 }
 
 TEST(Completion, EveryVerbHasItsOptionsInTheHelp) {

@@ -75,6 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"GivenTwice", "diagnose a.csv ./a.csv", "given twice"},
         Wrong{"WithOfTwo", "diagnose --with c.csv a.csv b.csv", "one trace"},
         Wrong{"DiagnoseOverwrites", "diagnose --json a.csv a.csv", "overwrite"},
+        Wrong{"MisspeltVerb", "diagnos --radius 15mm", "did you mean `identify diagnose`?"},
         Wrong{"NoSuchEffect", "--radius 15mm --effect vicous a.csv", "did you mean 'viscous'"},
         Wrong{"NoSuchForm", "--effect rate-state:heling a.csv", "did you mean 'rate-state:healing'"},
         Wrong{"ValuesInAFit", "--effect viscous:sigma=0.001 a.csv", "write it as viscous"},

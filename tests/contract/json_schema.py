@@ -122,7 +122,13 @@ def written(identify, repository):
         result("cell", "cell.csv")
         result("frame", "--mass 3kg --stiffness 1200N/m --law coulomb frame.csv")
         result("pull", "--kind spring-slider --columns spring=pull:N --speed 1mm/s --stiffness 1N/mm --mass 10g pull.csv")
+        run("simulate --kind velocity-steps --rate 10Hz --duration 120s --speed-steps 0s:2um/s,20s:10um/s,50s:0,70s:10um/s "
+            "--noise-mu 0.0002 --out driven.csv")
+        result("driven", "driven.csv")
         result("hidden", "diagnose --radius 15mm --load 50N hidden.csv --confirm held.csv")
+        run(f"simulate --radius 15mm --duration 6s --seed 1 --effect frictional-lag:tau=0.5 --noise-mu 0.006 "
+            "--noise-v 0.02mm/s --scatter 0.008 --rate 4kHz --quiet --out open.csv")
+        result("plan", "plan --radius 15mm --load 50N --tap --rates 50kHz --pauses 1s --minutes 0.1 open.csv")
         result("both", "diagnose --radius 15mm --load 50N hidden.csv again.csv")
         for radius in (9, 12, 15):
             for repeat in (1, 2):

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <random>
 
 #include "csv/decimal.hpp"
@@ -40,9 +43,9 @@ TEST(Decimal, IsRoundedAsStrtodRounds) {
   std::mt19937_64 random(20260101);
   std::size_t short_way = 0;
   for (int i = 0; i < 300000; ++i) {
-    const std::string text = random_decimal(random);
+    const std::string text = random_decimal(random), with_more = text + std::string(1 + kReadBeyond, '\0');
     double value = 0;
-    const char* end = read_decimal(text.c_str(), '.', value);
+    const char* end = read_decimal(with_more.c_str(), '.', value);
     if (end == nullptr) continue;
     ++short_way;
     ASSERT_EQ(*end, '\0') << text;
@@ -56,7 +59,8 @@ TEST(Decimal, LeavesWhatItCannotDo) {
   double value = 0;
   for (const char* text : {"", "-", ".", "abc", "nan", "inf", "12345678901234567890", "9007199254740993", "1e23",
                            "1e-300", "1e", "1e+", "+1"}) {
-    EXPECT_EQ(read_decimal(text, '.', value), nullptr) << text;
+    const std::string with_more = text + std::string(1 + kReadBeyond, '\0');
+    EXPECT_EQ(read_decimal(with_more.c_str(), '.', value), nullptr) << text;
   }
 }
 
@@ -79,6 +83,71 @@ TEST_F(Rows_, CellsAreReadAsStrtodReadsThem) {
     ASSERT_EQ(std::bit_cast<std::uint64_t>(trace.friction[i]), std::bit_cast<std::uint64_t>(mu[i])) << i;
     ASSERT_EQ(std::bit_cast<std::uint64_t>(trace.velocity[i]), std::bit_cast<std::uint64_t>(v[i])) << i;
   }
+}
+
+/// What ends a number does not matter, nor what stands behind it.
+TEST(Decimal, EndsWhereItsDigitsDo) {
+  for (const char* ending : {",1234567", "\n1234567", "\r\n123456", ";99999999", "\t99999999", " 99999999", "/1234567",
+                             ":1234567", "\x80\xff\x30\x39\x30\x39\x30\x39"}) {
+    for (const std::string number : {"0", "-7", "0.1", "12.34567", "1.2345678", "-1.23456789", "0.123456789012"}) {
+      const std::string text = number + ending + std::string(kReadBeyond, '5');
+      double value = 0;
+      const char* end = read_decimal(text.c_str(), '.', value);
+      ASSERT_EQ(end, text.c_str() + number.size()) << text;
+      EXPECT_EQ(value, std::strtod(number.c_str(), nullptr)) << text;
+    }
+  }
+}
+
+/// How a file writes its rows.
+struct RowForm {
+  const char *name, *heading, *row;  // of time, friction and velocity, in the order of the format's arguments
+  bool decimal_comma = false;
+};
+
+TEST_F(Rows_, AreReadAlikeInWhateverFormTheyAreWritten) {
+  constexpr int rows = 30000;  // several chunks
+  const RowForm forms[] = {
+      {"commas", "time_s,mu,v_b_mps\n", "{},{},{}\n"},
+      {"ends of lines", "time_s,mu,v_b_mps\r\n", "{},{},{}\r\n"},
+      {"blanks", "time_s, mu, v_b_mps\n", "{}, {} ,  {}\n"},
+      {"last separator", "time_s,mu,v_b_mps,\n", "{},{},{},\n"},
+      {"other columns", "note,time_s,x,mu,v_b_mps,y,z\n", "run a,{},-1e400,{},{},,7\n"},
+      {"other columns, ends of lines", "note,time_s,x,mu,v_b_mps,y,z\r\n", "run a,{},9.5,{},{},1,\r\n"},
+      {"quotes", "time_s,mu,v_b_mps,note\n", "{},\"{}\",{},\"a, \"\"b\"\"\"\n"},
+      {"order", "v_b_mps,time_s,mu\n", "{2},{0},{1}\n"},
+      {"semicolons", "time_s;mu;v_b_mps\n", "{};{};{}\n", true},
+      {"tabs", "time_s\tmu\tv_b_mps\n", "{}\t{}\t{}\n"},
+      {"columns of blanks", "time_s mu v_b_mps\n", "  {}   {} \t {}\n"},
+  };
+  ReadOptions options;
+  options.columns = {{"v_b", "v_b_mps:m/s"}};
+  std::optional<Trace> first;
+  for (const RowForm& form : forms) {
+    std::string text = form.heading;
+    for (int i = 0; i < rows; ++i) {
+      std::string row =
+          fmt::format(fmt::runtime(form.row), fmt::format("{:.4f}", i * 1e-4),
+                      fmt::format("{:.7g}", 0.3 + 0.1 * std::sin(i * 0.01)), fmt::format("{:.3e}", std::cos(i * 0.02)));
+      if (form.decimal_comma) std::replace(row.begin(), row.end(), '.', ',');
+      text += row;
+    }
+    const Trace trace = read_trace(write(text), options);
+    if (!first) first = trace;
+    EXPECT_EQ(trace.time, first->time) << form.name;
+    EXPECT_EQ(trace.friction, first->friction) << form.name;
+    EXPECT_EQ(trace.velocity, first->velocity) << form.name;
+  }
+  ASSERT_EQ(first->size(), std::size_t{rows});
+  EXPECT_EQ(first->friction[157], std::strtod(fmt::format("{:.7g}", 0.3 + 0.1 * std::sin(1.57)).c_str(), nullptr));
+}
+
+TEST_F(Rows_, ThatNoMemoryHoldsAreRefused) {
+  const std::string file = write("time_s,mu,v_b_mps\n0,0.1,1\n1,0.2,2\n");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 42);  // a hole, which takes no room
+  ReadOptions options;
+  options.columns = {{"v_b", "v_b_mps:m/s"}};
+  expect_error(file, options, "of memory", "cut the file into parts");
 }
 
 /// Several chunks, with text and blank lines in between.

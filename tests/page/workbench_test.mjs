@@ -74,6 +74,18 @@ async function checkLadder(page, before, after) {
   assert.ok(Math.abs(shown.bar / bare.bar - after / before) < 0.03, `bars of ${shown.bar} and ${bare.bar} px`);
 }
 
+/** A formula that does not parse is refused with its reason, where it stands, and the page lives on. */
+async function refuseFormula(page) {
+  await page.fill("#workbench-formula", "hump = a*exp(-v; a=0.02");
+  await page.click("#apply-formula");
+  await page.waitForSelector("#formula-trouble:not([hidden])");
+  assert.match(await page.textContent("#formula-trouble"), /formula/);
+  assert.equal(await page.isHidden("#workbench-trouble"), true);
+  await page.fill("#workbench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
+  await change(page, () => page.click("#apply-formula"));
+  assert.equal(await page.isHidden("#formula-trouble"), true);
+}
+
 /** The hidden effect is switched on and the error falls; then everything else that a person can change. */
 async function watchTheErrorFall(address, width) {
   const { page, complaints, close } = await open(address, width);
@@ -99,6 +111,8 @@ async function watchTheErrorFall(address, width) {
   assert.equal(await page.isChecked("#effect-frictional-lag"), false);
 
   // A start dragged with the keyboard, bounds, cycles and a stretch that is left out.
+  const unfold = (title) => page.locator("#workbench-controls > details > summary", { hasText: title }).click();
+  await unfold("Parameters");
   await change(page, async () => {
     await page.click(".parameter[data-name=mu_s] summary");
     await page.focus("#slide-start-mu_s");
@@ -110,6 +124,8 @@ async function watchTheErrorFall(address, width) {
   assert.match(await page.textContent(".parameter[data-name=mu_s] [data-value]"), /at its bound/);
   await change(page, () => page.click(".parameter[data-name=mu_s] button"));
   assert.doesNotMatch(await page.textContent("#workbench-command"), /--bounds|--start/);
+  await page.waitForFunction(() => JSON.parse(document.documentElement.dataset.byHand || "{}").mu_s > 0);
+  await unfold("Part of the record");
   await change(page, () => page.fill("#cycles-to", "20").then(() => page.keyboard.press("Enter")));
   assert.match(await page.textContent("#workbench-command"), /--cycles 0\.\.20/);
   await page.fill("#exclude-from", "1");
@@ -117,19 +133,38 @@ async function watchTheErrorFall(address, width) {
   await change(page, () => page.click("#exclude"));
   assert.match(await page.textContent("#workbench-command"), /--exclude 1s\.\.1\.2s/);
 
-  // A formula that does not parse is refused with its reason, and the page lives on. The browser notes the refusal.
-  await page.fill("#workbench-formula", "hump = a*exp(-v; a=0.02");
-  await page.click("#apply-formula");
-  await page.waitForSelector("#workbench-trouble:not([hidden])");
-  assert.match(await page.textContent("#workbench-trouble"), /formula/);
-  await page.fill("#workbench-formula", "hump = a*exp(-v/w); a=0.02, w=6mm/s");
-  await change(page, () => page.click("#apply-formula"));
-  assert.equal(await page.isHidden("#workbench-trouble"), true);
+  await unfold("An effect of your own");
+  await refuseFormula(page);
   const unexpected = complaints.filter((text) => !/422/.test(text));
   assert.deepEqual(unexpected, [], `complaints at ${width} px`);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(overflow <= 0, `the page is ${overflow} px wider than ${width} px`);
   await page.screenshot({ path: join(folder, `all-${width}.png`), fullPage: true });
+  await close();
+}
+
+/** On the first screen stand the picture, the ladder with the current model, and the effects; a stretch is brushed away. */
+async function firstScreen(address) {
+  const { page, complaints, close } = await open(address, 1280);
+  for (const what of ["#t1-law .main-svg", "#workbench-rungs .current", "#effect-frictional-lag", "#workbench-diagnose"]) {
+    const box = await page.locator(what).first().boundingBox();
+    assert.ok(box && box.y >= 0 && box.y + Math.min(box.height, 400) < 900, `${what} is on the first screen: ${JSON.stringify(box)}`);
+  }
+  await page.screenshot({ path: join(folder, "first-1280.png") });
+  const plot = page.locator("#t1-record");
+  await plot.scrollIntoViewIfNeeded();
+  await page.locator("figure:has(#t1-record) .brush").click();
+  const area = await plot.locator(".nsewdrag").first().boundingBox();
+  await change(page, async () => {
+    await page.mouse.move(area.x + 0.4 * area.width, area.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(area.x + 0.5 * area.width, area.y + 40, { steps: 4 });
+    await page.mouse.up();
+  });
+  assert.match(await page.textContent("#workbench-command"), /--exclude 3\.9\d*s\.\.[45]\.\d*s|--exclude 4\.?\d*s\.\.[45]\.?\d*s/);
+  await change(page, () => page.click("#workbench-undo"));
+  assert.doesNotMatch(await page.textContent("#workbench-command"), /--exclude/);
+  assert.deepEqual(complaints, []);
   await close();
 }
 
@@ -153,6 +188,16 @@ async function diagnose(address) {
   await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "done", null, { timeout: 120000 });
   await change(page, () => page.click("#take-finding"));
   assert.match(await page.textContent("#shown-model"), /lag/);
+  // What was found and the model that it opens show the same numbers.
+  const ladder = await page.locator("#workbench-finding tbody tr").allTextContents();
+  assert.ok(ladder.at(-2).includes(await page.textContent("#shown-error")), `${ladder} and ${await shownError(page)}`);
+  await change(page, () => page.click("#workbench-undo"));
+  assert.doesNotMatch(await page.textContent("#shown-model"), /lag/);
+  await change(page, () => page.click("#take-finding"));
+  await page.reload();
+  await settled(page);
+  assert.match(await page.textContent("#shown-model"), /lag/, "a reload goes on where the page was");
+  await page.locator("#workbench-controls > details > summary", { hasText: "The same from the command line" }).click();
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("#workbench-save")]);
   const file = join(folder, "session.json");
   await download.saveAs(file);
@@ -168,6 +213,7 @@ async function stopInMidFit({ server, address, ended }) {
   const powers = Array.from({ length: 100 }, (_, i) => `k*(v/w)^.${i + 10}`).join("+");
   const asked = page.waitForRequest((request) => request.url().endsWith("/api/show") &&
     request.postDataJSON().choice.formulas.length === 1);
+  await page.locator("#workbench-controls > details > summary", { hasText: "An effect of your own" }).click();
   await page.fill("#workbench-formula", `long = ${powers}; k=0.001, w=6mm/s`);
   await page.click("#apply-formula");
   const request = await asked;
@@ -186,6 +232,7 @@ async function stopInMidFit({ server, address, ended }) {
 
 const begun = await explore("--radius", "15mm", "lag.csv");
 for (const width of [1280, 390]) await watchTheErrorFall(begun.address, width);
+await firstScreen(begun.address);
 await twoAtOnce(begun.address);
 await diagnose(begun.address);
 const { page: stranger, close } = await open(begun.address, 1280);

@@ -47,13 +47,26 @@ TEST(CampaignTables, RepeatsNameTheParametersOfEachLaw) {
        "joint",
        {pooled("mu_s", "1", 0.509, 0.001), pooled("mu_k", "1", 0.318, 0.002), pooled("v_s", "mm/s", 17.2, 0.3)},
        2}};
+  for (PooledGroup::OfFit& fit : group.fits) {
+    for (PooledValue& v : fit.parameters) {  // one degree of freedom
+      v.lower95 = v.value - 12.706 * v.std_error, v.upper95 = v.value + 12.706 * v.std_error;
+    }
+  }
   const ReportTable table = repeats_table(std::vector{group});
-  ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_THAT(law_cells(table, table.rows[0]), ElementsAre("", "", "mu_0 0.4120 +/- 0.0010, A -0.02130 +/- 0.00040"));
-  EXPECT_THAT(law_cells(table, table.rows[1]),
-              ElementsAre("0.5090 +/- 0.0010", "0.3180 +/- 0.0020", "v_s 17.20 +/- 0.30 mm/s"));
-  EXPECT_EQ(cell_of(table, table.rows[1], "best in"), "2");
-  EXPECT_THAT(pooled_table({{group}, {}, {}}), HasSubstr("A -0.02130 +/- 0.00040"));
+  ASSERT_EQ(table.rows.size(), 6u);
+  EXPECT_EQ(cell_of(table, table.rows[1], "parameter"), "A");
+  EXPECT_EQ(cell_of(table, table.rows[1], "value"), "-0.02130");
+  EXPECT_EQ(cell_of(table, table.rows[1], "95 % interval"), "[-0.02638, -0.01622]");
+  EXPECT_EQ(cell_of(table, table.rows[1], "degrees of freedom"), "1");
+  EXPECT_EQ(cell_of(table, table.rows[2], "parameter"), "an effect.tau");
+  EXPECT_EQ(cell_of(table, table.rows[3], "law"), "gaussian");
+  EXPECT_EQ(cell_of(table, table.rows[3], "best in"), "2");
+  EXPECT_EQ(cell_of(table, table.rows[5], "unit"), "mm/s");
+  TerminalOptions narrow;
+  narrow.width = 80;
+  const std::string text = pooled_table({{group}, {}, {}}, narrow);
+  EXPECT_THAT(text, HasSubstr("[-0.02638, -0.01622]"));
+  EXPECT_THAT(text, HasSubstr("dof"));
 }
 
 TEST(CampaignTables, RunsNameTheParametersOfTheirBestLaw) {

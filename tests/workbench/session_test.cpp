@@ -3,15 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "lagging.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/stop.hpp"
 #include "workbench/choice_json.hpp"
 
 namespace tribofit {
@@ -203,6 +207,49 @@ TEST(Session, diagnoses_as_the_command_does) {
   ASSERT_EQ(ladder.size(), found.ladder.size());
   EXPECT_EQ(ladder.back()["held_out_rmse"].get<double>(), found.ladder.back().held_out_rmse);
   EXPECT_GT(session.show(found.found, FitDetail::quick).rung.fit.error.held_out_rmse, 0);
+}
+
+TEST(Session, lets_nobody_wait_behind_a_slow_fit) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice slow;
+  std::string sum = "k*(v/w)^.5";
+  for (int i = 101; i < 300; ++i) sum += "+k*(v/w)^." + std::to_string(i);
+  slow.formulas = {"long = " + sum + "; k=0.001, w=6mm/s"};
+  std::atomic<bool> wanted{true}, was_stopped{false};
+  std::thread other([&] {
+    try {
+      session.show(slow, FitDetail::full, [&] { return wanted.load(); });
+    } catch (const Stopped&) {
+      was_stopped = true;
+    }
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const WorkbenchRung full = session.show(with({"frictional-lag"}), FitDetail::full).rung;
+  wanted = false;
+  other.join();
+  EXPECT_TRUE(was_stopped);  // it was under way all the time
+  WorkbenchSession alone(lagging().options());
+  EXPECT_EQ(alone.show(with({"frictional-lag"}), FitDetail::full).rung.fit.values(), full.fit.values());
+}
+
+TEST(Session, keeps_the_parts_of_pages_apart) {
+  WorkbenchSession session(lagging().options());
+  WorkbenchChoice part;
+  part.selection.cycles = {2, 12};
+  const WorkbenchPicture whole = session.show({}, FitDetail::quick);
+  std::vector<std::thread> pages;
+  std::array<WorkbenchPicture, 4> shown;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    pages.emplace_back([&, k] { shown[k] = session.show(k % 2 == 0 ? WorkbenchChoice{} : part, FitDetail::full); });
+  }
+  for (std::thread& page : pages) page.join();
+  EXPECT_EQ(shown[0].rung.fit.values(), shown[2].rung.fit.values());
+  EXPECT_EQ(shown[1].rung.fit.values(), shown[3].rung.fit.values());
+  EXPECT_EQ(shown[1].rung.fit.cycles, 11u);
+  EXPECT_EQ(shown[0].cycles, whole.cycles);  // drawn once
+  EXPECT_EQ(shown[1].cycles, shown[3].cycles);
+  EXPECT_NE(shown[0].cycles, shown[1].cycles);
+  ASSERT_FALSE(whole.cycles->items.empty());
 }
 
 TEST(Session, gives_up_a_diagnosis_at_once) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tribofit/ingest/manifest.hpp"
@@ -16,6 +17,9 @@ struct StatedFields {
 };
 /// Those of conditions, in the order of condition_infos.
 inline constexpr std::array stated_conditions = {&StatedFields::radius, &StatedFields::speed, &StatedFields::load};
+
+/// Whether `a` stands before `b` as people count: 9mm before 12mm. Digits compare by the number they make.
+bool in_natural_order(std::string_view a, std::string_view b);
 
 /// How the files of a campaign are named: 'r{radius}mm_{repeat}.csv'.
 ///

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/rate_state.hpp"
 #include "tribofit/fit/rig.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/read_trace.hpp"
@@ -30,6 +31,7 @@ struct IdentifyOptions {
   std::vector<Effect> effects;     ///< added to every law
   bool published_protocol = true;  ///< fit by per-cycle extremes too, beside the joint fit
   Selection selection;             ///< what part of the record is fitted
+  RateStateOptions rate_state;     ///< of velocity steps and holds
 };
 
 /// One input file with what is known of it beforehand (a manifest's row over the command line).
@@ -39,18 +41,9 @@ struct TraceInput {
   std::shared_ptr<const Trace> trace = {};  ///< already in memory (a simulation): `path` is its name, nothing is read
 };
 
-/// Everything known about one trace.
-struct Identification {
-  std::string path;
-  std::uint64_t checksum = 0;
-  std::size_t samples = 0;
-  double duration = 0, rate = 0;  ///< [s], [Hz]
-  Motion motion;
+/// A part of a trace, and what was fitted to it. Several parts may share one motion.
+struct TracePart {
   Segmentation segmentation;
-  SpectralPeak spectral_peak;                       ///< of v_r
-  std::optional<ForceStatistics> force_statistics;  ///< of a record of friction alone
-  std::optional<FrictionLevels> friction_levels;    ///< of a record whose friction follows from the motion
-  Estimate load_coupling = {};     ///< found in the load channel by a diagnosis and removed from it; 0: none
   std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the per-cycle extremes
   std::size_t best = 0;            ///< the fit that predicts held-out cycles best
   std::vector<std::string> notes;  ///< how the input was read
@@ -62,6 +55,20 @@ struct Identification {
     warnings.push_back(std::move(reason));
     analysed = false;
   }
+};
+
+/// Everything known about one trace.
+struct Identification : TracePart {
+  std::string path;
+  std::uint64_t checksum = 0;
+  std::size_t samples = 0;
+  double duration = 0, rate = 0;  ///< [s], [Hz]
+  Motion motion;
+  SpectralPeak spectral_peak;                       ///< of v_r
+  std::optional<ForceStatistics> force_statistics;  ///< of a record of friction alone
+  std::optional<FrictionLevels> friction_levels;    ///< of a record whose friction follows from the motion
+  std::optional<RateStateAnalysis> rate_state;      ///< of velocity steps and holds, beside which there are no fits
+  Estimate load_coupling = {};  ///< found in the load channel by a diagnosis and removed from it; 0: none
 };
 
 /// How thoroughly a model is fitted, always to the same values. quick: from the start of the data alone, without what a

@@ -38,6 +38,20 @@ inline constexpr std::array<ConditionInfo, 3> condition_infos = {
      {&Conditions::speed, "speed", "speed", "rpm", kRpm, Quantity::angular_velocity, "speed_rpm"},
      {&Conditions::load, "load", "load", "N", 1, Quantity::force, "load_N"}}};
 
+/// A stretch of a record in which the load point, the far end of a machine that is no stiffer than k, moves at one
+/// speed.
+struct LoadPointPhase {
+  double begin = 0;  ///< [s] from the trace's first sample
+  double speed = 0;  ///< [m/s], at least 0; 0: a hold
+};
+
+/// Where the motion of a load point comes from, and so how well the times of its steps are known.
+enum class LoadPointSource {
+  stated,       ///< as a person noted them: to a second or so
+  speed,        ///< recorded speed: to a sample
+  displacement  ///< recorded displacement: closer than a sample
+};
+
 /// What a mass on a spring rubs on.
 enum class Counterface {
   ground,  ///< that stands still

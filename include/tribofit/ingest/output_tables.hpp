@@ -10,11 +10,13 @@ namespace tribofit {
 struct OutputTable {
   std::string_view name, header;
 };
-inline constexpr std::array<OutputTable, 4> output_tables = {
+inline constexpr std::array<OutputTable, 6> output_tables = {
     {{"samples.csv", "time_s,relative_velocity_mm_s,mu,mu_model"},
      {"cycles.csv", "cycle,direction,break_away_time_s"},
      {"curves.csv", "law,effects,protocol,relative_velocity_mm_s"},
-     {"errors.csv", "time_s,relative_velocity_mm_s,residual_"}}};
+     {"errors.csv", "time_s,relative_velocity_mm_s,residual_"},
+     {"response.csv", "step_number,time_s,load_point_um,mu,mu_model"},
+     {"steps.csv", "step_number,time_s,from_um_s,to_um_s,hold_s"}}};
 
 /// Whether the file is one of those tables, by its name and its header: a result, not a run. A file that cannot be read
 /// is not.

@@ -33,10 +33,11 @@ struct ReadOptions {
   std::map<std::string, std::string> columns;
   /// Channel -> unit, or channel -> sensitivity of a voltage ("v_b" -> "5 mm/s/V").
   std::map<std::string, std::string> units;
-  std::optional<RecordKind> kind;  ///< as the user states it
-  SpringDrive spring;              ///< of a spring slider or a motion alone, as the user states it
-  std::optional<double> rate;      ///< samples per second [Hz] where there is no time column
-  Conditions conditions;           ///< as given by the user or the manifest; beats the file
+  std::optional<RecordKind> kind;          ///< as the user states it
+  SpringDrive spring;                      ///< of a spring slider or a motion alone, as the user states it
+  std::vector<LoadPointPhase> load_point;  ///< of velocity steps and holds, as the user states it
+  std::optional<double> rate;              ///< samples per second [Hz] where there is no time column
+  Conditions conditions;                   ///< as given by the user or the manifest; beats the file
   /// One friction radius [m] per step, in the order of the steps, for files whose radius changes.
   std::vector<double> step_radii;
   /// A second file holding the other instrument's channels; joined on time.

@@ -46,6 +46,8 @@ struct Trace {
   std::vector<double> velocity;  ///< [m/s], see velocity_kind; empty for a fixed block
 
   std::vector<double> block_position, drive_position;  ///< [m], from which kinematics/ makes the velocity
+  std::vector<double> load_point_speed;                ///< [m/s], of velocity steps and holds
+  std::vector<LoadPointPhase> load_point;              ///< the same as the user states it
 
   /// Of points as stated, of other records as they follow from the channel that they were made of [1] or [N], [m/s];
   /// empty: not known.
@@ -68,6 +70,7 @@ struct Trace {
   std::string kind_source;         ///< "stated", or what in the file shows it
   SpringDrive spring;              ///< of a spring slider, whose `friction` is the pull, and of a motion alone
 
+  Condition normal_stress;  ///< mean, where friction was given as a stress over it [Pa]
   Conditions conditions;    ///< of the whole trace; radius unknown where the steps differ
   std::vector<Step> steps;  ///< at least one; they cover the trace without gaps
   /// Standard error of the time between friction and velocity, where two instruments recorded them: that of the offset

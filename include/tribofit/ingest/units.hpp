@@ -29,6 +29,7 @@ enum class Quantity {
   inverse_length,              // 1/m
   inverse_time,                // 1/s
   inverse_temperature,         // 1/K
+  pressure,                    // Pa
 };
 
 /// SI values of the units people read and write.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 
 /// Names of the checks of the data, as reports and JSON have them (HealthItem::check). Some coincide with the key of an
@@ -20,6 +21,15 @@ inline constexpr const char* kPlateauSpeed = "plateau-speed";
 inline constexpr const char* kResolution = "resolution";
 inline constexpr const char* kFrictionZero = "friction-zero";
 inline constexpr const char* kCopies = "copies";  ///< of points
+
+/// How the message of a check begins that could not be made. Its status says nothing then, and no one reads it as "ok".
+inline constexpr std::string_view kNotChecked = "not checked: ";
+inline std::string not_checked(std::string_view why) {
+  return std::string(kNotChecked) + std::string(why);
+}
+constexpr bool was_made(std::string_view message) {
+  return !message.starts_with(kNotChecked);
+}
 
 /// Whether the values of a fit depend on what this check says: it bears on velocity or friction themselves.
 constexpr bool bears_on_values(std::string_view check) {

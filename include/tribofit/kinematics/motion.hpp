@@ -72,6 +72,12 @@ struct Motion {
   std::vector<double> acceleration, velocity_variance;  ///< as in Trace; of the block, of v_r within a sample
   double smoothing = 0;                                 ///< as in Trace [s]
 
+  /// Of velocity steps and holds: how the load point moved, its first phase from the first sample on. The speed of the
+  /// contact is not known there; relative_velocity is that of the load point.
+  std::vector<LoadPointPhase> load_point;
+  LoadPointSource load_point_source = LoadPointSource::displacement;
+  Condition normal_stress;  ///< as in Trace [Pa]
+
   std::optional<RecordKind> kind;  ///< as in Trace
   std::string kind_source;         ///< as in Trace
   SpringDrive spring;              ///< of a spring slider

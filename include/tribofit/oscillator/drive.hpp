@@ -35,6 +35,8 @@ SpeedProfile rippled_speed(SpeedProfile base, double amplitude, double order, do
 /// A time in which the disc stands still.
 struct Pause {
   double begin = 0, duration = 0;  ///< [s]
+
+  bool operator==(const Pause&) const = default;
 };
 
 /// Constant speeds [rad/s] from the times given [s] on (the first holds before, too), and standstill in the pauses; the

@@ -47,6 +47,10 @@ struct Recording {
 Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
                  const Sensors& sensors = {});
 
+/// The trace of record(), of a motion that nobody needs any more: its channels become those of the trace.
+Trace recorded_trace(SimulatedMotion motion, const FrictionModel& model, std::span<const double> p,
+                     const Sensors& sensors = {});
+
 /// What the true law leaves over slip [1]: root mean square of noise and break-away scatter, the noise floor that no
 /// law can beat. The law sees the true velocity plus its noise; instruments that distort a channel are not counted. 0
 /// where there is no slip sample.

@@ -31,6 +31,7 @@ struct SimulatedChannels {
   bool displacement = true, acceleration = true;  ///< of the block
   bool disc = true;                               ///< its speed and angle
   bool distance = true;                           ///< slid
+  bool relative_velocity = true;
 };
 
 struct SimulationOptions {

@@ -18,6 +18,10 @@ Drive true_drive(const Drive& stated, const FrictionModel& model, std::span<cons
 /// The sensors with what the model adds to them: gain and high-pass of the vibrometer.
 Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::span<const double> p);
 
+/// The channels without which the motion of that model cannot be recorded by those sensors.
+SimulatedChannels recorded_channels(const FrictionModel& model, std::span<const double> p, const Drive& drive,
+                                    const Sensors& sensors);
+
 /// A record in which effects are hidden, with the truth.
 struct SimulatedRecording {
   SimulatedMotion motion;

@@ -74,7 +74,7 @@ struct ChartBars {
 };
 
 /// A stretch of the abscissa that is shaded over all panels.
-enum class Shade { stick, slip, beyond, left_out };
+enum class Shade { stick, slip, beyond, left_out, range };
 struct Stretch {
   double from = 0, to = 0;
   Shade shade = Shade::stick;
@@ -96,12 +96,14 @@ struct ChartLabel {
   std::size_t panel = 0;
 };
 
-/// A quantity over two others, in colours that rise in lightness as well.
+/// A quantity over two others, in colours that rise in lightness as well, or that diverge from zero.
 struct HeatMap {
   std::vector<double> x = {}, y = {};       ///< of the columns, of the rows
   std::vector<std::vector<double>> z = {};  ///< rows; NaN: nothing there
   std::string quantity = {}, unit = {};
   double low = kFromData, high = kFromData;
+  bool diverging = false;  ///< it has both signs: pale at zero, the middle of the scale
+  bool contours = false;   ///< lines of equal value, with their values
 };
 
 /// Charts one above the other over one abscissa.

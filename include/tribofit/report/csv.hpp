@@ -15,6 +15,11 @@ struct Identification;
 /// curves.csv   mu(v) of every fit with its 95 % band, to a quarter beyond the fastest slip
 /// errors.csv   residual and relative error ([D] Eq 5) of the best fit against time and v_r, slip samples only
 ///
+/// Of velocity steps and holds two others:
+/// response.csv the values that were fitted: step_number, time_s, load_point_um, mu, mu_model, mu_other (the other law)
+/// steps.csv    each step: its time, speeds and hold, mu_0 and trend, and the parameters of its own fit with their
+///              standard errors
+///
 /// Where friction is a force, mu and mu_model are in newtons, as "friction_unit" in the JSON says; other columns carry
 /// their unit in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in
 /// samples.

@@ -13,6 +13,7 @@ namespace tribofit {
 
 struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
+struct RigIdentification;
 struct TwinIdentification;
 
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_page() makes one HTML file
@@ -103,15 +104,22 @@ struct ReportOptions {
   std::vector<std::string> inputs = {};     ///< traces and folders as the user named them; empty: the path of the trace
   bool instruments_declared = false;        ///< an instruments file was given
   bool csv_written = false;                 ///< the CSV folder of this result exists already
+  bool report_written = false;              ///< and its page
+  bool leave_out_cycles = false;            ///< the section cycles_section() of a trace is shown from elsewhere
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,
 /// relative errors ([D] Eq 5), measures of each cycle and the spectrum. Cost: linear in samples.
 Report report_of(const Identification& result, const ReportOptions& options = {});
+/// Its section that no model changes: measures of each cycle, the spectrum, the whole record.
+ReportSection cycles_section(const Identification& result);
 
 /// A diagnosis: the same beside the first and the final model, with the ladder of errors, where the law fails and what
 /// became of each effect. Of many traces the first eight are drawn, all are listed.
 Report report_of(const DiagnosedTraces& result, const ReportOptions& options = {});
+
+/// A rig: mass, damping and stiffness with their intervals, the balance behind them, and the record.
+Report report_of(const RigIdentification& result, const ReportOptions& options = {});
 
 /// A twin: measures in standard errors, three cycles of friction and velocity measured and simulated, the portraits,
 /// and the block on its disc, measured and simulated side by side.

@@ -28,9 +28,10 @@ struct TerminalOptions : ReportOptions {
 std::string render_terminal(const Identification& result, const TerminalOptions& options = {});
 
 /// After a diagnosis, in this order: what was diagnosed; the ladder of held-out errors as it falls, with bars against
-/// the noise floor; where the base law fails; the verdict in one sentence; the effects found with their parameters;
-/// what is not distinguishable with these data and the discriminating experiment; what they cannot show at all; how
-/// the finding did on runs that were not used in the fit; a closed form of what no effect explains; the next command.
+/// the noise floor; where the base law fails; the verdict in one sentence; what is not distinguishable with these
+/// data and the discriminating experiment; what they cannot show at all; how the finding did on runs that were not used
+/// in the fit; a closed form of what no effect explains; the whole law with its parameters; the next command, and the
+/// page and the workbench for the same trace.
 ///
 /// No line but a word longer than the width is wider than options.width (at least 40 columns).
 std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options = {});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct SensitivityOptions {
   std::size_t count = 21;  ///< in equal ratios
   SettleOptions settle = {};
   int threads = 0;
+  std::function<void(double)> progress = {};  ///< called with the part done, from one thread at a time
 };
 
 /// Sweeps of every variable. Throws as settle() does, and for an unknown variable.

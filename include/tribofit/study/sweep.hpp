@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,9 @@ namespace tribofit {
 
 /// Settled motion of a machine over values [SI] of one of its variables. Cost: below 1 ms a value where motion settles
 /// at once; on `threads` threads (0: as many as there are), which do not change the result.
+/// done: called after each value, from any of them.
 std::vector<Settled> sweep(const Machine& machine, std::string_view variable, std::span<const double> values,
-                           const SettleOptions& options = {}, int threads = 0);
+                           const SettleOptions& options = {}, int threads = 0, const std::function<void()>& done = {});
 
 /// `count` values from low to high, both included, equally far apart or (logarithmic) in equal ratios.
 std::vector<double> evenly_spaced(double low, double high, std::size_t count, bool logarithmic = false);
@@ -40,6 +42,7 @@ struct SpeedStudyOptions {
   std::uint64_t seed = 1;
   SettleOptions settle = {};
   int threads = 0;
+  std::function<void(double)> progress = {};  ///< called with the part done, from one thread at a time
 };
 
 /// Measures over speed, critical speed both ways, and what the uncertainty of the machine makes of them (draws of all

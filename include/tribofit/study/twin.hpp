@@ -53,7 +53,9 @@ struct Twin {
 
 /// A trace beside the motions that its laws and its rig predict; see pipeline.hpp.
 struct TwinIdentification {
-  Identification trace;      ///< its `fits`: the best bare law, then the best law with the effects asked for
+  /// Its `fits`: the best bare law, then the best law with the effects asked for. Its `motion` holds neither friction
+  /// nor v_r any more where twins were simulated, for the memory they take.
+  Identification trace;
   std::vector<RigFit> rigs;  ///< beside each of them, see rig_beside()
   Twin twin;
 

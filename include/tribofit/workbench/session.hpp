@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tribofit/fit/identification.hpp"
@@ -39,7 +40,9 @@ struct WorkbenchRung {
 /// What a page shows of a rung.
 struct WorkbenchPicture {
   WorkbenchRung rung;
-  Report report;
+  Report report;  ///< without its section of the cycles
+  /// That section, which no model changes: the same object for as long as the part of the record is the same.
+  std::shared_ptr<const ReportSection> cycles;
 };
 
 /// What a diagnosis asked for by a page has come to.
@@ -59,6 +62,14 @@ struct WorkbenchDiagnosis {
   double floor_rmse = 0;  ///< [1 or N]
 };
 
+/// What pages say of the trace before anything is fitted.
+struct WorkbenchRecord {
+  std::string path;
+  std::size_t cycles = 0;
+  bool sticks = false;  ///< it sticks and slips
+  std::string json;     ///< what `identify --json` has under "trace"
+};
+
 /// What the workbench is begun with.
 struct WorkbenchOptions {
   TraceInput input;
@@ -70,8 +81,7 @@ struct WorkbenchOptions {
 };
 
 /// One trace under study: read, moved and segmented once, then fitted again for every choice. Knows nothing of pages
-/// and servers. Every function may be called from any thread; quick fits are made one at a
-/// time, and so are full ones.
+/// and servers. Every function may be called from any thread; fits go on side by side and share the motion.
 ///
 /// A fit is that of identify() for the same choice: from the data and not from what was shown before, so that coming
 /// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0) at the same values;
@@ -86,7 +96,8 @@ class WorkbenchSession {
 
   WorkbenchChoice begin() const;
   /// The whole trace as it was prepared, without corrections and fits.
-  const Identification& trace() const;
+  const WorkbenchRecord& record() const;
+  const Motion& motion() const;
 
   /// Fits a choice and adds it to the rungs; one that was visited is not fitted again unless more detail is asked for.
   /// Throws InputError that says why it cannot be fitted; the session goes on.
@@ -94,6 +105,11 @@ class WorkbenchSession {
   /// keep: false for what is passed by on the way, as a slider is dragged: it becomes no rung.
   WorkbenchPicture show(const WorkbenchChoice& choice, FitDetail detail, const std::function<bool()>& wanted = {},
                         bool keep = true);
+
+  /// The law of a choice that was shown, over |v_r|, with some of its parameters set by hand: name and value [as tables
+  /// show it]. Nothing is fitted. Throws InputError for a choice that was not shown and a parameter that it does not
+  /// have.
+  Curve curve(const WorkbenchChoice& choice, const std::vector<std::pair<std::string, double>>& values) const;
 
   /// Every rung visited, without pictures.
   std::vector<WorkbenchRung> rungs() const;

@@ -212,10 +212,9 @@ Chart friction_chart(const RunFigures& f, const std::string& unit) {
 
 /// Relative error of the mean friction of a bin (Fig 12 of [D]).
 Chart error_chart(const RunFigures& f) {
-  Chart chart{
-      .note = "Of the mean friction of each bin.",
-      .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
-      .marks = {{published_error_limit, false, Dash::dashed, std::string(published_error_limit_text) + " of [D]", 0}}};
+  Chart chart{.note = "Of the mean friction of each bin.",
+              .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
+              .marks = {{published_error_limit, false, Dash::dashed, "8 %", 0}}};
   const auto error = [&](const ErrorCurve& curve) {
     std::vector<double> errors;
     for (std::size_t b = 0; b < f.bin_friction.size(); ++b) {
@@ -282,9 +281,9 @@ ReportSection law_figures(const DrawnCampaign& campaign) {
     Chart friction = friction_chart(drawn->figures, campaign.friction_unit()), error = error_chart(drawn->figures);
     friction.id = fmt::format("fig10-friction-{}", k + 1);
     friction.title = "Friction over velocity, " + conditions_text(campaign.groups[campaign.shown[k]]);
-    friction.note = "Fig 10 and 11 of [D]: means in bins of v_r of " + drawn->run + ", and what the laws say there.";
+    friction.note = "Means in bins of v_r of " + drawn->run + ", and what the laws say there.";
     error.id = fmt::format("fig12-error-{}", k + 1);
-    error.title = "Relative error (Eq 5), " + conditions_text(campaign.groups[campaign.shown[k]]);
+    error.title = "Relative error, " + conditions_text(campaign.groups[campaign.shown[k]]);
     section.add(std::move(friction));
     section.add(std::move(error));
   }

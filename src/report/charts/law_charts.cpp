@@ -35,23 +35,48 @@ ChartLine& add_band(const std::string& name, CycleBand band, const Stroke& strok
 
 /// What a model leaves of every sample, in units of the noise floor.
 std::vector<double> residuals_of(const DrawnTrace& d, std::size_t model) {
-  std::vector<double> residuals = d.trace.motion.friction;
-  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= d.predictions[model][i];
-  return in_unit(residuals, residual_unit(*d.models[model]));
+  const std::vector<double>& friction = d.trace.motion.friction;
+  const std::vector<double>& predicted = d.predictions[model];
+  const double unit = residual_unit(*d.models[model]);
+  std::vector<double> residuals(friction.size());
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] = (friction[i] - predicted[i]) / unit;
+  return residuals;
 }
 
-/// Residuals of each model on both branches, switched with the line of their model.
+/// The stroke of a model on one branch, whose symbol it has.
+Stroke on_branch(std::size_t model, const BranchStyle& branch) {
+  Stroke stroke = model_stroke(model);
+  stroke.symbol = branch.stroke.symbol;
+  stroke.size = 4;
+  stroke.width = 1.3;
+  return stroke;
+}
+
+/// Residuals of each model on both branches, in its colour and switched with its line.
 void add_residuals(const DrawnTrace& d, Chart& chart) {
   for (std::size_t m = 0; m < d.models.size(); ++m) {
     for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, residuals_of(d, m), kSpeedBins)) {
-      ChartLine& line = add_band(curve_name(*d.models[m]), band, style_of(branch, kBranches).stroke, chart);
-      line.stroke.width = 1.3;
+      ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
       line.panel = 1;
       line.listed = false;
-      if (m == 0) continue;
-      line.stroke.colour = model_stroke(m).colour;
-      line.stroke.dash = model_stroke(m).dash;
-      line.low.clear(), line.high.clear();  // one band is enough to look at
+      if (m > 0) line.low.clear(), line.high.clear();  // one band is enough to look at
+    }
+  }
+}
+
+/// Whether what a model says along the slips is more than a function of the speed.
+bool has_loop(const Fit& fit) {
+  return !fit.model.effects().empty();
+}
+
+/// What models with effects say along the slips, branch by branch: the loop that the measurement goes through, too.
+void add_loops(const DrawnTrace& d, Chart& chart) {
+  for (std::size_t m = 0; m < d.models.size(); ++m) {
+    if (!has_loop(*d.models[m])) continue;
+    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, d.predictions[m], kSpeedBins)) {
+      ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
+      line.stroke.width = 2;
+      line.low.clear(), line.high.clear();
     }
   }
 }
@@ -67,8 +92,9 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
 }
 
 /// The law of a fit with its band.
-void add_curve(const Fit& fit, const Curve& curve, const Stroke& stroke, bool shown, Chart& chart) {
-  ChartLine& line = chart.line(curve_name(fit), stroke);
+void add_curve(const Fit& fit, const Curve& curve, const Stroke& stroke, bool shown, Chart& chart,
+               const std::string& more = "") {
+  ChartLine& line = chart.line(curve_name(fit) + more, stroke);
   line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
   line.low = curve.lower95, line.high = curve.upper95;
   line.shown = shown;
@@ -80,7 +106,11 @@ void add_curves(const DrawnTrace& d, Chart& chart) {
     const auto beside = std::find(d.models.begin(), d.models.end(), fit);
     const bool is_beside = beside != d.models.end();
     const auto k = static_cast<std::size_t>(beside - d.models.begin());
-    add_curve(*fit, curve_of(*fit, kCurvePoints), is_beside ? model_stroke(k) : kPublished, is_beside, chart);
+    const bool looped = is_beside && has_loop(*fit);
+    Stroke stroke = is_beside ? model_stroke(k) : kPublished;
+    if (looped) stroke.dash = Dash::dotted;
+    add_curve(*fit, curve_of(*fit, kCurvePoints), stroke, is_beside && !looped, chart,
+              looped ? ", steady sliding" : "");
   }
 }
 
@@ -96,8 +126,9 @@ Chart friction_chart(const DrawnTrace& d, const char* note, bool logarithmic) {
 
 /// Below it what the laws leave.
 void add_residual_panel(Chart& chart) {
-  chart.panels.push_back({{"residual / floor", "1"}});
-  for (const double bound : {-2.0, 2.0}) chart.marks.push_back({bound, false, Dash::dotted, "", 1});
+  chart.panels.push_back({{"residual / noise floor", "1"}});
+  chart.marks.push_back({2, false, Dash::dotted, "+2 noise floors", 1});
+  chart.marks.push_back({-2, false, Dash::dotted, "−2 noise floors", 1});
 }
 
 /// Speeds at which laws are drawn beside points [m/s].
@@ -148,8 +179,8 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
 Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
   Chart chart =
       half_chart(d.id + "-" + id, title, std::move(x), {.quantity = "relative error", .unit = "1", .from_zero = true});
-  chart.note = "|(measured − law)/measured| of every slip sample, Eq 5. Each bin shows its mean and its largest.";
-  chart.marks = {{published_error_limit, false, Dash::dashed, std::string(published_error_limit_text) + " of [D]"}};
+  chart.note = "|(measured − law)/measured| of every slip sample. Each bin shows its mean and its largest.";
+  chart.marks = {{published_error_limit, false, Dash::dashed, "8 %"}};
   return chart;
 }
 
@@ -175,9 +206,20 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
   ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
   const double floor = residual_unit(*d.models[model]), most = std::max(1.0, map.usual / floor);
   for (std::vector<double>& row : map.mean) row = in_unit(row, floor);
-  chart.map = HeatMap{map.phase, map.first_cycle, map.mean, "residual / floor", "1", -most, most};
+  chart.map = HeatMap{map.phase, map.first_cycle, map.mean, "residual / noise floor", "1", -most, most, true};
   chart.height = 360;
   return chart;
+}
+
+/// Those of the first two models, on one scale.
+void add_maps(const DrawnTrace& d, std::vector<Chart>& charts) {
+  double most = 0;
+  const std::size_t first = charts.size();
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) {
+    charts.push_back(map_chart(d, k));
+    most = std::max(most, charts.back().map->high);
+  }
+  for (std::size_t k = first; k < charts.size(); ++k) charts[k].map->low = -most, charts[k].map->high = most;
 }
 
 }  // namespace
@@ -186,8 +228,9 @@ Chart law_chart(const DrawnTrace& d) {
   if (!(d.fastest > 0)) return {};
   Chart chart = friction_chart(d,
                                "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. "
-                               "Below: what each law leaves, in units of the noise floor. Laws are those of steady "
-                               "sliding at the start of the record, over a turn of the disc.",
+                               "Below: what each law leaves, in units of the noise floor. A law with effects is drawn "
+                               "along the slips, through both branches; its line of steady sliding, at the start of "
+                               "the record and over a turn of the disc, can be switched on.",
                                false);
   const Motion& motion = d.trace.motion;
   for (const auto& [branch, band] : bands_over_speed(motion, d.pieces, motion.friction, kSpeedBins)) {
@@ -195,6 +238,7 @@ Chart law_chart(const DrawnTrace& d) {
     add_band("measured, " + std::string(style.name), band, style.stroke, chart);
   }
   add_break_aways(d, chart);
+  add_loops(d, chart);
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
@@ -244,9 +288,7 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
     add_errors(curve_name(*d.models[k]), k, time.result(), charts[1]);
   }
   if (m.is_points()) charts.pop_back();
-  if (d.trace.segmentation.kind == MotionKind::stick_slip) {
-    for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k));
-  }
+  if (d.trace.segmentation.kind == MotionKind::stick_slip) add_maps(d, charts);
   return charts;
 }
 

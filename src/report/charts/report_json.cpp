@@ -49,6 +49,7 @@ Json styles_json() {
     json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
   }
   json["heat"] = kHeatColours;
+  json["diverging"] = kDivergingColours;
   add_members(json, "grid", kGridColour, "axis", kAxisColour, "text", kTextColour, "disc", kDiscColour, "sticking",
               kStickingColour, "slipping", kSlippingColour);
   return json;
@@ -93,7 +94,7 @@ Json map_json(const HeatMap& map, const ChartAxis& x) {
   const auto row = [](const std::vector<double>& values) { return rounded_list(values, 4); };
   Json json = object("x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, kDigits), "z", list_of(map.z, row),
                      "quantity", map.quantity, "unit", map.unit);
-  add_given(json, "low", map.low, "high", map.high);
+  add_given(json, "low", map.low, "high", map.high, "diverging", map.diverging, "contours", map.contours);
   return json;
 }
 
@@ -159,15 +160,16 @@ Json item_json(const Chart& chart) {
 
 }  // namespace
 
+Json section_json(const ReportSection& section) {
+  const auto item = [](const ReportItem& i) { return std::visit([](const auto& own) { return item_json(own); }, i); };
+  return object("id", section.id, "title", section.title, "items", list_of(section.items, item));
+}
+
 Json report_json(const Report& report) {
   const auto fact = [](const auto& f) { return Json::array({f.first, f.second}); };
-  const auto item = [](const ReportItem& i) { return std::visit([](const auto& own) { return item_json(own); }, i); };
-  const auto section = [&](const ReportSection& s) {
-    return object("id", s.id, "title", s.title, "items", list_of(s.items, item));
-  };
   return object("kind", report.kind, "title", report.title, "subtitle", report.subtitle, "lead", report.lead,
                 "warnings", report.warnings, "facts", list_of(report.facts, fact), "sections",
-                list_of(report.sections, section), "styles", styles_json());
+                list_of(report.sections, section_json), "styles", styles_json());
 }
 
 }  // namespace tribofit

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -77,14 +78,25 @@ struct ShadeStyle {
   std::string_view name, meaning;
   Paint paint;
 };
-inline constexpr std::array<ShadeStyle, 4> kShades = {{{"stick", "stick", {"#000000", 0.07}},
+inline constexpr std::array<ShadeStyle, 5> kShades = {{{"stick", "stick", {"#000000", 0.07}},
                                                        {"slip", "slip", {"#e69f00", 0.16}},
                                                        {"beyond", "beyond the data", {"#000000", 0.11}},
-                                                       {"left-out", "left out", {"#a0508a", 0.2}}}};
+                                                       {"left-out", "left out", {"#a0508a", 0.2}},
+                                                       {"range", "95 % range", {"#a0508a", 0.3}}}};
 
 /// Cividis (Nunez, Anderton & Renslow 2018), made for people who do not see colours alike: lightness rises evenly.
 inline constexpr std::array<std::string_view, 10> kHeatColours = {
     "#00204c", "#00336f", "#39486b", "#575c6d", "#707173", "#8a8779", "#a69d75", "#c4b56c", "#e4cf5b", "#ffe945"};
+
+/// Blue, pale, red (after ColorBrewer's RdBu, Harrower & Brewer 2003): the sign is seen without knowing the colours by
+/// which end is darker in print, and zero stands out as palest.
+inline constexpr std::array<std::string_view, 9> kDivergingColours = {
+    "#053061", "#2166ac", "#4393c3", "#a7cfe4", "#f7f7f7", "#f6bfa3", "#d6604d", "#b2182b", "#67001f"};
+
+inline std::span<const std::string_view> colours_of(const HeatMap& map) {
+  if (map.diverging) return kDivergingColours;
+  return kHeatColours;
+}
 
 template <class Enum, class Styles>
 constexpr const auto& style_of(Enum value, const Styles& styles) {

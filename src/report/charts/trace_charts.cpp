@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "report/charts/styles.hpp"
@@ -25,16 +26,22 @@ struct Window {
   double origin = 0, unit = 1;  ///< of the abscissa [s]
 };
 
-/// Adds a line of value(sample).
-template <class Value>
-void add_line(const DrawnTrace& d, const Window& w, const std::string& name, Value value, const Stroke& stroke,
-              std::size_t panel, Chart& chart) {
-  std::vector<double> values;
-  for (std::size_t i = w.begin; i < w.end; ++i) values.push_back(value(i));
+/// Adds a line of the values of the window's samples.
+void add_drawn(const DrawnTrace& d, const Window& w, const std::string& name, std::span<const double> values,
+               const Stroke& stroke, std::size_t panel, Chart& chart) {
   ChartLine& line = chart.line(name, stroke, panel);
   for (const std::size_t k : drawn_samples(values, w.bins)) {
     line.add((d.trace.motion.time[w.begin + k] - w.origin) / w.unit, values[k]);
   }
+}
+
+/// Adds a line of value(sample).
+template <class Value>
+void add_line(const DrawnTrace& d, const Window& w, const std::string& name, Value value, const Stroke& stroke,
+              std::size_t panel, Chart& chart) {
+  std::vector<double> values(w.end - w.begin);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = value(w.begin + k);
+  add_drawn(d, w, name, values, stroke, panel, chart);
 }
 
 /// Friction with its models above; below v_b with the disc where the block moves against one of known speed, else v_r.
@@ -43,7 +50,9 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const bool varies = !motion.disc_velocity.empty();
   const bool of_block =
       motion.velocity_kind != VelocityKind::fixed_block && (varies || motion.constant_disc_velocity != 0);
-  const auto in = [](const std::vector<double>& values) { return [&](std::size_t i) { return values[i]; }; };
+  const auto in = [&](const std::vector<double>& values) {
+    return std::span(values).subspan(w.begin, w.end - w.begin);
+  };
   const auto disc = [&](std::size_t i) { return motion.disc_velocity_at(i) / kMillimetre; };
   const auto velocity = [&](std::size_t i) {
     const double v_r = motion.relative_velocity[i];
@@ -51,9 +60,9 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   };
   Chart chart{.x = {.quantity = "time", .unit = "s", .digits = kTimeDigits},
               .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
-  add_line(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
+  add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
-    add_line(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart);
+    add_drawn(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart);
     chart.lines.back().shown = k < 2;
   }
   add_line(d, w, "measured", velocity, kMeasured, 1, chart);
@@ -99,6 +108,22 @@ Chart zoom_chart(const DrawnTrace& d, double at, double half, const char* id, co
   chart.height = 400;
   chart.half = true;
   return chart;
+}
+
+/// The cycles drawn: the first of them, and their samples [begin, end); none where there are too few.
+struct ShownCycles {
+  std::size_t first = 0, begin = 0, end = 0;
+};
+
+ShownCycles shown_cycles(const DrawnTrace& d) {
+  const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
+  if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < kShownCycles) return {};
+  const std::size_t first = whole_cycles_near_middle(d.trace.segmentation, kShownCycles);
+  const Cycle& head = cycles[first];
+  const Cycle& tail = cycles[first + kShownCycles - 1];
+  const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;
+  const std::size_t margin = (tail.slip.end - begin) / 20;  // a little of the next stick
+  return {first, begin, std::min(d.trace.motion.size(), tail.slip.end + margin)};
 }
 
 /// Amplitudes of v_r up to twelve times the stick-slip frequency, or the whole band where nothing repeats.
@@ -171,16 +196,15 @@ ChartAxis friction_axis(const Motion& motion) {
   return {force ? "friction force" : "friction μ", force ? "N" : "1"};
 }
 
+bool shows_cycles(const DrawnTrace& d) {
+  const ShownCycles shown = shown_cycles(d);
+  return shown.end >= shown.begin + 2;
+}
+
 std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   const Motion& motion = d.trace.motion;
-  if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < kShownCycles) return {};
-  const std::size_t first = whole_cycles_near_middle(d.trace.segmentation, kShownCycles);
-  const Cycle& head = cycles[first];
-  const Cycle& tail = cycles[first + kShownCycles - 1];
-  const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;
-  const std::size_t margin = (tail.slip.end - begin) / 20;  // a little of the next stick
-  const std::size_t end = std::min(motion.size(), tail.slip.end + margin);
+  const auto [first, begin, end] = shown_cycles(d);
   if (end < begin + 2) return {};
   Chart chart = window_chart(d, {begin, end, d.bins(kCycleBins)}, true);
   chart.id = d.id + "-cycles";

@@ -32,9 +32,9 @@ function blockScene(block, animation, bounds) {
     (s.plotBottom - s.plotTop);
   const spring = svgPart("path", { fill: "none", stroke: styles.colours.black, "stroke-width": 1.6 });
   const body = svgPart("rect", { y: s.deck - 34, width: s.block, height: 34, stroke: styles.colours.black, "stroke-width": 1.6 });
-  const word = svgPart("text", { y: s.deck - 13, "text-anchor": "middle", "font-size": 13 });
+  const word = svgPart("text", { y: s.deck - 13, "text-anchor": "middle", "font-size": 13, fill: styles.text });
   const marks = svgPart("path", { stroke: styles.colours.black, "stroke-width": 1.4 });
-  const dot = svgPart("circle", { r: 4.5, fill: styles.colours.red, stroke: "#fff" });
+  const dot = svgPart("circle", { r: 4.5, fill: styles.colours.red, stroke: styles.paper });
   const label = (x, y, text, anchor = "start", more = {}) =>
     svgPart("text", { x, y, "text-anchor": anchor, "font-size": 12, fill: styles.text, ...more }, text);
   const low = number(bounds.low, 3), high = number(bounds.high, 3);

@@ -1,11 +1,9 @@
 // Draws a chart as the program describes it (include/tribofit/report/chart.hpp), with its title, legend, tools and
 // numbers.
 
-const styles = {}; // colours, dashes, symbols and shades of the report that is shown
-
 /** Text that a chart takes as text: no tags, no entities. */
 function plain(text) {
-  return String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+  return symbols(String(text)).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 }
 
 /** Text with the subscripts and superscripts of "v_{r}" and "s^{2}". */
@@ -16,14 +14,23 @@ function marked(text) {
 
 const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
 const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
+
+/** A title on two lines where a narrow screen has no room for one. */
+function brokenTitle(text) {
+  const most = Math.floor((innerWidth - 90) / 7.5);
+  const blank = text.length > most ? text.lastIndexOf(" ", most) : -1;
+  return blank > 0 ? `${text.slice(0, blank)}\n${text.slice(blank + 1)}` : text;
+}
 const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
 
 function axisOf(axis, more = {}) {
-  const layout = { title: { text: marked(titleOf(axis)), standoff: 8 }, automargin: true, zeroline: false, showline: true,
+  const layout = { title: { text: marked(brokenTitle(titleOf(axis))), standoff: 8 }, automargin: true, zeroline: false, showline: true,
     linecolor: styles.axis, gridcolor: styles.grid, ticks: "outside", tickcolor: styles.axis, exponentformat: "power",
     hoverformat: ".7~g", ...more };
   if (axis.names) {
-    Object.assign(layout, { tickvals: axis.names.map((_, k) => k), ticktext: axis.names.map(plain), showgrid: false,
+    // More names than can be read take minutes to lay out; each still shows beside its point.
+    const every = Math.ceil(axis.names.length / 40), shown = axis.names.map((_, k) => k).filter((k) => k % every === 0);
+    Object.assign(layout, { tickvals: shown, ticktext: shown.map((k) => plain(axis.names[k])), showgrid: false,
       range: [-0.6, axis.names.length - 0.4] });
   }
   if (axis.logarithmic) layout.type = "log";
@@ -83,22 +90,29 @@ function tracesOfBars(chart, bars) {
   const y = chart.panels[0].axis;
   return { type: "bar", orientation: "h", name: plain(bars.name), legendgroup: bars.name, x: bars.values,
     y: bars.values.map((_, k) => k), customdata: y.names.map(plain),
-    marker: { color: styles.colours[bars.colour], line: { color: "#000", width: 1 },
-      pattern: { shape: bars.hatched ? "/" : "", fillmode: "overlay", fgcolor: "#fff", size: 6, solidity: 0.35 } },
+    marker: { color: styles.colours[bars.colour], line: { color: styles.colours.black, width: 1 },
+      pattern: { shape: bars.hatched ? "/" : "", fillmode: "overlay", fgcolor: styles.paper, size: 6, solidity: 0.35 } },
     hovertemplate: `%{customdata}: %{x:.4g}${plain(unitOf(chart.x))}<extra>%{fullData.name}</extra>` };
 }
 
-function traceOfMap(chart) {
+function tracesOfMap(chart) {
   const map = chart.map, x = chart.x, y = chart.panels[0].axis;
-  return { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low, zmax: map.high,
-    zauto: map.low === undefined, colorscale: styles.heat.map((colour, k) => [k / (styles.heat.length - 1), colour]), hoverongaps: false,
-    colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12 },
+  const colours = map.diverging ? styles.diverging : styles.heat;
+  const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low, zmax: map.high,
+    zauto: map.low === undefined, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
+    opacity: map.contours ? 0.6 : 1, // lines and their numbers must be read on it
+    colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12, outlinecolor: styles.axis,
+      tickcolor: styles.axis, tickfont: { color: styles.text } },
     hovertemplate: `${marked(x.quantity)} %{x}${plain(unitOf(x))}<br>${marked(y.quantity)} %{y}${plain(unitOf(y))}` +
       `<br>%{z:.5g}${plain(unitOf(map))}<extra></extra>` };
+  if (!map.contours) return [cells];
+  return [cells, { type: "contour", x: map.x, y: map.y, z: map.z, ncontours: 8, showscale: false, hoverinfo: "skip",
+    showlegend: false, connectgaps: false, line: { color: styles.colours.black, width: 1 },
+    contours: { coloring: "none", showlabels: true, labelfont: { size: 11, color: styles.colours.black } } }];
 }
 
 function tracesOf(chart) {
-  const traces = chart.map ? [traceOfMap(chart)] : [];
+  const traces = chart.map ? tracesOfMap(chart) : [];
   const listed = new Set(); // the legend names each once
   for (const line of chart.lines || []) {
     traces.push(...tracesOfLine(chart, listed.has(line.name) ? { ...line, listed: false } : line));
@@ -123,14 +137,25 @@ function shapesOf(chart) {
 function annotationsOf(chart) {
   const log = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
   const named = (chart.marks || []).filter((mark) => mark.text);
-  const words = named.map((mark, k) => ({ text: marked(mark.text), showarrow: false, font: { size: 11 },
-    bgcolor: "rgba(255,255,255,0.7)", xanchor: "left", textangle: 0, ...(mark.upright
-      ? { xref: "x", x: log(chart.x, mark.at), yref: "paper", y: 1, yanchor: "top", yshift: -15 * (k % 3) } // close ones
-      : { xref: "paper", x: 0, yref: nth("y", mark.panel), y: log(chart.panels[mark.panel || 0].axis, mark.at),
-        yanchor: "bottom" }) }));
+  const all = (chart.lines || []).flatMap((line) => line.x).filter(Number.isFinite).map((x) => log(chart.x, x));
+  const low = Math.min(...all), high = Math.max(...all);
+  // Of words at upright marks, one below the other; on a narrow screen below those at a level mark of the panel.
+  let rows = innerWidth < 500 && named.some((mark) => !mark.upright && !mark.panel) ? 1.4 : 0;
+  const words = named.map((mark) => {
+    const common = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo, textangle: 0, xanchor: "left", align: "left" };
+    if (!mark.upright) {
+      return { ...common, text: marked(mark.text), xref: "paper", x: 0, yref: nth("y", mark.panel),
+        y: log(chart.panels[mark.panel || 0].axis, mark.at), yanchor: mark.at < 0 ? "top" : "bottom" };
+    }
+    const text = innerWidth < 500 ? mark.text.replace(/, (?![^[]*\])| (?=\[)/g, "\n") : mark.text;
+    const right = log(chart.x, mark.at) - low > 0.6 * (high - low), yshift = -15 * rows;
+    rows += text.split("\n").length;
+    return { ...common, text: marked(text), xref: "x", x: log(chart.x, mark.at), yref: "paper", y: 1, yanchor: "top", yshift,
+      ...(right ? { xanchor: "right", align: "right" } : {}) };
+  });
   for (const label of chart.labels || []) {
     words.push({ x: log(chart.x, label.x), y: log(chart.panels[label.panel || 0].axis, label.y), yref: nth("y", label.panel),
-      text: marked(label.text), showarrow: false, yanchor: "bottom", yshift: 14, font: { size: 11 }, bgcolor: "#fff" });
+      text: marked(label.text), showarrow: false, yanchor: "bottom", yshift: 14, font: { size: 11 }, bgcolor: styles.halo });
   }
   return words;
 }
@@ -141,10 +166,11 @@ function layoutOf(chart) {
   const whole = chart.panels.reduce((sum, panel) => sum + panel.part, 0), free = 1 - gap * (count - 1);
   const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13,
     color: styles.text },
-    margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest",
-    showlegend: false, hoverlabel: { bgcolor: "#fff", bordercolor: styles.axis, font: { color: styles.text } },
+    margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
+    showlegend: false, hoverlabel: { bgcolor: styles.paper, bordercolor: styles.axis, font: { color: styles.text } },
     height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
-    xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
+    xaxis: axisOf(chart.x, { anchor: nth("y", count - 1),
+      ...(chart.x.names && chart.x.names.length > 5 && innerWidth < 500 ? { tickangle: -90 } : {}) }) };
   let top = 1;
   chart.panels.forEach((panel, k) => {
     const height = (free * panel.part) / whole;
@@ -186,9 +212,9 @@ function swatch(trace) {
   const svg = svgPart("svg", { width: 34, height: 12, "aria-hidden": "true" });
   if (trace.type === "bar" || trace.fill) {
     const fill = trace.fill ? trace.fillcolor : trace.marker.color;
-    svg.append(svgPart("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : "#000" }));
+    svg.append(svgPart("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : styles.colours.black }));
     if (!trace.fill && trace.marker.pattern.shape) {
-      svg.append(svgPart("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: "#fff", "stroke-width": 1.5 }));
+      svg.append(svgPart("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: styles.paper, "stroke-width": 1.5 }));
     }
     return svg;
   }
@@ -210,7 +236,7 @@ let isDrawing = false;
 
 /** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
 function chartFigure(chart) {
-  const item = chartItems.get(chart.id) || makeChart(chart), described = JSON.stringify(chart);
+  const item = chartItems.get(chart.id) || makeChart(chart), described = (styles.dark ? "dark" : "") + JSON.stringify(chart);
   if (item.described === described && (item.shown === described || waiting.includes(item))) return item.figure;
   item.described = described;
   item.chart = chart;
@@ -221,8 +247,8 @@ function chartFigure(chart) {
   for (const trace of item.traces) {
     if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
   }
-  item.title.textContent = chart.title;
-  item.note.textContent = chart.note;
+  item.title.textContent = symbols(chart.title);
+  item.note.textContent = prose(chart.note);
   item.plot.style.height = `${chart.height}px`;
   fillLegend(item);
   if (!waiting.includes(item)) waiting.push(item);
@@ -279,11 +305,11 @@ function fillLegend(item) {
   for (const trace of item.traces.filter((one) => one.showlegend !== false && one.legendgroup)) {
     const on = trace.visible !== "legendonly";
     parts.push(make("button", { type: "button", "aria-pressed": String(on), title: "Show or hide",
-      onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), trace.legendgroup));
+      onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), symbols(trace.legendgroup)));
   }
   const stretches = item.chart.stretches || [];
   const keys = new Map(stretches.map(({ shade }) => [styles.shades[shade].meaning, styles.shades[shade].fill]));
-  if (parts.length < 2) parts.length = 0; // one alone needs no name
+  if (parts.length < 2 && !item.chart.map) parts.length = 0; // one alone needs no name
   for (const [name, fill] of keys) {
     const key = make("span", { className: "key" });
     key.style.background = fill;
@@ -335,17 +361,6 @@ function onKey(event, item) {
   action();
 }
 
-/** Saves the chart with title and legend, wide enough for print. */
-function savePicture(item, format) {
-  if (!item.drawn) draw(item);
-  const height = Math.max(560, item.chart.height);
-  const layout = { ...item.plot.layout, showlegend: true, width: 900, height,
-    title: { text: plain(item.chart.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
-    legend: { orientation: "h", y: -0.18, yanchor: "top" } };
-  return Plotly.toImage({ data: item.plot.data, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
-    .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
-}
-
 function addTools(item, title) {
   const button = (text, what, action) =>
     make("button", { type: "button", title: what, "aria-label": `${what}: ${title}`, onclick: action }, text);
@@ -353,18 +368,3 @@ function addTools(item, title) {
     button("All", "Show all", () => showAll(item)), button("SVG", "Save as SVG", () => savePicture(item, "svg")),
     button("PNG", "Save as PNG", () => savePicture(item, "png")));
 }
-
-// On paper charts are as wide as the page, and folded tables are open.
-let unfolded = [];
-const drawnPlots = () => [...chartItems.values()].filter((item) => item.drawn && item.plot.isConnected)
-  .map((item) => item.plot);
-addEventListener("beforeprint", () => {
-  unfolded = [...document.querySelectorAll("details:not(.numbers):not([open])")];
-  for (const details of unfolded) details.open = true;
-  for (const item of [...waiting]) if (item.plot.isConnected) draw(item);
-  for (const plot of drawnPlots()) Plotly.relayout(plot, { width: 640, autosize: false });
-});
-addEventListener("afterprint", () => {
-  for (const details of unfolded) details.open = false;
-  for (const plot of drawnPlots()) Plotly.relayout(plot, { width: null, autosize: true });
-});

@@ -48,9 +48,14 @@ function headerItems(report) {
     make("nav", { "aria-label": "Sections" }, make("ul", {}, ...links)), facts(report.facts)].filter((part) => part !== null);
 }
 
+let lastShown = null;
+darkScreen.addEventListener("change", () => lastShown && showReport(lastShown.main, lastShown.report));
+
 /** Shows a report; what stands there already is brought up to date. */
 function showReport(main, report) {
-  Object.assign(styles, report.styles);
+  givenStyles = report.styles;
+  setTheme(darkScreen.matches);
+  lastShown = { main, report };
   document.title = `${report.title} – ${report.kind}`;
   const before = new Map([...main.querySelectorAll(":scope > section")].map((element) => [element.id, element]));
   const sections = report.sections.map((section) => {

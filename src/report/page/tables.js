@@ -23,25 +23,53 @@ function number(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("-", "−");
+  if (size >= 1e6 || size < 1e-6) return value.toExponential(digits - 1).replace("-", "−");
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return value.toFixed(Math.min(places, 12)).replace("-", "−");
 }
 
+/** Symbols that the program spells in letters, as options and tables need them: mu_s, omega r, +/-. */
+function symbols(text) {
+  return text.replace(/\+\/-/g, "±").replace(/\bmu(?=_[a-z0-9]\b|\b(?!_))/g, "μ").replace(/\bomega r\b/g, "ω r");
+}
+
 /** Text of the program as a page has it. */
 function prose(text) {
-  const words = text.replace(/\+\/?-/g, "±");
+  const words = symbols(text);
   return words.replace(/^[a-z](?=[a-z'-]*( [^=]|$))/, (letter) => letter.toUpperCase()); // but "mu_s" and "mu = ..."
 }
 
-/** A table; columns named in `numeric` are set to the right. */
+/** The order of columns: what a reader wants first, the interval, stands behind the value. */
+function columnOrder(header, numeric) {
+  const order = header.map((_, k) => k), interval = header.indexOf("95 % interval"), value = numeric[0];
+  if (interval <= value + 1) return order;
+  order.splice(order.indexOf(interval), 1);
+  order.splice(order.indexOf(value) + 1, 0, interval);
+  return order;
+}
+
+const tableWidths = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const box = target.closest(".scroll");
+    if (box) box.parentElement.classList.toggle("overflows", box.scrollWidth > box.clientWidth + 1);
+  }
+});
+
+/** A table; columns named in `numeric` are set to the right. Where it is wider than its place it scrolls, and says so. */
 function table(caption, header, rows, numeric = []) {
+  const order = columnOrder(header, numeric);
   const align = (k) => (numeric.includes(k) ? { className: "number" } : {});
-  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, String(content).replace("+/-", "±"));
-  return make("div", { className: "scroll", tabindex: "0", role: "region", "aria-label": caption || "table" },
-    make("table", {}, caption ? make("caption", {}, caption) : null,
-      make("thead", {}, make("tr", {}, ...header.map((name, k) => cell("th", name, k, { scope: "col" })))),
-      make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((content, k) => cell("td", content, k)))))));
+  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, symbols(String(content)));
+  const whole = make("table", {}, caption ? make("caption", {}, symbols(caption)) : null,
+    make("thead", {}, make("tr", {}, ...order.map((k) => (header[k] ? cell("th", header[k], k, { scope: "col" }) : make("td"))))),
+    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...order.map((k) => cell("td", row[k] ?? "", k))))));
+  if (header.length > 8) whole.className = "wide";
+  const box = make("div", { className: "scroll", tabindex: "0", role: "group", "aria-label": symbols(caption || "Table") }, whole);
+  const outer = make("div", { className: "table" }, box,
+    make("p", { className: "hint", "aria-hidden": "true" }, "more columns to the right: scroll →"));
+  tableWidths.observe(box);
+  tableWidths.observe(whole);
+  return outer;
 }
 
 /** Facts as a list of names and values. */

@@ -198,7 +198,8 @@ class Drawing {
     const double right = box.right(), step = box.height / kSteps;
     for (int k = 0; k < kSteps; ++k) {  // each reaches under the next
       const double y = box.bottom + k * step, height = std::min(box.top() - y, 1.5 * step);
-      canvas_.fill_path(Area{box.left, y, box.width, height}.corners(), {heat_colour((k + 0.5) / kSteps)});
+      canvas_.fill_path(Area{box.left, y, box.width, height}.corners(),
+                        {heat_colour((k + 0.5) / kSteps, colours_of(*chart_.map))});
     }
     for (const Scale::Tic& tic : layout_.colours.tics) {
       const double y = box.bottom + layout_.colours.part(tic.at) * box.height;

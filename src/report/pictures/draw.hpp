@@ -42,6 +42,6 @@ Path thinned_line(const Path& points, double tolerance);
 Path thinned_points(const Path& points, double cell);
 
 /// Colour of a part of the heat map's range, 0 to 1.
-std::string heat_colour(double part);
+std::string heat_colour(double part, std::span<const std::string_view> scale);
 
 }  // namespace tribofit

@@ -164,12 +164,12 @@ void draw_bars(const PanelFrame& frame, const std::vector<ChartBars>& bars) {
   frame.canvas.end_plot();
 }
 
-std::string heat_colour(double part) {
-  const double at = std::clamp(part, 0.0, 1.0) * static_cast<double>(kHeatColours.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(at), kHeatColours.size() - 2);
+std::string heat_colour(double part, std::span<const std::string_view> scale) {
+  const double at = std::clamp(part, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), scale.size() - 2);
   std::string out = "#";
   for (std::size_t k = 0; k < 3; ++k) {
-    const int from = channel_of(kHeatColours[below], k), to = channel_of(kHeatColours[below + 1], k);
+    const int from = channel_of(scale[below], k), to = channel_of(scale[below + 1], k);
     const double value = from + (at - static_cast<double>(below)) * (to - from);
     out += fmt::format("{:02x}", static_cast<int>(std::lround(value)));
   }
@@ -200,7 +200,7 @@ void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours)
       bool above = r + 2 < y.size() && r + 1 < map.z.size() && map.z[r + 1].size() >= end;
       for (std::size_t k = c; above && k < end; ++k) above = step(map.z[r + 1][k]) >= 0;
       const Area box{low.x, low.y, high.x - low.x + (beside ? kUnder : 0), high.y - low.y + (above ? kUnder : 0)};
-      frame.canvas.fill_path(box.corners(), {heat_colour((colour + 0.5) / kColourSteps)});
+      frame.canvas.fill_path(box.corners(), {heat_colour((colour + 0.5) / kColourSteps, colours_of(map))});
     }
   }
   frame.canvas.end_plot();

@@ -139,7 +139,10 @@ Scale scale_of(const ChartAxis& axis, const Extent& extent, double margin, int m
   scale.title = axis.unit.empty() ? axis.quantity : axis.quantity + " [" + axis.unit + "]";
   set_range(scale, axis, extent, margin);
   if (scale.named) {
-    for (std::size_t k = 0; k < axis.names.size(); ++k) scale.tics.push_back({static_cast<double>(k), axis.names[k]});
+    constexpr std::size_t kMostNames = 40;  // more cannot be read
+    const std::size_t every = (axis.names.size() + kMostNames - 1) / kMostNames;
+    for (std::size_t k = 0; k < axis.names.size(); k += every)
+      scale.tics.push_back({static_cast<double>(k), axis.names[k]});
   } else if (scale.logarithmic) {
     add_logarithmic_tics(scale, most_tics);
   } else {

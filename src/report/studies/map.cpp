@@ -31,6 +31,7 @@ Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const 
     return std::any_of(row.begin(), row.end(), [](double z) { return !std::isfinite(z); });
   });
   if (any_gap) chart.note = "White: nothing there, the block slides or its motion did not settle.";
+  map.contours = true;
   chart.map = std::move(map);
   ChartLine& edge = chart.line("edge of stick-slip", dots(Colour::black, Symbol::circle, 3));
   const std::size_t every = 1 + std::max(request.x.values.size(), request.y.values.size()) / kMostCells;
@@ -39,7 +40,7 @@ Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const 
   }
   const double x = value_of(studied.machine, across.name) / across.si, y = value_of(studied.machine, up.name) / up.si;
   if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {
-    chart.lines.push_back({"the machine", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
+    chart.lines.push_back({"the machine as it is", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
   }
   return chart;
 }
@@ -52,6 +53,32 @@ ReportTable regimes_table(const MapRows& rows) {
     if (count > 0) table.rows.push_back({std::string(to_string(regime)), grouped(count)});
   }
   return table;
+}
+
+/// What was found: how much of the map sticks, and between which ends the printed measure lies.
+std::string headline(const MapRequest& request, const MapRows& rows) {
+  const Variable &x = request.x.variable, &y = request.y.variable;
+  const std::size_t all = request.x.values.size() * rows.size(), sticking = count_of(rows, Regime::stick_slip);
+  std::string text =
+      sticking == all ? fmt::format("Stick-slip everywhere in {} x {} cells over {} and {}.",
+                                    grouped(request.x.values.size()), grouped(rows.size()), x.name, y.name)
+      : sticking == 0 ? fmt::format("No stick-slip anywhere in {} x {} cells over {} and {}.",
+                                    grouped(request.x.values.size()), grouped(rows.size()), x.name, y.name)
+                      : fmt::format("Stick-slip in {} of {} cells over {} and {}.", grouped(sticking), grouped(all),
+                                    x.name, y.name);
+  const std::string measure = "peak-to-peak";
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    const auto least = extreme_of(request, rows, k, false), most = extreme_of(request, rows, k, true);
+    if (measures()[k].name != measure || !least || !most) continue;
+    const auto place = [&](const auto& cell) {
+      return fmt::format("{} {}{}, {} {}{}", x.name, significant(cell.x / x.si, 3), unit_behind(x.unit), y.name,
+                         significant(cell.y / y.si, 3), unit_behind(y.unit));
+    };
+    text += fmt::format(" The displacement of the block goes from {} {} peak to peak ({}) to {} {} ({}).",
+                        significant(least->value / measures()[k].si, 3), measures()[k].unit, place(*least),
+                        significant(most->value / measures()[k].si, 3), measures()[k].unit, place(*most));
+  }
+  return text;
 }
 
 ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
@@ -123,8 +150,7 @@ std::string map_json(const StudiedMachine& studied, const MapRequest& request, c
 Report report_of(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                  const ReportOptions& options) {
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
-  std::string lead = capitalised(fmt::format("{} and {} over {} x {} cells.", request.x.variable.name,
-                                             request.y.variable.name, grouped(nx), grouped(ny)));
+  std::string lead = headline(request, rows);
   if (nx > kMostCells || ny > kMostCells) {
     lead += " Where a colour stands for several cells, it is that of the largest value among them; --csv writes all.";
   }

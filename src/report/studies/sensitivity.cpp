@@ -20,7 +20,10 @@ std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t 
 ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
   ReportTable table("Elasticities: per cent of a measure for one per cent of a number");
   table.text({"number"}).numbers({"value"}).text({"unit"});
-  for (const MeasureInfo& measure : measures()) table.numbers({measure.name});
+  for (const MeasureInfo& measure : measures()) {
+    table.numbers({measure.name});
+    if (measure.name == "peak-to-peak") table.columns.back().brief = "p-to-p";  // or it is wider than a terminal
+  }
   for (const Sensitivity& one : study) {
     std::vector<std::string> row = {one.variable.name, significant(one.base / one.variable.si, 4),
                                     one.variable.unit == "1" ? "" : one.variable.unit};

@@ -119,26 +119,53 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
   add(c.stick_returns, Dash::dash_dotted, "stick returns");
 }
 
-/// The range of a critical speed on the zero line of a panel, where the curve that it belongs to crosses it.
-void add_range(const Interval95& range, std::size_t panel, Chart& chart) {
+/// The 95 % range of a critical speed, over all panels, with its numbers at the mark.
+void add_range(const Interval95& range, double at, Chart& chart) {
   if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
-  ChartLine& line = chart.line("95 % range of a critical speed",
-                               {.colour = Colour::purple, .symbol = Symbol::diamond, .width = 4}, panel);
-  line.add(range.lower95 / kMillimetre, 0);
-  line.add(range.upper95 / kMillimetre, 0);
+  chart.stretches.push_back({range.lower95 / kMillimetre, range.upper95 / kMillimetre, Shade::range});
+  for (ChartMark& mark : chart.marks) {
+    if (mark.upright && is_same_speed(mark.at * kMillimetre, at)) mark.text += " " + range_text(range, kMillimetre);
+  }
+}
+
+bool is_sticking(const Settled& settled) {
+  return settled.regime != Regime::sliding;
+}
+
+/// Adds the points of a sweep, and the line through them with its jump where stick vanishes or returns: the measure of
+/// the sticking motion goes on to that speed as straight as it came.
+void add_sweep(const SpeedStudy& study, const std::vector<Settled>& settled, double jump, const MeasureInfo& measure,
+               const Stroke& stroke, const std::string& name, std::size_t panel, Chart& chart) {
+  ChartLine line{.name = name, .stroke = stroke, .panel = panel};
+  line.stroke.symbol = Symbol::none;
+  ChartLine points{.name = name, .stroke = stroke, .listed = false, .panel = panel};
+  points.stroke.joined = false;
+  const auto value = [&](std::size_t i) { return settled[i].*measure.value / measure.si; };
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    const double v = study.velocity[i];
+    line.add(v / kMillimetre, value(i));
+    points.add(v / kMillimetre, value(i));
+    if (i == 0 || i + 1 == settled.size() || !(jump > v && jump < study.velocity[i + 1])) continue;
+    if (!is_sticking(settled[i]) || is_sticking(settled[i + 1])) continue;
+    const double slope = (value(i) - value(i - 1)) / (v - study.velocity[i - 1]);
+    line.add(jump / kMillimetre, value(i) + slope * (jump - v));
+    line.add(jump / kMillimetre, value(i + 1));
+  }
+  chart.lines.push_back(std::move(line));
+  chart.lines.push_back(std::move(points));
 }
 
 void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
-  const std::vector<double> velocity = in_unit(study.velocity, kMillimetre);
-  const auto add = [&](const char* name, const std::vector<Settled>& settled, std::size_t kind, Dash dash) {
-    ChartLine& line = chart.line(name, marked(kind), panel);
-    line.x = velocity;
-    line.stroke.dash = dash;
-    line.stroke.size = 5;
-    for (const Settled& s : settled) line.y.push_back(s.*measure.value / measure.si);
+  const auto stroke = [](std::size_t kind, Dash dash) {
+    Stroke out = marked(kind);
+    out.dash = dash;
+    out.size = 5;
+    return out;
   };
-  add("begun in stick (way up)", study.up, 1, Dash::solid);
-  add("begun in sliding (way down)", study.down, 2, Dash::dashed);
+  add_sweep(study, study.up, study.critical.stick_vanishes, measure, stroke(1, Dash::solid), "begun in stick (way up)",
+            panel, chart);
+  add_sweep(study, study.down, study.critical.stick_returns, measure, stroke(2, Dash::dashed),
+            "begun in sliding (way down)", panel, chart);
 }
 
 /// What the record says at its own speed; nothing where it does not.
@@ -175,12 +202,10 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
     if (name == "frequency") {
       chart.marks.push_back({studied.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
     }
-    if (name == "stick-time") {
-      add_range(study.vanishes_interval, panel, chart);
-      add_range(study.returns_interval, panel, chart);
-    }
   }
   add_critical(study, chart);
+  add_range(study.vanishes_interval, study.critical.stick_vanishes, chart);
+  add_range(study.returns_interval, study.critical.stick_returns, chart);
   return chart;
 }
 
@@ -191,9 +216,9 @@ Chart growth_chart(const SpeedStudy& study) {
               .x = speed_axis(study),
               .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
               .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}}};
-  add_range(study.linear_interval, 0, chart);
   chart.marks.push_back({0, false, Dash::solid, "", 0});
   add_critical(study, chart);
+  if (!study.critical.linear.empty()) add_range(study.linear_interval, study.critical.linear.back(), chart);
   return chart;
 }
 

@@ -6,7 +6,7 @@ function field(label, input) {
 }
 
 function lawChoice() {
-  return make("fieldset", {}, make("legend", {}, "Law"), ...workbench.world.laws.map((law) => {
+  return make("fieldset", { className: "laws" }, make("legend", {}, "Law"), ...workbench.world.laws.map((law) => {
     const input = make("input", { type: "radio", name: "law", value: law, id: `law-${law}` });
     input.onchange = () => { workbench.choice.law = law; changed(); };
     return make("label", { className: "tick" }, input, law);
@@ -30,7 +30,7 @@ function effectChoices() {
   for (const effect of workbench.world.effects) groups.set(effect.group, [...(groups.get(effect.group) || []), effect]);
   const what = { friction: "What the contact does", rig: "What the machine does", measurement: "What the instruments do" };
   return make("fieldset", {}, make("legend", {}, "Effects"), ...[...groups].map(([group, effects], k) =>
-    make("details", k === 0 && innerWidth > 800 ? { open: "" } : {}, make("summary", {}, what[group] || group), ...effects.map(effectChoice))));
+    make("details", k === 0 ? { open: "" } : {}, make("summary", {}, what[group] || group), ...effects.map(effectChoice))));
 }
 
 function formulaChoice() {
@@ -38,11 +38,13 @@ function formulaChoice() {
     placeholder: "hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s" });
   const apply = () => {
     workbench.choice.formulas = text.value.split("\n").map((line) => line.trim()).filter((line) => line);
+    workbench.formulaPending = true;
     changed();
   };
   text.onkeydown = (event) => { if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply(); };
-  return make("fieldset", {}, make("legend", {}, "An effect of your own"),
+  return make("fieldset", {}, make("legend", { className: "visually-hidden" }, "An effect of your own"),
     field("Formula: variables v [mm/s], acceleration, t [s], angle [rad], distance [mm], stick_time [s]; after a semicolon the start values", text),
+    make("p", { id: "formula-trouble", className: "warning", role: "alert", hidden: "" }),
     make("button", { type: "button", id: "apply-formula", onclick: apply }, "Apply formula"));
 }
 
@@ -83,7 +85,7 @@ function selectionChoice() {
     const cycles = workbench.world.sticks ? [make("div", { className: "row" },
       numberField("Cycles from", "cycles-from", from, (value) => setCycles(value, to), "1"),
       numberField(`to (of 0 to ${last})`, "cycles-to", to, (value) => setCycles(from, value), "1"))] : [];
-    box.replaceChildren(make("legend", {}, "Part of the record"), ...cycles,
+    box.replaceChildren(make("legend", { className: "visually-hidden" }, "Part of the record"), ...cycles,
       make("div", { className: "row" }, field("Leave out from [s]", a), field("to [s]", b),
         make("button", { type: "button", id: "exclude", onclick: add }, "Leave out")),
       make("ul", { id: "excluded" }, ...excluded));
@@ -119,6 +121,7 @@ function valueControl(p, scale, { label, id, get, otherwise, set }) {
     const value = scale.valueAt(Number(slider.value));
     slider.setAttribute("aria-valuetext", `${value} ${p.unit}`);
     text.value = exact(set(value));
+    drawByHand({ [p.full_name]: value });
     changed(true);
   };
   text.onchange = () => {

@@ -5,7 +5,7 @@ const workbench = {
   token: new URLSearchParams(location.search).get("token") || "",
   page: Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join(""),
   turn: 0, asking: null, settling: 0, polling: 0, choice: null, rung: null, world: null, changedAt: 0,
-  plausible: new Map(), unfolded: new Set(),
+  plausible: new Map(), unfolded: new Set(), past: [], shownChoice: null, formulaPending: false,
 };
 
 /** Asks the server; a refusal is thrown as what it says. */
@@ -27,8 +27,13 @@ async function ask(path, body, signal) {
 
 // ---- what is shown ----
 
+/** Says what went wrong: at the formula where that is what changed, else on top. */
 function showTrouble(trouble) {
-  const box = document.getElementById("workbench-trouble");
+  const places = ["workbench-trouble", "formula-trouble"].map((id) => document.getElementById(id));
+  const box = places[workbench.formulaPending ? 1 : 0] || places[0];
+  for (const other of places) if (other && other !== box) other.hidden = true;
+  const field = document.getElementById("workbench-formula");
+  if (field) field.setAttribute("aria-invalid", String(Boolean(trouble) && box === places[1]));
   const sentence = (text) => (text ? `${prose(text).replace(/[.\s]+$/, "")}. ` : "");
   box.textContent = trouble ? sentence(trouble.problem) + sentence(trouble.why) + sentence(trouble.suggestion) : "";
   box.hidden = !trouble;
@@ -41,11 +46,15 @@ function showStatus(rung) {
   document.getElementById("shown-model").textContent = rung.name;
   document.getElementById("shown-error").textContent = withUnit(rung.held_out_rmse, rung.unit);
   document.getElementById("shown-about").textContent =
-    `± ${number(rung.held_out_std_error, 2)}, RMSE on cycles not used in the fit (blocks held out in turn); ` +
-    `${ratio ? `${number(ratio, 3)} times the noise floor, ` : ""}` +
+    `± ${number(rung.held_out_std_error, 2)}${ratio ? `, ${number(ratio, 3)} times the noise floor` : ""}; ` +
     `${rung.cycles}${rung.cycles < workbench.world.cycles ? ` of ${workbench.world.cycles}` : ""} cycles; ` +
-    (rung.full ? "the fit of the command at the foot of this page" : "quick fit, being refined");
+    (rung.full ? "final fit" : "quick fit, being refined");
+  const gauge = document.getElementById("shown-gauge");
+  const most = Math.max(rung.held_out_rmse, rung.floor_rmse, 1e-300) * 1.05;
+  gauge.style.setProperty("--error", `${(100 * rung.held_out_rmse) / most}%`);
+  gauge.style.setProperty("--floor", `${(100 * rung.floor_rmse) / most}%`);
   document.getElementById("workbench-command").textContent = rung.command;
+  document.getElementById("workbench-undo").disabled = workbench.past.length === 0;
 }
 
 function showRungs(rungs) {
@@ -58,16 +67,19 @@ function showRungs(rungs) {
     const current = workbench.rung && rung.number === workbench.rung.number;
     const back = make("button", { type: "button", "aria-current": current ? "true" : null, "data-rung": rung.number,
       onclick: () => goTo(rung.choice) }, rung.name);
-    return make("tr", { className: current ? "current" : "" }, make("td", { className: "number" }, String(rung.number + 1)),
+    const more = `on all data ${number(rung.rmse)}, noise floor ${number(rung.floor_rmse)}, ${rung.cycles} cycles`;
+    return make("tr", { className: current ? "current" : "", title: more }, make("td", { className: "number" }, String(rung.number + 1)),
       make("td", {}, back, partOf(rung.choice)),
-      make("td", { className: "number" }, `${number(rung.held_out_rmse)} ± ${number(rung.held_out_std_error, 2)}`),
-      make("td", { className: "bars" }, bar, rung.held_out_rmse === best ? make("span", { className: "soft" }, "least") : null),
-      make("td", { className: "number" }, number(rung.rmse)), make("td", { className: "number" }, number(rung.floor_rmse)),
-      make("td", { className: "number" }, String(rung.cycles)));
+      make("td", { className: "number" }, number(rung.held_out_rmse), make("span", { className: "soft" },
+        ` ± ${number(rung.held_out_std_error, 2)}`)),
+      make("td", { className: "bars" }, bar, rung.held_out_rmse === best ? make("span", { className: "soft" }, "least") : null));
   });
-  const head = ["", "Model", "Held-out error", "", "On all data", "Floor", "Cycles"];
-  document.getElementById("workbench-rungs").replaceChildren(make("table", {}, make("caption", {}, "Models visited"),
+  const head = ["", "Model", "Held-out error", "Bar"];
+  const box = document.getElementById("workbench-rungs");
+  box.replaceChildren(make("table", {}, make("caption", {}, "Models visited"),
     make("thead", {}, make("tr", {}, ...head.map((name) => make("th", { scope: "col" }, name)))), make("tbody", {}, ...rows)));
+  const current = box.querySelector(".current");
+  if (current) box.scrollTop = Math.max(0, current.offsetTop - box.clientHeight / 2);
 }
 
 /** What a choice has besides law and effects. */
@@ -95,10 +107,12 @@ async function show(full = false, passing = false) {
     if (answer.superseded || turn !== workbench.turn) return;
     workbench.rung = answer.rung;
     showTrouble(null);
+    workbench.formulaPending = false;
+    remember(passing);
     showStatus(answer.rung);
     if (!full || !sameNames(answer.rung)) showParameters(answer.rung);
     else updateParameters(answer.rung);
-    showReport(document.getElementById("workbench-picture"), answer.report);
+    showPicture(answer.report);
     showRungs(answer.rungs); // in the colours of the report
     if (!full) document.documentElement.dataset.answerMs = (performance.now() - workbench.changedAt).toFixed(0);
     document.documentElement.dataset.workbench = answer.rung.full ? "settled" : "shown";
@@ -111,6 +125,120 @@ async function show(full = false, passing = false) {
   }
 }
 
+/** What undo goes back to, and what a reload and other windows of this session begin with. */
+function remember(passing) {
+  if (passing) return;
+  const now = JSON.stringify(workbench.choice);
+  if (workbench.shownChoice === now) return;
+  if (workbench.shownChoice) workbench.past.push(workbench.shownChoice);
+  workbench.shownChoice = now;
+  try {
+    localStorage.setItem(storageName(), now);
+  } catch {
+    // a browser that keeps nothing: the session lives in the server all the same
+  }
+}
+
+const storageName = () => `tribofit ${workbench.world.trace.path} ${workbench.world.trace.samples}`;
+
+/** The choice shown last, by this window or another; null where there is none that this session knows. */
+function rememberedChoice() {
+  try {
+    const text = localStorage.getItem(storageName());
+    const known = text && workbench.world.rungs.some((rung) => sameChoice(rung.choice, JSON.parse(text)));
+    return known ? JSON.parse(text) : null;
+  } catch {
+    return null;
+  }
+}
+
+function sameChoice(a, b) {
+  const sorted = (value) => (value && typeof value === "object" && !Array.isArray(value)
+    ? Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])])) : value);
+  return JSON.stringify(sorted(a)) === JSON.stringify(sorted(b));
+}
+
+function undo() {
+  if (workbench.past.length === 0) return;
+  const before = JSON.parse(workbench.past.pop());
+  workbench.shownChoice = null; // what is undone is not gone back to
+  goTo(before);
+}
+
+/** Friction over v_r with its residuals first, then the trace; what is read, not looked at, comes after. */
+function showPicture(report) {
+  const charts = (section) => section.items.filter((item) => item.type === "chart");
+  const rest = (section) => ({ ...section, items: section.items.filter((item) => item.type !== "chart") });
+  const law = report.sections.find((section) => section.id === "law");
+  const trace = report.sections.find((section) => section.id === "trace");
+  const sections = [...(law ? [{ id: "picture", title: "Friction over relative velocity", items: charts(law) }] : []),
+    ...(trace ? [{ ...trace, items: charts(trace) }] : []), ...(law ? [rest(law)] : []),
+    ...report.sections.filter((section) => section !== law && section !== trace),
+    ...(trace ? [{ ...rest(trace), id: "health", title: "Health of the data" }] : [])];
+  const box = document.getElementById("workbench-picture");
+  showReport(box, { ...report, sections: sections.filter((section) => section.items.length > 0) });
+  document.getElementById("workbench-facts").replaceChildren(make("summary", {}, "The record and the result in numbers"),
+    ...box.querySelectorAll(":scope > .verdict, :scope > .facts"));
+  addBrushes(box);
+}
+
+/** On charts over the time of the record a stretch can be marked and left out. */
+function addBrushes(box) {
+  for (const item of chartItems.values()) {
+    const overRecord = item.chart.x.quantity === "time" && item.chart.x.unit === "s";
+    if (!overRecord || !box.contains(item.figure) || item.brush) continue;
+    item.brush = make("button", { type: "button", "aria-pressed": "false", className: "brush", title: "Drag over the chart to leave a stretch of time out",
+      onclick: () => setBrush(item, item.brush.getAttribute("aria-pressed") !== "true") }, "Leave out a stretch");
+    item.tools.prepend(item.brush);
+  }
+}
+
+function setBrush(item, on) {
+  if (!item.drawn) draw(item);
+  item.brush.setAttribute("aria-pressed", String(on));
+  item.brush.textContent = on ? "Drag over the chart …" : "Leave out a stretch";
+  Plotly.relayout(item.plot, { dragmode: on ? "select" : "zoom", selectdirection: "h", selections: [] });
+  item.plot.removeAllListeners("plotly_selected");
+  if (!on) return;
+  item.plot.on("plotly_selected", (event) => {
+    const range = event && event.range && Object.entries(event.range).find(([name]) => name.startsWith("x"));
+    setBrush(item, false);
+    if (range) leaveOut(range[1].map((t) => Number(t.toPrecision(6))).sort((a, b) => a - b));
+  });
+}
+
+function leaveOut(stretch) {
+  if (!(stretch[0] < stretch[1])) return;
+  workbench.choice.excluded.push([Math.max(0, stretch[0]), stretch[1]]);
+  document.getElementById("workbench-selection").fill();
+  changed();
+}
+
+let dragging = null;
+/** Draws the law with parameters as they stand under the hand, at once; fits come after. */
+async function drawByHand(values) {
+  if (dragging) dragging.abort();
+  const asking = new AbortController();
+  dragging = asking;
+  let curve;
+  try {
+    curve = await ask("/api/curve", { choice: workbench.choice, values }, asking.signal);
+  } catch {
+    return; // an answer that came too late, or a model that was never fitted: the fit says more
+  }
+  if (dragging !== asking) return;
+  const item = [...chartItems.values()].find((one) => one.chart.id.endsWith("-law") && one.plot.isConnected);
+  if (!item || !item.drawn) return;
+  const name = "by hand", at = item.plot.data.findIndex((trace) => trace.name === name);
+  if (at >= 0) {
+    await Plotly.restyle(item.plot, { x: [curve.x], y: [curve.y] }, [at]);
+  } else {
+    await Plotly.addTraces(item.plot, { type: "scatter", mode: "lines", name, x: curve.x, y: curve.y, hoverinfo: "name",
+      line: { color: styles.colours.red, dash: "dot", width: 3 } });
+  }
+  document.documentElement.dataset.byHand = JSON.stringify(values);
+}
+
 let changing = 0;
 /** After a change of the choice; a drag changes it many times a second. */
 function changed(passing = false) {
@@ -119,22 +247,17 @@ function changed(passing = false) {
   changing = setTimeout(() => show(false, passing), 25);
 }
 
-function goTo(choice) {
+function goTo(choice, full = false) {
   clearTimeout(changing); // a drag that was under way is of the choice before
   workbench.choice = structuredClone(choice);
   fillControls();
-  show();
+  show(full);
 }
 
 // ---- diagnosis and session ----
 
 function diagnosisBox() {
-  return make("fieldset", {}, make("legend", {}, "Diagnosis"),
-    make("p", { className: "soft" }, "Tries every effect of the catalogue and your formulas on blocks of cycles that are held out."),
-    make("div", { className: "row" },
-      make("button", { type: "button", id: "workbench-diagnose", onclick: beginDiagnosis }, "Diagnose"),
-      make("button", { type: "button", id: "workbench-cancel", disabled: "",
-        onclick: () => ask("/api/cancel", {}).catch(showTrouble) }, "Cancel")),
+  return make("div", { id: "diagnosis-box" },
     make("progress", { id: "workbench-progress", max: "1", value: "0", hidden: "", "aria-label": "Progress of the diagnosis" }),
     make("p", { id: "workbench-doing", role: "status" }), make("div", { id: "workbench-finding" }));
 }
@@ -177,8 +300,8 @@ function showFinding(state) {
   }
   const rows = state.ladder.map((step) => [step.added ? `+ ${step.added}` : `${state.found.law} law`,
     `${number(step.held_out_rmse)} ± ${number(step.held_out_std_error, 2)}`]);
-  box.replaceChildren(table("Ladder of the diagnosis", ["Rung", "Held-out error"], [...rows, ["Floor", number(state.floor_rmse)]], [1]),
-    make("button", { type: "button", id: "take-finding", onclick: () => goTo(state.found) }, "Show the model found"),
+  box.replaceChildren(table("Ladder of the diagnosis", ["Rung", "Held-out error"], [...rows, ["Noise floor", number(state.floor_rmse)]], [1]),
+    make("button", { type: "button", id: "take-finding", onclick: () => goTo(state.found, true) }, "Show the model found"),
     make("pre", {}, state.command));
 }
 
@@ -202,37 +325,52 @@ function commandBox() {
       getSelection().selectAllChildren(document.getElementById("workbench-command"));
     }
   };
-  return make("fieldset", {}, make("legend", {}, "The same from the command line"), make("pre", { id: "workbench-command" }),
+  return make("fieldset", {}, make("legend", { className: "visually-hidden" }, "The same from the command line"), make("pre", { id: "workbench-command" }),
     make("div", { className: "row" }, make("button", { type: "button", onclick: copy }, "Copy"),
       make("button", { type: "button", id: "workbench-save", onclick: saveSession }, "Save session")));
 }
 
 // ---- the page ----
 
-function statusBox() {
-  return make("div", { id: "workbench-status", role: "status", "aria-live": "polite" },
-    make("div", { id: "shown-model" }), make("div", {}, "held-out error ", make("strong", { id: "shown-error" }, "–")),
-    make("div", { id: "shown-about", className: "soft" }));
+/** What is always in view: the model, its error against the noise floor, and what one does most. */
+function strip() {
+  return make("header", { id: "workbench-status", className: "strip" },
+    make("div", { className: "model", role: "status", "aria-live": "polite" }, make("div", { id: "shown-model" }),
+      make("div", {}, "held-out error ", make("strong", { id: "shown-error" }, "–"), " ",
+        make("span", { id: "shown-about", className: "soft" }))),
+    make("div", { id: "shown-gauge", className: "gauge", "aria-hidden": "true" }, make("span", {}, "noise floor")),
+    make("div", { className: "row" },
+      make("button", { type: "button", id: "workbench-undo", disabled: "", onclick: undo }, "Undo"),
+      make("button", { type: "button", id: "workbench-diagnose", title: "Try every effect of the catalogue and your formulas on blocks of cycles that are held out",
+        onclick: beginDiagnosis }, "Diagnose"),
+      make("button", { type: "button", id: "workbench-cancel", disabled: "",
+        onclick: () => ask("/api/cancel", {}).catch(showTrouble) }, "Cancel")));
 }
+
+const folded = (title, ...parts) => make("details", {}, make("summary", {}, title), ...parts);
 
 async function startWorkbench(main) {
   document.body.classList.add("workbench");
   const controls = make("aside", { id: "workbench-controls", "aria-label": "Model" });
-  main.replaceChildren(controls, make("div", { id: "workbench-shown" },
-    make("p", { id: "workbench-trouble", className: "warning", role: "alert", hidden: "" }),
-    make("section", { id: "workbench-rungs", "aria-label": "Ladder of models", className: "scroll", tabindex: "0" }),
-    make("div", { id: "workbench-picture" })));
+  main.replaceChildren(strip(), controls, make("div", { id: "workbench-shown" },
+    make("p", { id: "workbench-trouble", className: "warning", role: "alert", hidden: "" }), diagnosisBox(),
+    make("div", { id: "workbench-picture" }), make("details", { id: "workbench-facts" })));
   try {
     workbench.world = await ask("/api/begin");
   } catch (trouble) {
     showTrouble(trouble);
     return;
   }
-  workbench.choice = workbench.world.begin;
-  controls.append(statusBox(), lawChoice(), effectChoices(), formulaChoice(),
-    make("fieldset", {}, make("legend", {}, "Parameters: starts and bounds"), make("ul", { id: "workbench-messages" }),
-      make("div", { id: "workbench-parameters" })),
-    selectionChoice(), diagnosisBox(), commandBox());
+  workbench.choice = rememberedChoice() || workbench.world.begin;
+  controls.append(
+    make("section", { id: "workbench-rungs", "aria-label": "Ladder of models", className: "scroll", tabindex: "0" }),
+    lawChoice(), effectChoices(),
+    folded("Parameters: starts and bounds", make("ul", { id: "workbench-messages" }), make("div", { id: "workbench-parameters" })),
+    folded("An effect of your own", formulaChoice()), folded("Part of the record", selectionChoice()),
+    folded("The same from the command line", commandBox()));
+  addEventListener("storage", (event) => {
+    if (event.key === storageName()) ask("/api/begin").then((world) => showRungs(world.rungs)).catch(() => {});
+  });
   fillControls();
   await show();
   followDiagnosis();

@@ -1,0 +1,40 @@
+// Charts on paper, which is white: saved as pictures, and printed with the page.
+
+/** Saves the chart as on white paper, with title and legend, wide enough for print. */
+function savePicture(item, format) {
+  if (!item.drawn) draw(item);
+  const height = Math.max(560, item.chart.height);
+  const [data, whole] = onPaper(() => [tracesOf(item.chart), layoutOf(item.chart)]);
+  data.forEach((trace) => { trace.visible = item.switched.get(trace.legendgroup) ?? trace.visible; });
+  for (const name of axesOf(item, "[xy]")) whole[name].range = [...item.plot._fullLayout[name].range];
+  const layout = { ...whole, showlegend: true, width: 900, height,
+    title: { text: plain(item.chart.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
+    legend: { orientation: "h", y: -0.18, yanchor: "top" } };
+  return Plotly.toImage({ data, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
+    .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
+}
+
+// On paper charts are as wide as the page and on white, and folded tables are open.
+let unfolded = [];
+const drawnItems = () => [...chartItems.values()].filter((item) => item.plot.isConnected);
+
+/** Draws a chart anew, as wide as given or as its place. */
+function redraw(item, width) {
+  item.traces = tracesOf(item.chart);
+  item.layout = { ...layoutOf(item.chart), ...(width ? { width, autosize: false } : { autosize: true }) };
+  for (const trace of item.traces) {
+    if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
+  }
+  fillLegend(item);
+  draw(item);
+}
+
+addEventListener("beforeprint", () => {
+  unfolded = [...document.querySelectorAll("details:not(.numbers):not([open])")];
+  for (const details of unfolded) details.open = true;
+  onPaper(() => drawnItems().forEach((item) => redraw(item, 640)));
+});
+addEventListener("afterprint", () => {
+  for (const details of unfolded) details.open = false;
+  drawnItems().forEach((item) => redraw(item, null));
+});

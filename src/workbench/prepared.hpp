@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "tribofit/fit/identification.hpp"
+#include "tribofit/report/report.hpp"
+
+namespace tribofit::workbench {
+
+/// Whether two selections are of the same part of a record.
+bool same_part(const Selection& a, const Selection& b);
+
+/// A trace with one set of corrections of its motion. Its motion does not change and is shared by every fit; what is
+/// drawn of it is drawn one at a time.
+class Prepared {
+ public:
+  explicit Prepared(Identification prepared);
+
+  const Motion& motion() const { return drawn_.motion; }
+
+  /// The part that is selected, as before any fit.
+  TracePart part(const Selection& selection) const;
+
+  /// The report of a part, but for its section of the cycles, which stands beside it.
+  Report draw(TracePart part, const Selection& selection, ReportOptions options,
+              std::shared_ptr<const ReportSection>& cycles);
+
+ private:
+  struct Drawn {
+    Selection selection;
+    std::shared_ptr<const ReportSection> cycles;
+  };
+
+  std::shared_ptr<const ReportSection> cycles_of(const Selection& selection);
+
+  Identification drawn_;  ///< its part is the one that was drawn last
+  const TracePart whole_;
+  std::vector<Drawn> kept_;
+  std::mutex drawing_;
+};
+
+}  // namespace tribofit::workbench

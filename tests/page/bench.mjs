@@ -1,0 +1,69 @@
+// Times pages in Chromium as a person sees them. usage:
+// node bench.mjs DRIVER CHROMIUM open FILE [TIMES]          a report: until it can be read, and until every chart is drawn
+// node bench.mjs DRIVER CHROMIUM change ADDRESS [CHANGES]   the workbench: from the click on an effect (a third one beside two
+//                                                           others) to the answer shown, and to the whole page updated
+import { pathToFileURL } from "node:url";
+
+const [driver, chromium, what, where, count] = process.argv.slice(2);
+const playwright = await import(pathToFileURL(driver));
+const browser = await playwright.chromium.launch({ executablePath: chromium,
+  args: process.getuid() === 0 ? ["--no-sandbox"] : [] });
+const context = await browser.newContext({ viewport: { width: 1400, height: 900 } });
+const middle = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
+const show = (list) => `${Math.round(middle(list))} ms (slowest ${Math.round(Math.max(...list))})`;
+const drawn = () => document.documentElement.dataset.drawn === "all";
+
+async function open(address, times) {
+  const read = [], whole = [];
+  for (let k = 0; k < times; ++k) {
+    const page = await context.newPage();
+    const began = performance.now();
+    await page.goto(address, { waitUntil: "commit" });
+    await page.waitForSelector("main section h2");
+    read.push(performance.now() - began);
+    await page.waitForFunction(drawn, undefined, { polling: 5 });
+    whole.push(performance.now() - began);
+    await page.close();
+  }
+  console.log(`can be read after ${show(read)}, every chart drawn after ${show(whole)}; ${times} times`);
+}
+
+/** Clicks the box of an effect; resolves, in the page, with when its answer was shown and when all was drawn [ms]. */
+const click = (page, name) => page.evaluate((name) => new Promise((resolve) => {
+  const state = document.documentElement.dataset, began = performance.now();
+  let shown = 0;
+  state.workbench = "waiting";
+  document.querySelector(`input[name=effect][value="${name}"]`).click();
+  const look = () => {
+    const now = performance.now() - began;
+    if (state.workbench === "failed" || now > 60000) return resolve(null);
+    if (!shown && ["shown", "settled"].includes(state.workbench)) shown = now;
+    if (shown && state.drawn === "all") return resolve({ name, shown, drawn: now });
+    setTimeout(look, 1);
+  };
+  setTimeout(look, 0);
+}), name);
+
+async function change(address, changes) {
+  const page = await context.newPage();
+  page.setDefaultTimeout(120000);
+  await page.goto(address);
+  await page.waitForFunction(() => document.documentElement.dataset.workbench === "settled");
+  await page.waitForFunction(drawn);
+  const names = await page.evaluate(() => [...document.querySelectorAll("input[name=effect]:not(:disabled)")].map((box) => box.value));
+  const times = [];
+  for (let k = 0; times.length < changes && k < 3 * changes; ++k) {
+    const three = [0, 1, 2].map((i) => names[(k * 7 + i * (3 + k)) % names.length]);
+    if (new Set(three).size < 3) continue;
+    const ends = [];
+    for (const name of three) ends.push(await click(page, name));
+    if (ends[2]) times.push({ ...ends[2], name: three.join(" + ") });
+    for (const name of three) await click(page, name);
+  }
+  const slowest = times.reduce((a, b) => (b.drawn > a.drawn ? b : a));
+  console.log(`answer shown after ${show(times.map((t) => t.shown))}, whole page after ${show(times.map((t) => t.drawn))}; ` +
+    `${times.length} clicks, the slowest on ${slowest.name}`);
+}
+
+await (what === "open" ? open(pathToFileURL(where).href, Number(count || 5)) : change(where, Number(count || 40)));
+await browser.close();
