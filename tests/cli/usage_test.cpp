@@ -161,8 +161,12 @@ TEST(Cite, TellsARunAndItsSources) {
   const nlohmann::json run = nlohmann::json::parse(contents(result));
   const nlohmann::json fit = run.at("fits").at(run.at("best").get<std::size_t>());
   for (const auto& parameter : fit.at("parameters")) {
-    const std::string value = std::to_string(parameter.at("value").get<double>());
-    EXPECT_THAT(cited.out, HasSubstr(parameter.at("name").get<std::string>() + " = (" + value.substr(0, 5)));
+    // Two digits of the standard error are printed: the value is off by a twentieth of it at most.
+    const std::string label = parameter.at("name").get<std::string>() + " = (";
+    const std::size_t at = cited.out.find(label);
+    ASSERT_NE(at, std::string::npos) << label << "\n" << cited.out;
+    EXPECT_NEAR(std::stod(cited.out.substr(at + label.size())), parameter.at("value").get<double>(),
+                0.051 * parameter.at("std_error").get<double>());
   }
   EXPECT_THAT(cited.out, AllOf(HasSubstr("100000 samples"), HasSubstr("15 mm"), HasSubstr("Wear 24 (1973) 381"),
                                HasSubstr(run.at("trace").at("checksum").get<std::string>())));

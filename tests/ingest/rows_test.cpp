@@ -143,7 +143,9 @@ TEST_F(Rows_, AreReadAlikeInWhateverFormTheyAreWritten) {
 }
 
 TEST_F(Rows_, ThatNoMemoryHoldsAreRefused) {
-  const std::string file = write("time_s,mu,v_b_mps\n0,0.1,1\n1,0.2,2\n");
+  std::string text = "time_s,mu,v_b_mps\n";
+  for (int i = 0; i < 1000; ++i) text += fmt::format("{},0.1,1\n", i);  // more than is looked at to know text
+  const std::string file = write(text);
   std::filesystem::resize_file(file, std::uintmax_t{1} << 42);  // a hole, which takes no room
   ReadOptions options;
   options.columns = {{"v_b", "v_b_mps:m/s"}};

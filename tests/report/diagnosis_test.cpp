@@ -162,19 +162,34 @@ TEST(DiagnosisJson, SeveralTracesAreListsAndParametersAreShared) {
 TEST(DiagnosisPage, TellsTheWholeStoryInOrder) {
   const std::string text = prose(made_up_diagnosis());
   std::size_t at = 0;
-  for (const char* part :
-       {"runs/r15.csv: stick-slip; 15 mm; 4 rpm; 50 N; 2 cycles", "0 exponential law", "0.00880 +/- 0.00020",
-        "1 + runout", "99 %", "floor", "0.00310", "Where the exponential law fails",
-        "Most of the error above the noise floor varies with the disc angle", "angle", "82 %", "Verdict: effect-found",
-        "The effect found is runout (A = 0.0480 +/- 0.0010)", "falls from 0.00880 to 0.00320", "runout.A",
-        "[0.0460, 0.0500]", "load-dependence, crosstalk: there is no load channel",
-        "identify --radius 15mm --effect runout runs/r15.csv"}) {
+  for (const char* part : {"runs/r15.csv: stick-slip; 15 mm; 4 rpm; 50 N; 2 cycles",
+                           "0 exponential law",
+                           "0.00880 +/- 0.00020",
+                           "1 + runout",
+                           "99 %",
+                           "floor",
+                           "0.00310",
+                           "Where the exponential law fails",
+                           "Most of the error above the noise floor varies with the disc angle",
+                           "angle",
+                           "82 %",
+                           "Verdict: effect-found",
+                           "The effect found is runout (A = 0.0480 +/- 0.0010)",
+                           "falls from 0.00880 to 0.00320",
+                           "load-dependence, crosstalk: there is no load channel",
+                           "The whole law: exponential + runout",
+                           "mu_s 0.5090",
+                           "alpha 0.05214",
+                           "runout.A",
+                           "[0.0460, 0.0500]",
+                           "identify --radius 15mm --effect runout runs/r15.csv",
+                           "identify diagnose --radius 15mm --report r15.html runs/r15.csv"}) {
     const std::size_t found = text.find(part, at);
     ASSERT_NE(found, std::string::npos) << part << "\n" << text;
     at = found;
   }
   EXPECT_THAT(text, Not(HasSubstr("Not distinguishable")));
-  EXPECT_THAT(page(made_up_diagnosis()), EndsWith("\n  identify --radius 15mm --effect runout runs/r15.csv\n"));
+  EXPECT_THAT(page(made_up_diagnosis()), EndsWith("\n  identify explore --radius 15mm runs/r15.csv\n"));
 }
 
 TEST(DiagnosisPage, EveryVerdictSaysNoMoreThanIsKnown) {
@@ -284,7 +299,7 @@ TEST(DiagnosisPage, OwnOptionsOfTheDiagnosisDoNotReachIdentify) {
   TerminalOptions options;
   options.arguments = {"--confirm", "r4.csv", "--radius", "15mm", "--effect", "drift", "--formula", "h = a*v; a=1"};
   EXPECT_THAT(render_diagnosis(made_up_diagnosis(), options),
-              EndsWith("\n  identify --radius 15mm --effect runout runs/r15.csv\n"));
+              HasSubstr("\n  identify --radius 15mm --effect runout runs/r15.csv\n"));
 }
 
 TEST(DiagnosisCsv, OneTraceIsAFolderAndSeveralHaveOneEach) {

@@ -14,7 +14,6 @@
 namespace tribofit {
 namespace {
 
-using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -142,11 +141,15 @@ TEST(ReportOfADiagnosis, TheLadderFallsToItsFloor) {
   EXPECT_EQ(ladder.labels[0].text, "99.0 % gone");
 }
 
-TEST(ReportOfADiagnosis, SharesBeforeAndAfterStandBesideTheSameNames) {
+TEST(ReportOfADiagnosis, ErrorsBeforeAndAfterStandBesideTheSameNames) {
   const Chart where = chart_of(report_of(made_up_diagnosis()), "where");
-  EXPECT_THAT(where.panels[0].axis.names, ElementsAre("velocity", "time", "angle"));
-  EXPECT_THAT(where.bars[0].values, ElementsAre(DoubleEq(2), DoubleEq(7), DoubleEq(82)));
-  EXPECT_THAT(where.bars[1].values, ElementsAre(DoubleEq(3), DoubleEq(0), DoubleEq(0)));
+  EXPECT_THAT(where.panels[0].axis.names, ElementsAre("velocity", "time", "angle", "whole error"));
+  // Shares of the square above the noise floor: 2, 7 and 82 % of 0.0088^2 - 0.0031^2, 3 % of 0.0032^2 - 0.0031^2.
+  const auto above = [](double share, double whole) {
+    return ::testing::DoubleNear(std::sqrt(share * (whole * whole - 0.0031 * 0.0031)), 1e-12);
+  };
+  EXPECT_THAT(where.bars[0].values, ElementsAre(above(0.02, 0.0088), above(0.07, 0.0088), above(0.82, 0.0088), 0.0088));
+  EXPECT_THAT(where.bars[1].values, ElementsAre(above(0.03, 0.0032), 0, 0, 0.0032));
 }
 
 TEST(ReportOfADiagnosis, OfManyTracesEightAreDrawn) {

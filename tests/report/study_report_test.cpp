@@ -163,8 +163,10 @@ TEST(StudyReport, CriticalSpeedsAreMarkedWhereTheyAre) {
   EXPECT_THAT(upright, ::testing::Contains(::testing::DoubleNear(1e3 * study.critical.linear.back(), 1e-9)));
   EXPECT_THAT(upright, ::testing::Contains(::testing::DoubleNear(1e3 * study.critical.stick_vanishes, 1e-9)));
   const ChartLine& up = line_of(chart, "begun in stick (way up)");
-  ASSERT_EQ(up.y.size(), study.up.size());
+  // Where the motion jumps, the line is drawn on from the next speed on: two further points stand beside each jump.
+  ASSERT_EQ(up.y.size(), study.up.size() + 2);
   EXPECT_DOUBLE_EQ(up.y[3], study.up[3].frequency);
+  EXPECT_DOUBLE_EQ(up.y.back(), study.up.back().frequency);
   EXPECT_THAT(report.lead, HasSubstr("stick vanishes"));
 }
 

@@ -140,12 +140,18 @@ TEST(Terminal, TheVerdictFollowsTheErrorAboveTheFloor) {
 
 TEST(Terminal, EndsWithTheNextCommandInTheUsersOwnWords) {
   Identification result = made_up_result();
-  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
+  EXPECT_THAT(rendered(result), HasSubstr("\n  identify --radius 15mm --csv r15-csv runs/r15.csv\n"));
+  EXPECT_THAT(rendered(result), EndsWith("\n  identify --radius 15mm --report r15.html runs/r15.csv\n"
+                                         "To switch effects on and off in a browser:\n"
+                                         "  identify explore --radius 15mm runs/r15.csv\n"));
   result.fits[0].error.held_out_rmse = 0.0075;
-  EXPECT_THAT(rendered(result), EndsWith("\n  identify diagnose --radius 15mm runs/r15.csv\n"));
+  EXPECT_THAT(rendered(result), HasSubstr("\n  identify diagnose --radius 15mm runs/r15.csv\n"));
   TerminalOptions options = with_radius();
   options.arguments = {"--profile", "--radius", "15mm", "--protocol", "joint"};
-  EXPECT_THAT(render_terminal(result, options), EndsWith("\n  identify diagnose --radius 15mm runs/r15.csv\n"));
+  EXPECT_THAT(
+      render_terminal(result, options),
+      AllOf(HasSubstr("\n  identify diagnose --radius 15mm runs/r15.csv\n"),
+            HasSubstr("\n  identify --profile --radius 15mm --protocol joint --report r15.html runs/r15.csv\n")));
   result.path = "my runs/r 15.csv";
   EXPECT_THAT(rendered(result), EndsWith(" 'my runs/r 15.csv'\n"));
 }

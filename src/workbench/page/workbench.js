@@ -17,7 +17,7 @@ async function ask(path, body, signal) {
       body: body ? JSON.stringify(body) : undefined });
   } catch (error) {
     if (error.name === "AbortError") throw error;
-    throw { problem: "The workbench does not answer", why: "identify explore has ended, or its machine is busy",
+    throw { unanswered: true, problem: "The workbench does not answer", why: "identify explore has ended, or its machine is busy",
       suggestion: "start it again and open the address it prints; a saved session brings the models back" };
   }
   const answer = await response.json().catch(() => null);
@@ -27,10 +27,10 @@ async function ask(path, body, signal) {
 
 // ---- what is shown ----
 
-/** Says what went wrong: at the formula where that is what changed, else on top. */
+/** Says what went wrong: at the formula where that is what changed and the workbench refused it, else on top. */
 function showTrouble(trouble) {
   const places = ["workbench-trouble", "formula-trouble"].map((id) => document.getElementById(id));
-  const box = places[workbench.formulaPending ? 1 : 0] || places[0];
+  const box = places[workbench.formulaPending && !(trouble && trouble.unanswered) ? 1 : 0] || places[0];
   for (const other of places) if (other && other !== box) other.hidden = true;
   const field = document.getElementById("workbench-formula");
   if (field) field.setAttribute("aria-invalid", String(Boolean(trouble) && box === places[1]));
