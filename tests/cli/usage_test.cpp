@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "command.hpp"
 #include "tribofit/report/page.hpp"
@@ -158,14 +159,15 @@ TEST(Cite, TellsARunAndItsSources) {
             0);
   const Outcome cited = shop.identify("cite '" + result + "'");
   EXPECT_EQ(cited.status, 0);
+  const std::string text = std::regex_replace(cited.out, std::regex("\\s+"), " ");  // lines break anywhere
   const nlohmann::json run = nlohmann::json::parse(contents(result));
   const nlohmann::json fit = run.at("fits").at(run.at("best").get<std::size_t>());
   for (const auto& parameter : fit.at("parameters")) {
     // Two digits of the standard error are printed: the value is off by a twentieth of it at most.
     const std::string label = parameter.at("name").get<std::string>() + " = (";
-    const std::size_t at = cited.out.find(label);
-    ASSERT_NE(at, std::string::npos) << label << "\n" << cited.out;
-    EXPECT_NEAR(std::stod(cited.out.substr(at + label.size())), parameter.at("value").get<double>(),
+    const std::size_t at = text.find(label);
+    ASSERT_NE(at, std::string::npos) << label << "\n" << text;
+    EXPECT_NEAR(std::stod(text.substr(at + label.size())), parameter.at("value").get<double>(),
                 0.051 * parameter.at("std_error").get<double>());
   }
   EXPECT_THAT(cited.out, AllOf(HasSubstr("100000 samples"), HasSubstr("15 mm"), HasSubstr("Wear 24 (1973) 381"),
