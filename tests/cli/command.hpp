@@ -93,3 +93,15 @@ inline std::string joined(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) text += line + "\n";
   return text;
 }
+
+/// The first command that a result offers after "Next", as a line for the shell; empty where there is none.
+inline std::string next_command(const std::string& out) {
+  std::istringstream in(out.substr(std::min(out.size(), out.find("\nNext"))));
+  std::string command;
+  for (std::string line; std::getline(in, line);) {
+    if (command.empty() && line.rfind("  identify ", 0) != 0) continue;
+    command += line + "\n";
+    if (line.back() != '\\') break;
+  }
+  return command;
+}
