@@ -1,24 +1,21 @@
 """Table of medians, ratios and peak memory, and the limits.
 
-usage: summary.py TIMES.json MEMORY.tsv [--about TEXT] [--more-bytes N] [--write SPEED.md]
+usage: summary.py TIMES.json MEMORY.tsv [--about TEXT] [--more-bytes N] [--markdown FILE]
 
 --more-bytes: by which the tenfold file is longer than the trace; from it and the processor time that `identify columns`
-takes more follows the speed of reading. --write: the table takes the place of what stands between the markers of the
-file. Status 1 when a limit is missed.
+takes more follows the speed of reading. --markdown: where the table is written. Status 1 when a limit is missed.
 """
 
 import argparse
 import json
 import sys
 
-BEGIN, END = "<!-- scripts/bench-peers --write -->", "<!-- end of scripts/bench-peers -->"
-
 parser = argparse.ArgumentParser(usage=__doc__)
 parser.add_argument("times")
 parser.add_argument("memory")
 parser.add_argument("--about", default="")
 parser.add_argument("--more-bytes", type=int, default=0)
-parser.add_argument("--write")
+parser.add_argument("--markdown")
 given = parser.parse_args()
 
 with open(given.times, encoding="utf-8") as file:
@@ -61,9 +58,7 @@ print()
 for what, measured, limit, end in limits:
     print(f"{'ok    ' if holds(measured, limit, end) else 'MISSED'}  {what}: {measured:.3g}, at {end} {limit:g}")
 
-if given.write:
-    with open(given.write, encoding="utf-8") as file:
-        text = file.read()
+if given.markdown:
     rows = [f"{given.about}; medians.", "", "| | time | peak memory | `identify` takes |", "|---|---|---|---|"]
     for name, result in results.items():
         ratio = "" if name.startswith("identify") else f"{ours / result['median']:.2f} of it"
@@ -72,8 +67,6 @@ if given.write:
     for what, measured, limit, end in limits:
         verdict = "" if holds(measured, limit, end) else ", missed"
         rows.append(f"| {what} | {measured:.3g} | at {end} {limit:g}{verdict} |")
-    before, rest = text.split(BEGIN)
-    _, after = rest.split(END)
-    with open(given.write, "w", encoding="utf-8") as file:
-        file.write(f"{before}{BEGIN}\n" + "\n".join(rows) + f"\n{END}{after}")
+    with open(given.markdown, "w", encoding="utf-8") as file:
+        file.write("\n".join(rows) + "\n")
 sys.exit(0 if all(holds(measured, limit, end) for _, measured, limit, end in limits) else 1)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "segmentation/limits.hpp"
@@ -144,6 +145,16 @@ inline constexpr double kPartOfSmoothing = 0.5;
 /// Standard uncertainty of an acceleration that is the curvature of such a pull, over it: a polynomial over a sixth of
 /// a period follows a sine to 1e-3, and where a slip begins or ends to some more.
 inline constexpr double kSmoothedAcceleration = 1.5e-3;
+
+// ---- acceleration of the block
+
+/// Half windows of the slope of the velocity [samples], the widest for a slip of this part of its samples or more, and
+/// the squares by which a window may differ from shorter ones, over those of noise alone. Wider: a mass that turns
+/// quickly is found too heavy (1.5 % where a drive turns within 20 samples); narrower: noise of the acceleration.
+inline constexpr std::array<std::size_t, 6> kHalfWindows = {10, 7, 5, 3, 2, 1};
+inline constexpr double kWindowOfSlip = 0.015, kFlattened = 2;
+/// Samples of a slip over which windows are compared.
+inline constexpr std::size_t kMostLookedAt = 8192;
 
 // ---- velocity steps and holds
 

@@ -1,21 +1,74 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "limits.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/statistics/polynomials.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
+namespace {
+
+/// Standard deviation of what a velocity does from sample to sample, by its third differences; what turns quickly
+/// counts as noise here.
+double roughness(std::span<const double> velocity) {
+  std::vector<double> sizes;
+  for (std::size_t i = 3; i < velocity.size(); ++i)
+    sizes.push_back(std::abs(velocity[i] - 3 * velocity[i - 1] + 3 * velocity[i - 2] - velocity[i - 3]));
+  return sizes.empty() ? 0 : kSigmaPerMad * median(sizes) / std::sqrt(20.0);
+}
+
+/// Variance of the slope of a line through 2 half + 1 values of noise of variance one.
+double slope_variance(std::size_t half) {
+  const auto w = static_cast<double>(half);
+  return 3 / (w * (w + 1) * (2 * w + 1));
+}
+
+/// Whether slopes of a window differ from those of each shorter one by no more than noise makes them differ: windows
+/// within each other share their noise, and their difference has the difference of their variances (Lepski 1991).
+bool follows(std::span<const double> velocity, std::size_t half, double noise) {
+  const std::vector<double> wide = savitzky_golay_slope(velocity, 1, half);
+  for (const std::size_t shorter : kHalfWindows) {
+    if (shorter >= half) continue;
+    const std::vector<double> narrow = savitzky_golay_slope(velocity, 1, shorter);
+    double squares = 0;
+    for (std::size_t i = half; i + half < velocity.size(); ++i) squares += std::pow(wide[i] - narrow[i], 2);
+    const double expected = noise * noise * (slope_variance(shorter) - slope_variance(half));
+    if (squares > kFlattened * expected * static_cast<double>(velocity.size() - 2 * half)) return false;
+  }
+  return true;
+}
+
+/// The widest half window that does not flatten what the velocity of a slip does.
+std::size_t half_window(const Motion& motion, const SampleRange& samples) {
+  // The same part of a slip at any rate leaves about the same noise.
+  const double stretch = kWindowOfSlip * static_cast<double>(samples.size());
+  auto half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, static_cast<double>(kHalfWindows.front())));
+  const std::size_t end = std::min(samples.end, samples.begin + kMostLookedAt);
+  if (end - samples.begin < 4 * half) return half;
+  std::vector<double> velocity;
+  for (std::size_t i = samples.begin; i < end; ++i)
+    velocity.push_back(motion.disc_velocity_at(i) - motion.relative_velocity[i]);
+  const double noise = std::max(motion.velocity_noise, roughness(velocity));
+  for (const std::size_t next : kHalfWindows) {
+    if (next >= half) continue;
+    if (follows(velocity, half, noise)) return half;
+    half = next;
+  }
+  return half;
+}
+
+}  // namespace
+
 std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples) {
-  // The same part of a slip at any rate leaves about the same noise; a longer one would flatten what turns quickly.
-  constexpr double kPart = 0.015;
-  const double stretch = kPart * static_cast<double>(samples.size());
-  const std::size_t half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, 10.0));
   if (!motion.acceleration.empty()) {
     const std::span<const double> own = part_of(motion.acceleration, samples.begin, samples.end);
     return {own.begin(), own.end()};
   }
+  const std::size_t half = half_window(motion, samples);
   const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
   const std::size_t length = samples.end - begin;
   std::vector<double> acceleration(samples.size(), 0.0);

@@ -90,7 +90,7 @@ class Sentences {
     return keys;
   }
 
-  /// How the error stands to the noise floor: "at the noise floor (0.0030)".
+  /// How the error stands to the noise floor, after a comma: "at the noise floor (0.0030)".
   std::string floor_clause() const {
     const std::string floor = level(d_.floor_rmse);
     switch (against_floor(last(), d_.floor_rmse)) {
@@ -100,6 +100,8 @@ class Sentences {
         if (d_.floor_is_sampling) return fmt::format("less than what the sampling leaves unknown ({})", floor);
         return fmt::format("less than the noise floor of {}, so the noise floor is overestimated here", floor);
       case FloorComparison::at:
+        // Where something remains that is not noise, its error may still be as small as the noise.
+        if (d_.verdict == Verdict::unexplained) return fmt::format("and the noise floor is {}", floor);
         return fmt::format("at the noise floor ({})", floor);
       case FloorComparison::above:
         break;

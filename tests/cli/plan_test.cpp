@@ -41,7 +41,7 @@ TEST(PlanCommand, WhereNothingIsOpenItSaysSoAndHowToConfirm) {
   const Workshop shop;
   const Outcome o = shop.identify("plan --radius 15mm --load 50N --json plan.json '" + kExampleTrace + "'");
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("nothing to settle"));
+  EXPECT_THAT(o.out, HasSubstr("none is possible"));
   EXPECT_THAT(o.out, HasSubstr("identify diagnose --radius 15mm --load 50N"));
   const auto plan = nlohmann::json::parse(contents(shop / "plan.json"));
   EXPECT_EQ(plan.at("plan").at("question"), "nothing");

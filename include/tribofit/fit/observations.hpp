@@ -121,8 +121,9 @@ Observations join(std::vector<Observations> records);
 /// one record belongs together with block k of the others.
 std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count);
 
-/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, over 1 ms, 5 to 21
-/// samples) whose window stops at re-stick, where the acceleration jumps.
+/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, over a thirtieth of the slip,
+/// 3 to 21 samples, fewer where the wider window would flatten what the velocity does above its noise; O. V. Lepski,
+/// Theory Probab. Appl. 35 (1991) 454) whose window stops at re-stick, where the acceleration jumps.
 std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples);
 
 }  // namespace tribofit
