@@ -31,9 +31,9 @@ namespace {
 
 constexpr const char* kExploreFooter =
     "Serves a page on this machine (127.0.0.1) until Ctrl-C: choose the law and effects, drag starts and bounds,\n"
-    "choose cycles, exclude stretches of time, type a formula; each change is fitted at once, and the ladder keeps\n"
-    "every model visited. The page shows the command that fits the model shown, and saves the session as a file.\n"
-    "The printed address holds the token that gives access.\n\n"
+    "choose cycles, exclude stretches of time, type a formula, change radius, speed and load; each change is fitted\n"
+    "at once, and the ladder keeps every model visited. The page shows the command that fits the model shown, and\n"
+    "saves the session as a file. The printed address holds the token that gives access.\n\n"
     "Examples:\n"
     "  identify explore --radius 15mm trace.csv\n"
     "  identify explore --radius 15mm --effect viscous --port 8080 trace.csv\n"
@@ -106,6 +106,35 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
   options.begin.selection = options.identify.selection;
   options.identify.laws = IdentifyOptions().laws;  // all of them climb in a diagnosis
   return options;
+}
+
+/// The settings with other conditions; those not stated are found in the record, as ever.
+ExploreSettings with_conditions(ExploreSettings s, const StatedConditions& conditions) {
+  for (const auto& [name, value] : conditions) {
+    if (name == "radius") s.radius = value;
+    if (name == "speed") s.speed = value;
+    if (name == "load") s.load = value;
+  }
+  return s;
+}
+
+std::vector<std::string> with_conditions(const std::vector<std::string>& arguments,
+                                         const StatedConditions& conditions) {
+  std::vector<std::string> out;
+  for (const auto& [name, value] : conditions) {
+    if (!value.empty()) out.insert(out.end(), {"--" + name, value});
+  }
+  const auto is_condition = [&](const std::string& word) {
+    return std::any_of(conditions.begin(), conditions.end(), [&](const auto& c) { return word == "--" + c.first; });
+  };
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (is_condition(arguments[k])) {
+      ++k;  // with its value
+    } else {
+      out.push_back(arguments[k]);
+    }
+  }
+  return out;
 }
 
 /// A saved session has its own options: others beside it would have no effect.
@@ -214,7 +243,15 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   WorkbenchSession session(options_for(s, arguments));
   if (!saved.empty()) session.load(saved, s.session);
   allow_many_connections();
-  WorkbenchServer server(session, s.port);
+  const Reread reread = [&](const StatedConditions& conditions) {
+    try {
+      return std::make_unique<WorkbenchSession>(
+          options_for(with_conditions(s, conditions), with_conditions(arguments, conditions)));
+    } catch (const UsageError& error) {
+      throw InputError(error.what(), "give conditions as the command line takes them: 15mm, 4rpm, 50N");
+    }
+  };
+  WorkbenchServer server(session, s.port, reread);
   print("The workbench for " + session.record().path + " is at\n\n  " + server.address() +
         "\n\nOpen it in a browser on this machine. Ctrl-C ends it.\n");
   serve(server);

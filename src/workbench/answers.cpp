@@ -107,6 +107,7 @@ Json begin_json(const WorkbenchSession& session) {
           {"laws", law_keys()},
           {"effects", catalogue_json(session.motion())},
           {"begin", choice_json(session.begin())},
+          {"conditions", conditions_of(session.motion())},
           {"rungs", rungs_json(session)}};
 }
 

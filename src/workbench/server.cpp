@@ -58,9 +58,11 @@ std::string only(const httplib::Request& request, const char* header) {
 }  // namespace
 
 struct WorkbenchServer::State {
-  explicit State(WorkbenchSession& given) : session(given) {}
+  State(WorkbenchSession& given, Reread how) : current(std::shared_ptr<void>(), &given), reread(std::move(how)) {}
 
-  WorkbenchSession& session;
+  std::shared_ptr<WorkbenchSession> current;  ///< the one it was given is not its own
+  Reread reread;
+  std::mutex rereading;
   LoopbackServer http;
   std::string token = fresh_token();
   int port = 0;
@@ -73,6 +75,12 @@ struct WorkbenchServer::State {
   bool admits(const httplib::Request& request, httplib::Response& response) const;
   void add_handlers();
   void show(const Json& asked, httplib::Response& response);
+  void change_conditions(const Json& asked, httplib::Response& response);
+  /// Lives for as long as what was asked of it takes, also where another one takes its place meanwhile.
+  std::shared_ptr<WorkbenchSession> session() {
+    const std::lock_guard lock(mutex);
+    return current;
+  }
   bool is_newest(const std::string& page_name, double turn) {
     const std::lock_guard lock(mutex);
     const auto found = newest.find(page_name);
@@ -141,9 +149,29 @@ void WorkbenchServer::State::show(const Json& asked, httplib::Response& response
   take_turn(name, turn);
   const auto detail = asked.value("full", false) ? FitDetail::full : FitDetail::quick;
   const WorkbenchChoice choice = choice_from(asked.at("choice"));
-  const WorkbenchPicture picture = session.show(
+  const std::shared_ptr<WorkbenchSession> now = session();
+  const WorkbenchPicture picture = now->show(
       choice, detail, [&] { return !stopping && is_newest(name, turn); }, !asked.value("passing", false));
-  response.set_content(picture_text(picture, turn, session, written), kUncompressed);
+  response.set_content(picture_text(picture, turn, *now, written), kUncompressed);
+}
+
+/// The trace is read and moved anew: every rung was of other friction and speeds, so none is kept.
+void WorkbenchServer::State::change_conditions(const Json& asked, httplib::Response& response) {
+  if (!reread) throw InputError("the conditions cannot be changed here", "begin identify explore with others");
+  StatedConditions conditions;
+  for (const char* name : {"radius", "speed", "load"}) {
+    const std::string value = asked.value(name, "");
+    if (value.size() > kLongestName) throw InputError(fmt::format("the {} is too long", name), "give it as in 15mm");
+    conditions.emplace_back(name, value);
+  }
+  const std::lock_guard one_at_a_time(rereading);
+  std::shared_ptr<WorkbenchSession> next = reread(conditions);
+  session()->cancel_diagnosis();
+  {
+    const std::lock_guard lock(mutex);
+    current.swap(next);
+  }
+  answer(response, {{"reread", true}});
 }
 
 void WorkbenchServer::State::add_handlers() {
@@ -155,28 +183,31 @@ void WorkbenchServer::State::add_handlers() {
                                   });
   });
   http.Get("/api/begin",
-           [this](const httplib::Request&, httplib::Response& response) { answer(response, begin_json(session)); });
+           [this](const httplib::Request&, httplib::Response& response) { answer(response, begin_json(*session())); });
   http.Get("/api/session", [this](const httplib::Request&, httplib::Response& response) {
-    response.set_content(session.save(), kUncompressed);
+    response.set_content(session()->save(), kUncompressed);
   });
   http.Get("/api/diagnosis", [this](const httplib::Request&, httplib::Response& response) {
-    answer(response, diagnosis_json(session.diagnosis()));
+    answer(response, diagnosis_json(session()->diagnosis()));
   });
   post("/api/show", [this](const Json& asked, httplib::Response& response) { show(asked, response); });
   post("/api/curve", [this](const Json& asked, httplib::Response& response) {
-    answer(response, curve_json(session.curve(choice_from(asked.at("choice")), values_from(asked.at("values")))));
+    answer(response, curve_json(session()->curve(choice_from(asked.at("choice")), values_from(asked.at("values")))));
   });
   post("/api/diagnose", [this](const Json& asked, httplib::Response& response) {
-    const bool begun = session.begin_diagnosis(choice_from(asked.at("choice")));
+    const bool begun = session()->begin_diagnosis(choice_from(asked.at("choice")));
     answer(response, {{"begun", begun}});
   });
   post("/api/cancel", [this](const Json&, httplib::Response& response) {
-    session.cancel_diagnosis();
+    session()->cancel_diagnosis();
     answer(response, {{"cancelled", true}});
   });
+  post("/api/conditions",
+       [this](const Json& asked, httplib::Response& response) { change_conditions(asked, response); });
 }
 
-WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port) : state_(std::make_unique<State>(session)) {
+WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port, Reread reread)
+    : state_(std::make_unique<State>(session, std::move(reread))) {
   State& s = *state_;
   s.page = served_page(session.record().path);
   s.http.set_payload_max_length(kLargestBody);
@@ -239,7 +270,7 @@ void WorkbenchServer::run() {
 void WorkbenchServer::stop() {
   State& s = *state_;
   if (s.stopping.exchange(true)) return;
-  s.session.cancel_diagnosis();
+  s.session()->cancel_diagnosis();
   s.http.end();
 }
 

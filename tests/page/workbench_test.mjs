@@ -230,10 +230,38 @@ async function stopInMidFit({ server, address, ended }) {
   await close();
 }
 
+/** With twice the radius at half the speed the record is read anew, and everything but the command is as before. */
+async function changeRadius(address) {
+  const { page, close } = await open(address, 1280);
+  await change(page, () => page.check("#law-exponential"));
+  const alpha = async () => Number.parseFloat(await page.textContent('[data-value="alpha"]'));
+  const before = await alpha(), error = await shownError(page);
+  await page.locator("#workbench-controls > details > summary", { hasText: "Radius, speed and load" }).click();
+  assert.equal(await page.inputValue("#condition-radius"), "15 mm");
+  await page.fill("#condition-radius", "fifteen");
+  await page.click("#apply-conditions");
+  await page.waitForSelector("#workbench-trouble:not([hidden])");
+  assert.match(await page.textContent("#workbench-trouble"), /radius/);
+  await page.fill("#condition-radius", "30mm");
+  await page.fill("#condition-speed", "2rpm"); // the same speed under the block
+  await Promise.all([page.waitForNavigation(), page.click("#apply-conditions")]);
+  await settled(page);
+  assert.match(await page.textContent("#workbench-command"), /--radius 30mm --speed 2rpm/);
+  assert.ok(Math.abs(await alpha() / before - 1) < 1e-3, `alpha ${before} became ${await alpha()}`);
+  assert.ok(Math.abs(await shownError(page) / error - 1) < 1e-3);
+  await page.locator("#workbench-controls > details > summary", { hasText: "Radius, speed and load" }).click();
+  await page.fill("#condition-radius", "15mm");
+  await page.fill("#condition-speed", "");
+  await Promise.all([page.waitForNavigation(), page.click("#apply-conditions")]);
+  await settled(page);
+  await close();
+}
+
 const begun = await explore("--radius", "15mm", "lag.csv");
 for (const width of [1280, 390]) await watchTheErrorFall(begun.address, width);
 await firstScreen(begun.address);
 await twoAtOnce(begun.address);
+await changeRadius(begun.address);
 await diagnose(begun.address);
 const { page: stranger, close } = await open(begun.address, 1280);
 const refused = await stranger.goto(begun.address.replace(/token=.*/, "token=0"));

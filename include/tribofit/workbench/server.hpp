@@ -1,11 +1,20 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tribofit/workbench/session.hpp"
 
 namespace tribofit {
+
+/// Names and values of conditions as the command line takes them: "radius", "15mm"; empty: not stated.
+using StatedConditions = std::vector<std::pair<std::string, std::string>>;
+
+/// A session of the same trace with other conditions. Throws InputError for what cannot be read.
+using Reread = std::function<std::unique_ptr<WorkbenchSession>(const StatedConditions&)>;
 
 /// Serves a session to browsers on this machine: the page of the workbench, and what it asks for.
 ///
@@ -15,8 +24,9 @@ namespace tribofit {
 /// has sent a newer one, and are answered in JSON, errors as {"problem", "why", "suggestion"}.
 class WorkbenchServer {
  public:
-  /// port: 0 takes a free one. Throws InputError where the port is not free, or where this build has no page.
-  WorkbenchServer(WorkbenchSession& session, int port);
+  /// port: 0 takes a free one. reread: where conditions can be changed; the session that it makes takes the place of
+  /// the one before. Throws InputError where the port is not free, or where this build has no page.
+  WorkbenchServer(WorkbenchSession& session, int port, Reread reread = {});
   ~WorkbenchServer();
   WorkbenchServer(const WorkbenchServer&) = delete;
   WorkbenchServer& operator=(const WorkbenchServer&) = delete;

@@ -95,6 +95,34 @@ function selectionChoice() {
   return box;
 }
 
+/** Radius, speed and load of the record, as the command line takes them; with others the record is read anew. */
+function conditionsChoice() {
+  const { conditions } = workbench.world;
+  if (conditions.steps) return make("p", {}, "The record has steps with conditions of their own, which the command line states.");
+  const known = (value, unit) => (value === null || value === undefined ? "" : `${Number(value.toPrecision(6))} ${unit}`);
+  const of = { radius: known(conditions.radius_mm, "mm"), speed: known(conditions.speed_rpm, "rpm"), load: known(conditions.load_N, "N") };
+  // What the record itself says stands in grey: left empty, it is found there again.
+  const inputs = Object.entries(of).map(([name, value]) => {
+    const stated = /command line|workbench/.test(conditions[`${name}_source`] || "");
+    return [name, make("input", { type: "text", id: `condition-${name}`, size: "10", maxlength: "60", spellcheck: "false",
+      value: stated ? value : "", placeholder: value || "not known" })];
+  });
+  const apply = async () => {
+    const given = Object.fromEntries(inputs.map(([name, input]) => [name, input.value.trim()]));
+    try {
+      await ask("/api/conditions", given);
+      // The model in view goes along, where it can be fitted under these conditions.
+      await ask("/api/show", { page: workbench.page, turn: ++workbench.turn, choice: workbench.choice }).catch(() => null);
+      location.reload();
+    } catch (trouble) {
+      showTrouble(trouble);
+    }
+  };
+  return make("fieldset", { id: "workbench-conditions" }, make("legend", { className: "visually-hidden" }, "Conditions"),
+    make("div", { className: "row" }, ...inputs.map(([name, input]) => field(name[0].toUpperCase() + name.slice(1), input))),
+    make("button", { type: "button", id: "apply-conditions", onclick: apply }, "Read the record with these"));
+}
+
 /** Places from 0 to 1 on a slider over the plausible range of a parameter, by decades where its ends are far apart. */
 function scaleOf(p) {
   if (!workbench.choice.bounds[p.full_name] || !workbench.plausible.has(p.full_name)) workbench.plausible.set(p.full_name, p.bounds);

@@ -367,6 +367,7 @@ async function startWorkbench(main) {
     lawChoice(), effectChoices(),
     folded("Parameters: starts and bounds", make("ul", { id: "workbench-messages" }), make("div", { id: "workbench-parameters" })),
     folded("An effect of your own", formulaChoice()), folded("Part of the record", selectionChoice()),
+    folded("Radius, speed and load", conditionsChoice()),
     folded("The same from the command line", commandBox()));
   addEventListener("storage", (event) => {
     if (event.key === storageName()) ask("/api/begin").then((world) => showRungs(world.rungs)).catch(() => {});
