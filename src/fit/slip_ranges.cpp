@@ -81,6 +81,19 @@ void free_stick_times_of_their_own_level(std::vector<Observations::SlipObservati
   }
 }
 
+/// The spring pulls in a stick of which too little was recorded to see how fast as it did in the others: a reading that
+/// is late looks back along that line.
+void fill_stick_slopes(std::vector<Observations::SlipObservation>& slips) {
+  std::vector<double> known;
+  for (const auto& slip : slips) {
+    if (slip.from_stick && std::isfinite(slip.stick_slope)) known.push_back(slip.direction * slip.stick_slope);
+  }
+  const double usual = known.empty() ? 0 : median(std::move(known));
+  for (auto& slip : slips) {
+    if (slip.from_stick && !std::isfinite(slip.stick_slope)) slip.stick_slope = slip.direction * usual;
+  }
+}
+
 /// Drops the slips that are not selected; those that are left are the units of evidence.
 void keep(const std::vector<bool>& is_selected, std::vector<Observations::SlipObservation>& slips) {
   std::size_t kept = 0;
@@ -165,6 +178,7 @@ std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, con
   }
   fill_stick_times(ranges, is_selected);
   free_stick_times_of_their_own_level(ranges, is_selected);
+  fill_stick_slopes(ranges);
   keep(is_selected, ranges);
   return ranges;
 }
