@@ -52,9 +52,7 @@ ROWS = [
     ("within 1.15 of it", lambda r: percent(r["error_left"]["within_1.15"])),
 ]
 
-print(f"""# The benchmark of hidden effects, and who solves it
-
-`scripts/export-benchmark FOLDER` writes {first['records']} records in which effects of the catalogue are hidden, alone and in pairs, with
+print(f"""`scripts/export-benchmark FOLDER` writes {first['records']} records in which effects of the catalogue are hidden, alone and in pairs, with
 the truth kept apart, a page that states the task and a script that scores answers (Python alone): stick-slip on rigs of
 every size, sliding, tables of points, spring sliders; white, AR(1) and 1/f noise; records with nothing hidden, and some with what
 no list holds. `scripts/benchmark-baselines` made this table:

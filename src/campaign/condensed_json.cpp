@@ -58,6 +58,7 @@ void set_extent(Observations& out) {
     out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
     out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
   }
+  out.friction_scale = std::max(1.0, out.largest_friction);  // what kind of friction it is was not kept
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ std::vector<std::string> decays(const Probe& probe, double largest) {
 
 std::vector<std::string> forms_of(const DiagnosisContext& context, const Trial& top, const Probe& probe) {
   // A coefficient is of the order of one, a force of the order of what was recorded; probes may overshoot either.
-  double largest = std::max(1.0, context.fine.observations.largest_friction);
+  double largest = context.fine.observations.friction_scale;
   for (const double value : probe.value) largest = std::max(largest, 5 * std::abs(value));
   if (probe.variable == ResidualVariable::velocity && probe.at.size() > 4) return humps(probe, largest);
   if (probe.variable == ResidualVariable::reversal_distance && probe.at.size() > 2) return decays(probe, largest);

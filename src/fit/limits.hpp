@@ -146,6 +146,9 @@ inline constexpr double kPartOfSmoothing = 0.5;
 /// a period follows a sine to 1e-3, and where a slip begins or ends to some more.
 inline constexpr double kSmoothedAcceleration = 1.5e-3;
 
+/// Least scale of a force, over the largest: levels of friction may be five times the scale, and the largest is one.
+inline constexpr double kLeastScaleOfForce = 0.2;
+
 // ---- acceleration of the block
 
 /// Half windows of the slope of the velocity [samples], the widest for a slip of this part of its samples or more, and

@@ -199,7 +199,7 @@ void add_channels(const Motion& motion, const Segmentation& segmentation, const 
 }
 
 /// What the values reach: speeds and friction.
-void set_extent(Observations& out) {
+void set_extent(const Motion& motion, Observations& out) {
   const bool sticks = std::any_of(out.slips.begin(), out.slips.end(), [](const auto& slip) { return slip.from_stick; });
   out.slowest = sticks || out.size() == 0 ? 0 : std::abs(out.velocity[0]);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -207,6 +207,12 @@ void set_extent(Observations& out) {
     out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
     out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
   }
+  if (motion.friction_kind != FrictionKind::force || out.size() == 0) return;
+  // Not the largest, which may be the inertia of a mass below the sensor, or one bad sample.
+  std::vector<double> sizes(out.friction.size());
+  std::transform(out.friction.begin(), out.friction.end(), sizes.begin(), [](double f) { return std::abs(f); });
+  out.friction_scale = std::max(2 * median(sizes), kLeastScaleOfForce * out.largest_friction);
+  if (!(out.friction_scale > 0)) out.friction_scale = 1;
 }
 
 /// Scales of several records: medians over the slips of all of them, the longest record.
@@ -349,6 +355,7 @@ Observations join(std::vector<Observations> records) {
     out.fastest = std::max(out.fastest, next.fastest);
     out.slowest = std::min(out.slowest, next.slowest);
     out.largest_friction = std::max(out.largest_friction, next.largest_friction);
+    out.friction_scale = std::max(out.friction_scale, next.friction_scale);
   }
   return out;
 }
@@ -383,7 +390,7 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
   stop_point();
   add_channels(motion, segmentation, needs, reduce, out);
   stop_point();
-  set_extent(out);
+  set_extent(motion, out);
   out.scales = scales_of({&out, 1});
   if (needs.lead) add_leads(motion, segmentation, out);
   return out;

@@ -110,7 +110,7 @@ Parameter on_scale_of(Parameter parameter, const Observations& observations) {
     return parameter;
   }
   // A coefficient is of the order of one, a force is of the order of what was recorded.
-  const double force = parameter.scales_with_friction ? std::max(1.0, observations.largest_friction) : 1.0;
+  const double force = parameter.scales_with_friction ? observations.friction_scale : 1.0;
   const double factor = force * growth_of(parameter.bound_scaling, observations.scales);
   for (double* value : {&parameter.lower, &parameter.upper, &parameter.start, &parameter.neutral}) *value *= factor;
   return parameter;
