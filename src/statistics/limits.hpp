@@ -91,6 +91,10 @@ inline constexpr double kCornerOfNoise = 8, kLevelBeside = 2e-3;
 inline constexpr std::size_t kFewestOfPiece = 4, kMarginOfPiece = 5;
 /// Samples among which corners are looked for first: without a corner the work grows with their square.
 inline constexpr std::size_t kMostSplit = 4000;
+/// Strides beside a corner of them among which all samples are looked at, for pieces that a stride steps over.
+inline constexpr std::size_t kReachOfCorner = 5;
+/// Noise of a reading over the least step between readings: by rounding alone 12^-1/2.
+inline constexpr double kNoiseOfDigit = 0.3;
 /// What numbers are rounded to, over the whole way: a displacement without noise has corners all the same.
 inline constexpr double kRoundingOfWay = 1e-9;
 /// Intervals beside the samples of a corner within which the lines must meet: farther off one of them is no line.

@@ -47,6 +47,48 @@ double noise_about_neighbours(std::span<const double> t, std::span<const double>
   return robust > 0 ? robust : plain;
 }
 
+/// Readings in a row that are the same.
+struct Run {
+  std::size_t begin = 0, end = 0;
+  bool lasts() const { return end - begin > 1; }
+};
+
+std::vector<Run> runs_of(std::span<const double> x) {
+  std::vector<Run> runs;
+  for (std::size_t begin = 0, end = 0; begin < x.size(); begin = end) {
+    end = begin + 1;
+    while (end < x.size() && x[end] == x[begin]) ++end;
+    runs.push_back({begin, end});
+  }
+  return runs;
+}
+
+/// Least step of readings that stay before and behind it, as slow motion shows its last digit; 0: there is none. A stop
+/// of fast motion is no such step.
+double digit_of(std::span<const double> x, const std::vector<Run>& runs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    if (runs[r - 1].lasts() && runs[r].lasts())
+      least = std::min(least, std::abs(x[runs[r].begin] - x[runs[r - 1].begin]));
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+/// Readings that stay the same while what they show moves by a digit lie on the line through the changes of the digit.
+std::vector<double> between_digits(std::span<const double> t, std::span<const double> x, const std::vector<Run>& runs,
+                                   double digit) {
+  std::vector<double> out(x.begin(), x.end());
+  for (std::size_t r = 1; r + 1 < runs.size(); ++r) {
+    const auto [begin, end] = runs[r];
+    if (!runs[r].lasts() || !(runs[r - 1].lasts() || runs[r + 1].lasts())) continue;
+    const double early = 0.5 * (t[begin - 1] + t[begin]), late = 0.5 * (t[end - 1] + t[end]);
+    const double low = -std::copysign(0.5 * digit, x[begin] - x[begin - 1]),
+                 high = std::copysign(0.5 * digit, x[end] - x[end - 1]);
+    for (std::size_t i = begin; i < end; ++i) out[i] += low + (high - low) * (t[i] - early) / (late - early);
+  }
+  return out;
+}
+
 /// A last piece that may begin at a sample, and what all before it costs.
 struct LastPiece {
   std::size_t begin = 0, doubted_at = 0;
@@ -95,6 +137,24 @@ Stretch stretch_of(std::span<const double> t, std::span<const double> x, std::si
   Stretch out{begin, end, {}};
   const std::size_t margin = std::min((end - begin) / 5, kMarginOfPiece);
   for (std::size_t i = begin + margin; i < end - margin; ++i) out.line.add(t[i], x[i]);
+  return out;
+}
+
+/// Corners among all values near those found among every `stride`-th: pieces shorter than some strides show only there.
+std::vector<std::size_t> corners_near(std::span<const double> t, std::span<const double> x, double price,
+                                      std::size_t stride, const std::vector<std::size_t>& coarse) {
+  if (stride == 1) return coarse;
+  const std::size_t reach = kReachOfCorner * stride;
+  std::vector<std::size_t> out = {0};
+  for (std::size_t first = 1, last = 1; first < coarse.size(); first = last + 1) {
+    for (last = first; last + 1 < coarse.size() && (coarse[last + 1] - coarse[last]) * stride <= 2 * reach;) ++last;
+    const std::size_t begin = std::max(coarse[first] * stride, reach) - reach,
+                      end = std::min(x.size(), coarse[last] * stride + reach);
+    const std::vector<std::size_t> fine =
+        corners_of(t.subspan(begin, end - begin), x.subspan(begin, end - begin), price);
+    for (std::size_t i = 1; i < fine.size(); ++i) out.push_back(begin + fine[i]);
+    for (std::size_t i = first; i <= last && fine.size() == 1; ++i) out.push_back(coarse[i] * stride);
+  }
   return out;
 }
 
@@ -168,19 +228,22 @@ void move_corners(std::span<const double> t, std::span<const double> x, std::siz
 
 }  // namespace
 
-std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<const double> x) {
+std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<const double> readings) {
   std::vector<LinePiece> pieces;
   if (t.size() < 2 * kFewestOfPiece) return pieces;
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  const double noise = std::max(noise_about_neighbours(t, x), kRoundingOfWay * (*high - *low));
+  const auto [low, high] = std::minmax_element(readings.begin(), readings.end());
+  const std::vector<Run> runs = runs_of(readings);
+  const double digit = digit_of(readings, runs);
+  const std::vector<double> x = between_digits(t, readings, runs, digit);
+  const double noise =
+      std::max({noise_about_neighbours(t, readings), kNoiseOfDigit * digit, kRoundingOfWay * (*high - *low)});
   const std::size_t stride = 1 + t.size() / kMostSplit;
-  const std::vector<double> some_t = picked(t, stride), some_x = picked(x, stride);
-  const std::vector<std::size_t> corners = corners_of(some_t, some_x, kCornerOfNoise * kCornerOfNoise * noise * noise);
+  const double price = kCornerOfNoise * kCornerOfNoise * noise * noise;
+  const std::vector<std::size_t> corners =
+      corners_near(t, x, price, stride, corners_of(picked(t, stride), picked(x, stride), price));
   std::vector<Stretch> stretches;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const std::size_t end = i + 1 < corners.size() ? corners[i + 1] * stride : t.size();
-    stretches.push_back(stretch_of(t, x, corners[i] * stride, end));
-  }
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    stretches.push_back(stretch_of(t, x, corners[i], i + 1 < corners.size() ? corners[i + 1] : t.size()));
   merge_alike(t, x, noise, stretches);
   for (int again = 0; again < 3; ++again) move_corners(t, x, stride, stretches);
   for (std::size_t i = 0; i < stretches.size(); ++i) {

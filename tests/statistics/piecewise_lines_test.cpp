@@ -72,4 +72,23 @@ TEST(PiecewiseLines, LongRecordsAreThinnedButCornersAreNot) {
   EXPECT_NEAR(pieces[2].begin, 500, 5e-3);
 }
 
+TEST(PiecewiseLines, AStopShorterThanAStrideIsFound) {
+  const Made made = made_of({0, 300, 301, 350, 2000}, {10, 0, 10, 0, 10}, 2100, 0.1, 0.2, 4);
+  const std::vector<LinePiece> pieces = piecewise_lines(made.t, made.x);
+  ASSERT_EQ(pieces.size(), 5U);
+  EXPECT_NEAR(pieces[1].begin, 300, 0.1);
+  EXPECT_NEAR(pieces[2].begin, 301, 0.1);
+  EXPECT_TRUE(pieces[1].is_level && pieces[3].is_level);
+}
+
+TEST(PiecewiseLines, DigitsAreNoSteps) {
+  Made made = made_of({0, 300, 340, 640}, {0.01, 1, 0.01, 1}, 700, 0.1, 0, 5);
+  for (double& x : made.x) x = std::round(x);  // at 0.01 a digit lasts a hundred seconds
+  const std::vector<LinePiece> pieces = piecewise_lines(made.t, made.x);
+  ASSERT_EQ(pieces.size(), 4U);
+  EXPECT_NEAR(pieces[1].begin, 300, 0.5);
+  EXPECT_NEAR(pieces[1].slope, 1, 5e-3);
+  EXPECT_NEAR(pieces[2].slope, 0.01, 3e-3);
+}
+
 }  // namespace tribofit
