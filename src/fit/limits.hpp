@@ -162,14 +162,20 @@ inline constexpr std::size_t kMostLookedAt = 8192;
 // ---- velocity steps and holds
 
 /// Part of the sliding at one speed that shows the level before the next step, and that belongs to the step before; of
-/// the sliding before the first step at most as much as is slid behind it: run-in is no level. Larger: steps whose
-/// decay is long lose their end; smaller: the level before a step is less well known.
+/// the sliding before the first step as much as is slid behind it, or lasts this part of its time: run-in is no level.
+/// Larger: steps whose decay is long lose their end; smaller: the level before a step is less well known.
 inline constexpr double kPartOfSlidingBehind = 0.7, kPartOfSlidingBefore = 0.3;
+/// Mean square that a fit of all steps leaves, over that of the first step alone, from which on it has not found its
+/// minimum: near the critical stiffness friction swings, and few starts lead there.
+inline constexpr double kFarFromMinimum = 4;
 /// Samples of a step, without which it shows nothing: a constant, a line and four parameters are asked of it.
 inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
 /// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
+/// What wanders in the residuals over the noise of a sample, from which on a law has left much. Smaller: drift is
+/// reported; larger: only gross failures are.
+inline constexpr double kMuchLeft = 4;
 /// A hold loads the contact as if the speed had changed by e^4.6 (a hundredfold), to begin with.
 inline constexpr double kHoldAsRatio = 4.6;
 /// Second D_c over the first, to begin with.

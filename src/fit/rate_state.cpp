@@ -33,7 +33,7 @@ struct LawFit {
 class Analysis {
  public:
   Analysis(const Motion& motion, const RateStateOptions& options)
-      : options_(options), data_(rate_state_data(motion, options, kValuesOfStep, out_.messages)) {}
+      : motion_(motion), options_(options), data_(rate_state_data(motion, options, kValuesOfStep, out_.messages)) {}
 
   RateStateAnalysis run() {
     out_.reference_speed = data_.reference_speed;
@@ -70,20 +70,29 @@ class Analysis {
   const LawFit& best() const { return laws_[out_.best]; }
 
   RateStateSolution searched(StateEvolution evolution, Detrend detrend) const {
-    return search(data_, evolution, options_.states, detrend, all_, unknowns_);
+    return search_together(data_, evolution, options_.states, detrend, all_, unknowns_);
   }
 
-  /// The line is one over what leaves less; over the displacement where both leave the same.
+  /// The line is one over what leaves less; over the displacement where both leave the same. The law is not known yet:
+  /// one that is wrong would choose the line that hides most of its own error.
   void choose_detrend() {
     out_.detrend = options_.detrend;
     if (options_.detrend != Detrend::automatic) return;
     const std::array<Detrend, 2> both = {Detrend::displacement, Detrend::time};
-    std::array<double, 2> least = {};
-    for (std::size_t k = 0; k < both.size(); ++k) {
-      const RateStateSolution found = searched(options_.evolutions.front(), both[k]);
-      least[k] = found.found ? found.cost : std::numeric_limits<double>::infinity();
-    }
-    out_.detrend = both[least[1] < least[0] ? 1 : 0];
+    const std::size_t laws = options_.evolutions.size();
+    std::vector<double> cost(both.size() * laws, std::numeric_limits<double>::infinity());
+    std::vector<RateStateSolution> found(cost.size());
+    run_tasks(cost.size(), options_.threads, [&](std::size_t i) {
+      found[i] = searched(options_.evolutions[i % laws], both[i / laws]);
+      if (found[i].found) cost[i] = found[i].cost;
+    });
+    const auto middle = cost.begin() + static_cast<std::ptrdiff_t>(laws);
+    const std::array<double, 2> least = {*std::min_element(cost.begin(), middle),
+                                         *std::min_element(middle, cost.end())};
+    const std::size_t chosen = least[1] < least[0] ? 1 : 0;
+    out_.detrend = both[chosen];
+    const auto first = found.begin() + static_cast<std::ptrdiff_t>(chosen * laws);
+    searched_.assign(first, first + static_cast<std::ptrdiff_t>(laws));
   }
 
   /// Steps whose times are known to a sample or a second are moved to where the response fits best.
@@ -93,26 +102,30 @@ class Analysis {
     if (known) return;
     RateStateSolution least;
     StateEvolution law = options_.evolutions.front();
-    for (const StateEvolution evolution : options_.evolutions) {
-      const RateStateSolution found = searched(evolution, out_.detrend);
+    for (std::size_t i = 0; i < options_.evolutions.size(); ++i) {
+      const StateEvolution evolution = options_.evolutions[i];
+      const RateStateSolution found = searched_.empty() ? searched(evolution, out_.detrend) : searched_[i];
       if (!found.found || (least.found && !(found.cost < least.cost))) continue;
       least = found;
       law = evolution;
     }
+    searched_.clear();
     const double moved = refine_step_times(data_, law, options_.states, out_.detrend, unknowns_, least);
     out_.steps = data_.steps;
-    if (moved > data_.steps.front().interval)
-      out_.messages.push_back(
-          fmt::format("steps were moved by up to {:.3g} s to where the response fits best: their times are as stated, "
-                      "to a tenth of the sliding beside them",
-                      moved));
+    if (moved > data_.steps.front().interval) {
+      const bool stated = motion_.load_point_source == LoadPointSource::stated;
+      out_.messages.push_back(fmt::format(
+          "steps were moved by up to {:.3g} s to where the response fits best: their "
+          "times are known to {}",
+          moved, stated ? "a tenth of the sliding beside them, as stated" : "a sample of the recorded speed"));
+    }
   }
 
   void fit_laws() {
     laws_.resize(options_.evolutions.size());
     run_tasks(laws_.size(), options_.threads, [&](std::size_t i) {
       laws_[i].evolution = options_.evolutions[i];
-      laws_[i].solution = searched(laws_[i].evolution, out_.detrend);
+      laws_[i].solution = searched_.empty() ? searched(laws_[i].evolution, out_.detrend) : searched_[i];
       laws_[i].fit = fit_from(problem(laws_[i].evolution), data_, unknowns_, laws_[i].solution, laws_[i].evolution,
                               options_.states);
       add_messages(laws_[i].fit);
@@ -230,11 +243,13 @@ class Analysis {
     }
   }
 
+  const Motion& motion_;
   const RateStateOptions& options_;
   RateStateAnalysis out_;
   RateStateData data_;
   RateStateUnknowns unknowns_;
   std::vector<std::size_t> all_;
+  std::vector<RateStateSolution> searched_;  ///< of the laws with the line chosen; empty: not known
   std::vector<LawFit> laws_;
 };
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "kinematics/limits.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -17,8 +19,27 @@ namespace {
 struct Sliding {
   std::size_t phase = 0;
   double begin = 0, end = 0, speed = 0;
-  double length() const { return speed * (end - begin); }
+  double duration() const { return end - begin; }
+  double length() const { return speed * duration(); }
 };
+
+/// Last of the stretches from `first` on through which a drive passes from the speed before to the one behind: short
+/// beside both, in time and in length, and without a rest; none: `first` is sliding of its own.
+std::optional<std::size_t> end_of_passage(const std::vector<Sliding>& all, std::size_t first) {
+  std::optional<std::size_t> last;
+  double duration = 0, length = 0;
+  const auto is_short = [&](const Sliding& beside) {
+    return duration < kinematics::kPassageBeside * beside.duration() &&
+           length < kinematics::kPassageBeside * beside.length();
+  };
+  for (std::size_t i = first; i + 1 < all.size() && all[i].phase == all[first - 1].phase + 1 + i - first; ++i) {
+    duration += all[i].duration();
+    length += all[i].length();
+    if (!is_short(all[first - 1])) break;
+    if (all[i + 1].phase == all[i].phase + 1 && is_short(all[i + 1])) last = i;
+  }
+  return last;
+}
 
 std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, double end) {
   std::vector<Sliding> out;
@@ -27,6 +48,28 @@ std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, doub
     if (phases[i].speed > 0) out.push_back({i, phases[i].begin, until, phases[i].speed});
   }
   return out;
+}
+
+/// Stretches of sliding that last.
+std::vector<Sliding> lasting(const std::vector<Sliding>& all) {
+  std::vector<Sliding> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::optional<std::size_t> passage = i == 0 ? std::nullopt : end_of_passage(all, i);
+    if (!passage)
+      out.push_back(all[i]);
+    else
+      i = *passage;
+  }
+  return out;
+}
+
+double rest_between(const std::vector<LoadPointPhase>& phases, double from, double to) {
+  double rest = 0;
+  for (std::size_t i = 0; i + 1 < phases.size(); ++i) {
+    if (phases[i].speed == 0 && phases[i].begin >= from && phases[i + 1].begin <= to)
+      rest += phases[i + 1].begin - phases[i].begin;
+  }
+  return rest;
 }
 
 /// Phases of the load point within a window, in which sliding begins.
@@ -49,12 +92,16 @@ void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
     step.time = from.end;
     step.before = from.speed;
     step.after = to.speed;
-    step.hold = to.begin - from.end;
+    const double rest = rest_between(data.phases, from.end, to.begin);
+    const bool same_speed = std::abs(std::log(to.speed / from.speed)) < kinematics::kSameSpeed;
+    // A drive that changes its speed may pause for it.
+    step.hold = same_speed || rest > kinematics::kPassageBeside * std::min(from.duration(), to.duration()) ? rest : 0;
     step.displacement = data.displacement_at(step.time);
     const double own = j == 0 ? 1 : 1 - kPartOfSlidingBehind;
-    const double before = std::min(own * from.length(), std::max(kPartOfSlidingBefore * from.length(), to.length()));
+    const double as_long = kPartOfSlidingBefore * std::min(from.duration(), to.duration()) * from.speed;
+    const double before = std::min(own * from.length(), std::max(as_long, to.length()));
     step.from = from.end - before / from.speed;
-    step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * (to.end - to.begin) : 0);
+    step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * to.duration() : 0);
     data.steps.push_back(step);
     data.before.push_back(from.phase);
   }
@@ -136,7 +183,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     data.phases.pop_back();
     data.phase_displacement.pop_back();
   }
-  find_steps(slidings_of(data.phases, end), data);
+  find_steps(lasting(slidings_of(data.phases, end)), data);
   data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
 
   std::vector<VelocityStep> steps = std::exchange(data.steps, {});
@@ -149,11 +196,15 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     std::size_t earlier = 0;
     const auto first = std::lower_bound(motion.time.begin(), motion.time.end(), step.from) - motion.time.begin();
     std::vector<double> intervals;
+    double around = 0;  // longest sampling interval at the step
     for (auto i = static_cast<std::size_t>(first); i < motion.size() && motion.time[i] <= step.to; ++i) {
       if (is_excluded(options, motion.time[i]) || motion.has_fault(i, SampleFault::any)) continue;
       if (motion.time[i] < step.time) ++earlier;
-      if (!samples.time.empty() && motion.time[i] > step.time)
-        intervals.push_back(motion.time[i] - samples.time.back());
+      if (!samples.time.empty()) {
+        const double last = samples.time.back(), interval = motion.time[i] - last;
+        if (motion.time[i] > step.time) intervals.push_back(interval);
+        if (last <= step.time && motion.time[i] >= step.time - interval) around = std::max(around, interval);
+      }
       samples.time.push_back(motion.time[i]);
       samples.friction.push_back(motion.friction[i]);
     }
@@ -166,7 +217,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     step.interval = quantile(std::move(intervals), 0.1);
     const double beside = std::min(step.time - step.from, step.to - step.time);
     if (motion.load_point_source == LoadPointSource::stated) step.slack = kSlackOfStated * beside;
-    if (motion.load_point_source == LoadPointSource::speed) step.slack = kSlackOfSpeed * step.interval;
+    if (motion.load_point_source == LoadPointSource::speed) step.slack = kSlackOfSpeed * around;
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);
     data.before.push_back(before[s]);

@@ -304,6 +304,12 @@ void add_messages(RateStateFit& fit) {
                       name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
     }
   }
+  if (fit.noise_time > 0 && fit.noise_slow > kMuchLeft * fit.noise_white)
+    fit.messages.push_back(fmt::format(
+        "what is left wanders by {:.2g}, {:.0f} times the noise of a sample: this law does not describe all "
+        "of it{}",
+        fit.noise_slow, fit.noise_slow / fit.noise_white,
+        fit.parameters.size() > 4 ? "" : "; two state variables may (--states 2)"));
   for (const Correlation& c : fit.correlations) {
     fit.messages.push_back(
         fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "

@@ -273,4 +273,28 @@ RateStateSolution search(const RateStateData& data, StateEvolution evolution, st
   return refine(fine, best->p, unknowns);
 }
 
+RateStateSolution search_together(const RateStateData& data, StateEvolution evolution, std::size_t states,
+                                  Detrend detrend, const std::vector<std::size_t>& steps,
+                                  const RateStateUnknowns& unknowns) {
+  RateStateSolution together = search(data, evolution, states, detrend, steps, unknowns);
+  if (steps.size() < 2) return together;
+  const std::vector<std::size_t> first = {steps.front()};
+  RateStateSolution grown = search(data, evolution, states, detrend, first, unknowns);
+  if (!grown.found) return together;
+  const auto values_of = [&](const std::vector<std::size_t>& some) {
+    std::size_t values = 0;
+    for (const std::size_t s : some) values += data.end_of(s) - data.begins[s];
+    return static_cast<double>(values);
+  };
+  const double alone = grown.cost / values_of(first);
+  if (together.found && together.cost / values_of(steps) <= kFarFromMinimum * alone) return together;
+  for (std::size_t count = 2; count <= steps.size(); ++count) {
+    const std::vector<std::size_t> some(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(count));
+    const RateStateSolution next = refine(RateStateProblem(data, evolution, states, detrend, some), grown.p, unknowns);
+    if (next.found || count == steps.size()) grown = next;
+  }
+  const bool is_better = grown.found && (!together.found || grown.cost < together.cost);
+  return is_better ? grown : together;
+}
+
 }  // namespace tribofit::fit

@@ -32,6 +32,12 @@ struct RateStateSolution {
 RateStateSolution search(const RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
                          const std::vector<std::size_t>& steps, const RateStateUnknowns& unknowns);
 
+/// The same of several steps; where what they leave is far above what the first of them leaves by itself, also from its
+/// values on, with one step more at a time.
+RateStateSolution search_together(const RateStateData& data, StateEvolution evolution, std::size_t states,
+                                  Detrend detrend, const std::vector<std::size_t>& steps,
+                                  const RateStateUnknowns& unknowns);
+
 /// Descent from values that are nearly right.
 RateStateSolution refine(const RateStateProblem& problem, const std::vector<double>& start,
                          const RateStateUnknowns& unknowns);

@@ -72,7 +72,8 @@ class Assembler {
       run_.kind = RecordKind::motion_only;
       run_.kind_source = "no friction was recorded";
     }
-    if (!run_.has(Channel::x_b) && run_.has(Channel::speed)) run_[Channel::x_d].clear();  // a stage is not the disc
+    if (!run_.has(Channel::x_b) && !run_.is_driven() && run_.has(Channel::speed))
+      run_[Channel::x_d].clear();  // a stage is not the disc
     const bool moves = run_.has_velocity() || run_.has_position() || run_.has(Channel::speed);
     const bool all_used = run_.second_path.empty() && run_.columns.used.size() == run_.column_names.size();
     if (!run_.kind && run_.has_friction() && !moves && all_used && !options_.conditions.speed.known()) {

@@ -35,13 +35,14 @@ const std::vector<Names>& names_of_the_field() {
         "\u6ed1\u52a8\u901f\u5ea6"}},
       {Channel::force,
        {"ft", "frictionforce", "tangentialforce", "fx", "ff", "ffriction", "force", "lateralforce", "tractionforce",
-        "kraft", "reibkraft", "shearforce", "shearload", "shearstress", "tau", "\u6469\u64e6\u529b"}},
+        "kraft", "reibkraft", "shearforce", "shearload", "shearstress", "shrstress", "shstress", "tau", "schubspannung",
+        "\u6469\u64e6\u529b"}},
       {Channel::torque,
        {"torque", "frictiontorque", "m", "moment", "drehmoment", "reibmoment", "\u626d\u77e9", "\u8f6c\u77e9"}},
       {Channel::load,
        {"fn", "normalforce", "load", "normalload", "fz", "weight", "wob", "weightonbit", "ballload", "normalkraft",
-        "normalstress", "effectivenormalstress", "effnormalstress", "sigman", "\u8f7d\u8377", "\u6b63\u538b\u529b",
-        "\u6cd5\u5411\u529b"}},
+        "normalstress", "effectivenormalstress", "effnormalstress", "norstress", "sigman", "normalspannung",
+        "\u8f7d\u8377", "\u6b63\u538b\u529b", "\u6cd5\u5411\u529b"}},
       {Channel::speed,
        {"discspeed", "diskspeed", "rpm", "speed", "rotationalspeed", "rotaryvelocity", "spindlespeed", "omega",
         "discvelocity", "angularvelocity", "rotaryspeed", "drehzahl", "\u8f6c\u901f"}},
@@ -57,7 +58,7 @@ const std::vector<Names>& names_of_the_field() {
       {Channel::x_d,
        {"xd", "drivedisplacement", "driveposition", "basedisplacement", "baseposition", "stagedisplacement",
         "stageposition", "carriagedisplacement", "carriageposition", "lpdisp", "lpdisplacement",
-        "loadpointdisplacement", "loadpointdisp", "loadpointposition", "loadpoint", "xlp", "ramdisplacement",
+        "loadpointdisplacement", "loadpointdisp", "lpdispl", "loadpointposition", "loadpoint", "xlp", "ramdisplacement",
         "pistondisplacement"}},
       {Channel::v_lp,
        {"vlp", "loadpointvelocity", "loadpointspeed", "loadpointrate", "lpvelocity", "lpspeed", "drivevelocity",
@@ -205,11 +206,6 @@ std::string_view si_unit(Channel channel) {
   static constexpr std::array<std::string_view, channel_count> units = {
       "s", "1", "m/s", "m/s", "N", "N m", "N", "rad/s", "rad", "degC", "1", "N", "m", "m", "m/s", ""};
   return units[index_of(channel)];
-}
-
-bool names_load_point(const std::string& column) {
-  const std::string base = parse_column_name(column).base;
-  return base.starts_with("lp") || base.find("loadpoint") != std::string::npos || base == "xlp";
 }
 
 bool names_rpm(std::string_view base) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "column_names.hpp"
+#include "load_point_columns.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -32,6 +33,7 @@ class Finder {
       : table_(table),
         two_files_(!options.second_file.empty()),
         needs_no_time_(options.rate.has_value() || options.kind == RecordKind::points),
+        motion_is_stated_(options.kind || options.conditions.speed.known() || options.spring.stiffness.known()),
         is_driven_(is_driven_in_steps(options.kind)),
         is_spring_slider_(options.kind == RecordKind::spring_slider) {
     read_requests(options);
@@ -50,6 +52,7 @@ class Finder {
     refuse_two_roles();
     for (std::size_t i = 0; i < channel_count; ++i) recognise(static_cast<Channel>(i));
     if (is_driven_) find_load_point();
+    if (!motion_is_stated_) find_only_displacement();
     if (is_spring_slider_) choose_one({Channel::spring, Channel::force, Channel::mu, Channel::torque});
     choose_one({Channel::mu, Channel::force, Channel::torque, Channel::spring});
     choose_one({Channel::v_b, Channel::v_r, Channel::x_b});
@@ -66,9 +69,6 @@ class Finder {
 
  private:
   const RawColumn& column(std::size_t index) const { return table_.columns[index]; }
-
-  /// Where the columns are named.
-  InputLocation heading() const { return {table_.path, table_.columns.empty() ? 0 : table_.columns.front().line, ""}; }
 
   void read_requests(const ReadOptions& options) {
     const std::vector<std::string> known(kChannelNames.begin(), kChannelNames.end());
@@ -103,7 +103,8 @@ class Finder {
     if (found != names.end() || two_files_) return units_of_columns_[static_cast<std::size_t>(found - names.begin())];
     known.insert(known.end(), names.begin(), names.end());
     throw InputError(fmt::format("--units: there is no channel or column '{}'{}", name, did_you_mean(name, known)),
-                     "give the unit of a channel (v_b=mm/s) or of a column; " + lists_columns(table_.path), heading());
+                     "give the unit of a channel (v_b=mm/s) or of a column; " + lists_columns(table_.path),
+                     {table_.path, table_.columns.empty() ? 0 : table_.columns.front().line, ""});
   }
 
   bool exists(const std::string& name) const {
@@ -129,12 +130,19 @@ class Finder {
   void recognise(Channel channel) {
     auto& taken = taken_[index_of(channel)];
     const auto& request = requests_[index_of(channel)];
-    const bool is_time = channel == Channel::time;
-    if (taken || (request && request->ignored())) return;
-    if (request && !request->column.empty() && !is_time) return;  // it is in the other file
-    if (is_time && needs_no_time_ && !two_files_) return;
+    if (taken || is_left_out(channel)) return;
+    if (request && !request->column.empty() && channel != Channel::time) return;  // it is in the other file
+    if (channel == Channel::time && needs_no_time_ && !two_files_) return;
     if (channel == Channel::std_error && taken_[index_of(Channel::time)]) return;  // of points
     taken = most_usual(channel, std::nullopt);
+  }
+
+  bool is_left_out(Channel channel) const {
+    return requests_[index_of(channel)] && requests_[index_of(channel)]->ignored();
+  }
+
+  bool is_taken_of(std::initializer_list<Channel> channels) const {
+    return std::any_of(channels.begin(), channels.end(), [&](Channel c) { return taken_[index_of(c)].has_value(); });
   }
 
   /// Where the load point is all that moves, what is called a speed or a displacement is its own.
@@ -142,19 +150,25 @@ class Finder {
     for (const Channel channel : {Channel::v_b, Channel::v_r, Channel::x_b, Channel::speed, Channel::angle}) {
       if (!requests_[index_of(channel)]) taken_[index_of(channel)].reset();
     }
-    const auto find = [&](Channel channel, std::initializer_list<std::string_view> names) {
-      auto& taken = taken_[index_of(channel)];
-      const auto& request = requests_[index_of(channel)];
-      if (taken || (request && request->ignored())) return;
-      for (const std::string_view name : names) {
-        for (std::size_t i = 0; i < table_.columns.size(); ++i)
-          if (!taken && column(i).named && !is_taken(i) && parse_column_name(column(i).name).base == name) taken = i;
-      }
-    };
-    find(Channel::x_d,
-         {"displacement", "disp", "sheardisplacement", "sheardisp", "axialdisplacement", "position", "x"});
-    if (!taken_[index_of(Channel::x_d)])
-      find(Channel::v_lp, {"speed", "velocity", "v", "slidingvelocity", "slidingspeed", "shearvelocity", "rate"});
+    auto &displacement = taken_[index_of(Channel::x_d)], &velocity = taken_[index_of(Channel::v_lp)];
+    const auto is_free = [&](std::size_t i) { return !is_taken(i); };
+    if (!displacement && !is_left_out(Channel::x_d)) displacement = find_plain_displacement(table_, is_free);
+    if (!displacement && !velocity && !is_left_out(Channel::v_lp)) velocity = find_plain_velocity(table_, is_free);
+  }
+
+  /// A displacement, or a velocity in um/s, that is all the motion recorded beside friction may be of a load point.
+  void find_only_displacement() {
+    const Channel channel = taken_[index_of(Channel::v_b)] ? Channel::v_b : Channel::v_r;
+    const auto& velocity = taken_[index_of(channel)];
+    if (velocity && (requests_[index_of(channel)] || !may_be_of_load_point(column(*velocity)))) return;
+    is_plain_[index_of(channel)] = velocity.has_value();
+    auto& displacement = taken_[index_of(Channel::x_d)];
+    if (is_left_out(Channel::x_d) || (displacement && !requests_[index_of(Channel::x_d)])) return;
+    if (!is_taken_of({Channel::mu, Channel::force})) return;
+    if (is_taken_of({Channel::x_b, Channel::v_lp, Channel::speed, Channel::angle, Channel::spring})) return;
+    const auto is_free = [&](std::size_t i) { return !is_taken(i) && is_in_length(column(i)); };
+    if (!displacement) displacement = find_plain_displacement(table_, is_free);
+    is_plain_[index_of(Channel::x_d)] = true;
   }
 
   /// The column with the most usual of the channel's names, of all rows or of these.
@@ -202,15 +216,9 @@ class Finder {
     }
   }
 
-  std::optional<std::string> unit_in_file(std::size_t index) const {
-    const auto in_name = parse_column_name(column(index).name).unit;
-    if (in_name && !in_name->empty()) return in_name;
-    return column(index).unit.empty() ? in_name : column(index).unit;
-  }
-
   std::size_t rank_of(std::size_t index, Channel channel) const {
     std::optional<Quantity> quantity;
-    if (const auto text = unit_in_file(index); text && !text->empty()) {
+    if (const auto text = unit_in_file(column(index)); text && !text->empty()) {
       if (const auto unit = find_unit(*text)) quantity = unit->quantity;
       if (quantity && find_unit(*text, Quantity::angular_velocity)) quantity = Quantity::angular_velocity;
     }
@@ -244,7 +252,9 @@ class Finder {
     const bool by_user = of_channel || of_column != units_of_columns_.end();
     const std::string unit = of_channel ? request->unit
                              : by_user  ? of_column->second
-                                        : unit_in_file(index).value_or("");
+                                        : unit_in_file(column(index)).value_or("");
+    used.plain = is_plain_[index_of(channel)];
+    used.requested = request.has_value();
     if (!find_conversion(used, unit, by_user)) return;
     result_.used.push_back(std::move(used));
   }
@@ -258,7 +268,7 @@ class Finder {
     if (sensitivity) {
       used.factor = *sensitivity;
       if (!by_user) return true;
-      const auto in_file = unit_in_file(used.index);
+      const auto in_file = unit_in_file(column(used.index));
       if (in_file && !in_file->empty()) used.factor *= find_unit(*in_file, Quantity::voltage).value_or(Unit{}).factor;
       return true;
     }
@@ -293,15 +303,9 @@ class Finder {
     return true;
   }
 
-  /// Where the unit stands: apart from the name, else in it.
-  InputLocation heading_of_unit(const Column& used) const {
-    InputLocation where = table_.heading(used.index);
-    if (column(used.index).unit_line > 0) where.line = column(used.index).unit_line;
-    return where;
-  }
-
   [[noreturn]] void refuse_unit(const Column& used, const std::string& text) const {
-    const InputLocation where = heading_of_unit(used);
+    InputLocation where = table_.heading(used.index);
+    if (column(used.index).unit_line > 0) where.line = column(used.index).unit_line;  // apart from the name
     const std::string advice =
         fmt::format("state the unit of {0} with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
     const auto unit = find_unit(text);
@@ -346,8 +350,9 @@ class Finder {
       used.factor = find_unit("rpm")->factor;
       return true;
     }
-    const std::string advice =
-        fmt::format("state it with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
+    const bool is_machine = used.channel == Channel::x_d && names_load_point(used.plain_name);
+    const std::string_view unit = is_machine ? "um" : usual_unit(used.channel);
+    const std::string advice = fmt::format("state it with --units {}={}", to_string(used.channel), unit);
     const bool velocity = taken_[index_of(Channel::v_b)] || taken_[index_of(Channel::v_r)];
     const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity);
     if (needed || requests_[index_of(used.channel)]) {
@@ -377,10 +382,11 @@ class Finder {
 
   const RawTable& table_;
   const bool two_files_;  // a column may be in the other one
-  const bool needs_no_time_, is_driven_, is_spring_slider_;
+  const bool needs_no_time_, motion_is_stated_, is_driven_, is_spring_slider_;
   Requests requests_;
   std::map<std::size_t, std::string> units_of_columns_;  // that the user states by the name of the column
   std::array<std::optional<std::size_t>, channel_count> taken_;
+  std::array<bool, channel_count> is_plain_ = {};
   std::vector<std::size_t> other_times_;
   Columns result_;
 };

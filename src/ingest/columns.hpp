@@ -51,6 +51,8 @@ struct Column {
   bool angular = false;    ///< a velocity given as a rotational speed [rad/s], to be multiplied by the radius
   bool over_load = false;  ///< the pull of a spring, given over the load
   bool stress = false;     ///< a force given over an area [Pa]
+  bool plain = false;      ///< a motion found by a name that does not say of what it is, or named by the user for x_d
+  bool requested = false;  ///< named by the user
 };
 
 struct Columns {
@@ -77,8 +79,5 @@ ColumnName parse_column_name(std::string_view name);
 
 /// Index of the column that a user names for a channel, by its name or as "#3". Throws InputError where there is none.
 std::size_t named_column(const RawTable& table, const std::string& wanted, Channel channel);
-
-/// Whether a name says that it is the displacement of a load point: such a record is one of velocity steps or holds.
-bool names_load_point(const std::string& column);
 
 }  // namespace tribofit

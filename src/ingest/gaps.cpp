@@ -51,7 +51,16 @@ std::vector<std::size_t> find_gappy_rows(const RawTable& table, const std::vecto
   return rows;
 }
 
-void exclude(const std::vector<std::size_t>& rows, FileRecord& recording) {
+std::vector<std::size_t> find_repeated_rows(const FileRecord& recording) {
+  const std::vector<double>& time = recording[Channel::time];
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (time[i] == time[i - 1]) rows.push_back(i);
+  }
+  return rows.size() * kRowsPerRepeat <= time.size() ? rows : std::vector<std::size_t>();
+}
+
+void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRecord& recording) {
   if (rows.empty()) return;
   constexpr std::size_t most_shown = 12;
   std::vector<std::string> places;
@@ -65,9 +74,9 @@ void exclude(const std::vector<std::size_t>& rows, FileRecord& recording) {
   }
   const char* plural = rows.size() == 1 ? "" : "s";
   const char* unit = recording.location(rows.front(), Channel::time).line > 0 ? "line" : "value";
-  recording.warnings.push_back(fmt::format("{} row{} with a cell that is not a number {} left out as {} ({}{} {})",
-                                           rows.size(), plural, rows.size() == 1 ? "was" : "were",
-                                           rows.size() == 1 ? "a gap" : "gaps", unit, plural, listed(places)));
+  recording.warnings.push_back(fmt::format("{} row{} {} {} left out as {} ({}{} {})", rows.size(), plural, what,
+                                           rows.size() == 1 ? "was" : "were", rows.size() == 1 ? "a gap" : "gaps", unit,
+                                           plural, listed(places)));
   std::size_t size = 0;
   for (auto& channel : recording.channels) {
     if (channel.empty()) continue;

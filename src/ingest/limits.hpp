@@ -17,6 +17,9 @@ inline constexpr std::size_t kIntervalsForMedian = 4096;
 /// Gaps in all, and one in so many rows, from which the clock is irregular: a recording that pauses has a few. Fewer
 /// allowed: such a recording is refused; more: a clock written too coarsely becomes hundreds of steps.
 inline constexpr std::size_t kMostGaps = 20, kRowsPerGap = 1000;
+/// Rows per row at the time of the one before, which a machine writes where it changes its sampling: more of them are a
+/// clock that is written too coarsely.
+inline constexpr std::size_t kRowsPerRepeat = 50;
 /// Rows before a clock may restart without a step column that says so, and rows for which it must go on from there: a
 /// lone wrong time stamp is followed by the old clock. Fewer: wrong time stamps pass for steps.
 inline constexpr std::size_t kShortestStep = 10, kGoesOnFor = 5;

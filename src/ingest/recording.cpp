@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "gaps.hpp"
 #include "join.hpp"
 #include "limits.hpp"
+#include "load_point_columns.hpp"
 #include "memory.hpp"
 #include "points.hpp"
 #include "stated_conditions.hpp"
@@ -138,14 +140,80 @@ void recognise_points(const RowsPlan& plan, FileRecord& recording) {
   recording.kind_source = time.empty() ? "no time column" : "the times are in no order";
 }
 
-/// Friction beside a load point, and no motion of the contact, is a record of velocity steps.
+/// Whether values go one way for nearly all of a record: a machine goes back to where it began at the end of a test.
+bool go_one_way(const std::vector<double>& values) {
+  constexpr std::size_t kLooks = 200;
+  constexpr double kNearlyAll = 0.85, kStill = 1e-3;
+  const std::size_t stride = 1 + values.size() / kLooks;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  std::size_t on = 0, back = 0;
+  for (std::size_t i = stride; i < values.size(); i += stride) {
+    const double way = values[i] - values[i - stride];
+    on += way > kStill * (*high - *low) ? 1U : 0U;
+    back += way < -kStill * (*high - *low) ? 1U : 0U;
+  }
+  return static_cast<double>(std::max(on, back)) > kNearlyAll * static_cast<double>(on + back);
+}
+
+/// Whether a speed stays what it is but for steps, and never turns, as one that is set does.
+bool keeps_to_steps(const std::vector<double>& values) {
+  constexpr double kStays = 0.02, kLeastStep = 1.5;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  std::size_t stays = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] >= 0)) return false;
+    low = std::min(low, values[i]);
+    high = std::max(high, values[i]);
+    stays += i > 0 && std::abs(values[i] - values[i - 1]) <= kStays * values[i - 1] ? 1U : 0U;
+  }
+  return high > kLeastStep * low && stays >= values.size() - values.size() / 20;
+}
+
+/// A velocity of which nothing more is known is that of a load point where it keeps to steps.
+bool take_speed_of_load_point(FileRecord& recording) {
+  for (Column& column : recording.columns.used) {
+    if (!column.plain || (column.channel != Channel::v_b && column.channel != Channel::v_r)) continue;
+    if (!keeps_to_steps(recording[column.channel])) return false;
+    recording[Channel::v_lp] = std::exchange(recording[column.channel], {});
+    column.channel = Channel::v_lp;
+    return true;
+  }
+  return false;
+}
+
+/// Friction beside a load point, and no motion of the contact, is a record of velocity steps. A displacement of which
+/// nothing more is known is that of a load point where it goes one way; else it says nothing.
 void recognise_steps(FileRecord& recording) {
-  const Column* displacement = recording.columns.find(Channel::x_d);
-  const bool load_point =
+  if (recording.kind || !recording.has_friction()) return;
+  Columns& columns = recording.columns;
+  const Column* displacement = columns.find(Channel::x_d);
+  const bool is_named =
       recording.has(Channel::v_lp) || (displacement != nullptr && names_load_point(displacement->plain_name));
-  if (recording.kind || !load_point || !recording.has_friction() || recording.has_velocity()) return;
+  const bool is_of_contact =
+      recording.has(Channel::x_b) || std::any_of(columns.used.begin(), columns.used.end(), [](const Column& c) {
+        return (c.channel == Channel::v_b || c.channel == Channel::v_r) && !is_plain_velocity(c.plain_name);
+      });
+  const Column* force = columns.find(Channel::force);
+  const bool is_coefficient = recording.has(Channel::mu) || (force != nullptr && force->stress);
+  bool is_plain = displacement != nullptr && displacement->plain;
+  if (is_plain && !(is_coefficient && go_one_way(recording[Channel::x_d]))) {
+    is_plain = false;
+    if (!displacement->requested) {
+      recording[Channel::x_d].clear();
+      std::erase_if(columns.used, [](const Column& c) { return c.channel == Channel::x_d; });
+    }
+  }
+  if (is_of_contact || !(is_named || is_coefficient)) return;
+  if (is_named) {
+    recording.kind_source = "the motion of a load point was recorded";
+  } else if (is_plain) {
+    recording.kind_source = "a displacement in one direction is all the motion recorded";
+  } else if (take_speed_of_load_point(recording)) {
+    recording.kind_source = "a speed that is set in steps is all the motion recorded";
+  } else {
+    return;
+  }
   recording.kind = RecordKind::velocity_steps;
-  recording.kind_source = "the motion of a load point was recorded";
 }
 
 /// The channels of one set of rows, in SI, on a clock that starts at 0; points are numbered instead.
@@ -175,7 +243,8 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
   recognise_points(plan, recording);
   recognise_steps(recording);
   if (!recording.has(Channel::time) && !recording.is_points()) set_time(recording, *plan.sampling);
-  exclude(gappy, recording);
+  exclude(gappy, "with a cell that is not a number", recording);
+  if (recording.is_driven()) exclude(find_repeated_rows(recording), "at the time of the row before", recording);
   if (recording.is_points()) {
     set_points(recording);
     return recording;

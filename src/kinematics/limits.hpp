@@ -14,7 +14,6 @@ inline constexpr std::size_t kFewestSamples = 16, kFewestForMedian = 3;
 inline constexpr double kRevolutionsOfAngle = 2;
 
 // ---- plateaus of stick
-
 /// How far a stretch may be from the level, over the largest excursion. Wider: slow slips count as stick; narrower:
 /// sticks of a ringing or sagging channel are lost.
 inline constexpr double kPlateauBand = 0.12;
@@ -56,7 +55,6 @@ inline constexpr double kMovesWithDisc = 0.5, kCarried = 5;
 inline constexpr double kFarFromDisc = 0.2, kPlateausOfBlock = 0.1, kLongerRest = 3;
 
 // ---- run-up
-
 /// Pieces of the first plateau, which may be the run-up itself, and of any other; and of its length, what is left out
 /// at its end, where it may break away already.
 inline constexpr std::size_t kPiecesOfFirst = 64, kPiecesOfPlateau = 16, kEndOfFirst = 32;
@@ -68,7 +66,6 @@ inline constexpr double kPieceNoise = 4, kLongHead = 3, kSlowHead = 0.5;
 inline constexpr double kBelowFinal = 0.9, kStaysSettled = 0.9, kShortestRunUp = 0.25;
 
 // ---- bandwidth
-
 /// Bins without which a spectrum has no end to take noise from.
 inline constexpr std::size_t kFewestBins = 64;
 /// Content over the noise floor: of a bin, and of a third of an octave whose slope is looked at.
@@ -84,7 +81,6 @@ inline constexpr std::size_t kLoneLineAbove = 4, kLoneLineBins = 16;
 inline constexpr double kFiltersDiffer = 1.5;
 
 // ---- high-pass of the vibrometer
-
 /// Fall of a plateau over its duration, 2 pi f_c t, over the level: below the first a high-pass does not matter and is
 /// lost in what creep does; above the second no plateau is left.
 inline constexpr double kLeastSag = 0.01, kLargestSag = 3;
@@ -94,7 +90,6 @@ inline constexpr double kLeastSag = 0.01, kLargestSag = 3;
 inline constexpr double kSignificance = 6;
 
 // ---- ripple of the disc
-
 inline constexpr int kHighestOrder = 6;
 /// Of the usual plateau, below which one is too short to show a level; fall of the plateaus over their level, and over
 /// its standard error, from which the contact creeps.
@@ -117,13 +112,11 @@ inline constexpr double kLeastRipple = 0.005, kLargestRipple = 0.25;
 inline constexpr double kLeastExplained = 0.5;
 
 // ---- plateau over omega r
-
 /// What sampling and the corner leave in the level of a restored plateau, over the level; and standard error of the
 /// creep taken off, over the creep: a real contact rings, and mu_s is not known that well.
 inline constexpr double kErrorAfterHighPass = 1e-3, kErrorOfCreep = 0.5;
 
 // ---- clocks of the two channels
-
 /// Of the shorter of stick and slip, how far from re-stick a jump of friction is looked for: beyond is the next event.
 inline constexpr double kDelayReach = 0.25;
 /// [s]; in a longer window a slow rig whose jumps are not sharp (a drill string) shows a drift of the clocks that is
@@ -147,7 +140,6 @@ inline constexpr double kDriftReach = 0.1, kDriftScatter = 3;
 inline constexpr double kSharpJump = 0.8;
 
 // ---- two files of one run
-
 /// Samples for a quantile, part of the velocity left out at either end of its range, and bins in which the usual
 /// velocity is looked for.
 inline constexpr std::size_t kEnough = 20000, kVelocityBins = 100;
@@ -185,7 +177,6 @@ inline constexpr double kMostUnbalanced = 0.3;
 inline constexpr double kClearEvidence = 7;
 
 // ---- low-pass of the velocity
-
 /// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the third
 /// (a cubic follows it), of slips that reach the last. Behind a slow filter from the second on, where from the first
 /// there is neither a filter nor a kink that leaves less than kKinkUnexplained of the fastest. Before short sticks,
@@ -225,7 +216,6 @@ inline constexpr double kRestoredNoise = 2e-3, kRestoredSmear = 0.25;
 inline constexpr double kFewSlipSamples = 24;
 
 // ---- low-pass of friction
-
 /// Of the time from re-stick to re-stick over which friction is looked at after it, and the fewest samples of that;
 /// samples before, through which a line says where the slip came to.
 inline constexpr double kTailPart = 0.25;
@@ -246,7 +236,6 @@ inline constexpr double kTailLeft = 1.6, kTailModel = 0.01;
 inline constexpr double kDrawnOut = 4, kDrawnNoise = 0.05, kRiseOfLowPass = 0.35;
 
 // ---- v_r as measured
-
 /// How far from zero it may rest in stick, over its largest excursion: creep stays below. alpha is off by some eight
 /// times as much.
 inline constexpr double kZeroPart = 0.005;
@@ -255,7 +244,6 @@ inline constexpr double kZeroPart = 0.005;
 inline constexpr double kGainOff = 0.1, kGainWarned = 0.03;
 
 // ---- zero of v_b
-
 /// Mean v_b of a block that goes nowhere, over the plateau: a smaller one moves alpha by less than its error; a larger
 /// one belongs to a block that nothing holds.
 inline constexpr double kLeastZero = 0.002, kLargestZero = 0.5;
@@ -266,7 +254,6 @@ inline constexpr double kZeroAgrees = 0.1, kZeroErrors = 3;
 inline constexpr double kHalvesAgree = 0.3, kHalfOfMean = 0.5;
 
 // ---- compression of the velocity
-
 /// Part of the gain that may be lost at the fastest, and how nearly the plateau is omega r where slips alone are read
 /// wrongly, over what the block would move on average.
 inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
@@ -275,7 +262,6 @@ inline constexpr double kSureOfCompression = 0.12;  // above it another characte
 inline constexpr double kOtherCharacteristic = 0.1;
 
 // ---- steps of the disc's speed
-
 /// A step over the speed; over the scatter of the plateaus on either side, and over their trend (a ripple or a drift
 /// moves within either side by half of what it moves between them).
 inline constexpr double kLeastStep = 2 * kSettled, kClearStep = 8, kSteepStep = 4;
@@ -283,7 +269,6 @@ inline constexpr double kLeastStep = 2 * kSettled, kClearStep = 8, kSteepStep = 
 inline constexpr double kStepPart = 0.1;
 
 // ---- steps of a converter
-
 /// Values in which steps and noise are looked for, and levels of a channel that has some: 12 bits are finer than noise.
 inline constexpr std::size_t kValuesForSteps = 65536, kFewestLevels = 8, kMostLevels = 4096;
 /// Part of the distances between levels that are whole numbers of the smallest, and how nearly; of the changes
@@ -299,7 +284,6 @@ inline constexpr double kUnevenRepeats = 0.15, kFineChanges = 8;
 inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03, kTooCoarse = 0.015;
 
 // ---- samples that are missing
-
 /// Change of the velocity within a sample over its noise that is seen, and over the changes beside it: a motion whose
 /// slip has ten samples changes by a third more.
 inline constexpr double kJumpNoise = 12, kJumpOver = 1.6;
@@ -311,7 +295,6 @@ inline constexpr std::size_t kFewestJumps = 5;
 inline constexpr double kJumpsPerPlateau = 0.1, kUsualJump = 0.5;
 
 // ---- derivatives of the pull of a spring
-
 /// Part of the natural period to either side of a sample: a polynomial of fourth degree follows a sixth of a sine to
 /// 1e-4 in its slope and 1e-3 in its second derivative; wider, slips are rounded; narrower, noise grows with the power
 /// -5/2.
@@ -339,7 +322,6 @@ inline constexpr double kTurnsRound = 0.1;
 inline constexpr double kAlikePowers = 0.5;
 
 // ---- faults of the recording
-
 /// Samples of which a distribution can be seen.
 inline constexpr std::size_t kFewestDistributed = 64;
 /// Values looked at for a distribution, and for how often a channel repeats one; part of those from which it is
@@ -396,5 +378,16 @@ inline constexpr std::size_t kShortestSlew = 8;
 /// Standstill at an end of a stick-slip record: rest for so many periods at less than this part of the plateau.
 inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;
 inline constexpr std::size_t kFewestPeriods = 5;
+
+// ---- the load point of velocity steps and holds
+/// Speed backwards over the fastest, below which it creeps during a hold rather than turns; part of a record in one
+/// direction, from which on that is the test and the rest the way to it and back.
+inline constexpr double kCreepOfHold = 1e-3, kLeastOneWay = 0.6;
+/// Logarithm of the ratio of speeds that are the same: a rest between them is a hold.
+inline constexpr double kSameSpeed = 0.3;
+/// Time and length, over those of the sliding before and behind, of what a drive does on its way from one speed to the
+/// other: ramps, overshoot, a pause. It is simulated as it was, but makes no step. Larger: short slides between long
+/// ones are lost.
+inline constexpr double kPassageBeside = 0.1;
 
 }  // namespace tribofit::kinematics

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "limits.hpp"
 #include "motion_channels.hpp"
 #include "statistics/piecewise_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -29,19 +31,79 @@ std::vector<LoadPointPhase> phases_of(const std::vector<double>& time, const std
   return out;
 }
 
-/// Sliding has one direction, which counts as forwards.
-void settle_direction(const std::string& path, std::vector<LoadPointPhase>& phases) {
-  const auto is_back = [](const LoadPointPhase& phase) { return phase.speed < 0; };
-  const auto moves = [](const LoadPointPhase& phase) { return phase.speed != 0; };
-  const auto back = std::count_if(phases.begin(), phases.end(), is_back);
-  const auto all = std::count_if(phases.begin(), phases.end(), moves);
-  if (2 * back > all) {
-    for (LoadPointPhase& phase : phases) phase.speed = -phase.speed;
+/// Phases of one direction, and how many samples lie before and behind them.
+struct OneWay {
+  std::vector<LoadPointPhase> phases;
+  std::size_t head = 0, tail = 0;
+};
+
+/// Sliding has one direction, which counts as forwards. A machine goes back before or behind a test: what lies between
+/// is used. Creep during a hold is no way back.
+OneWay one_way(const Trace& trace, std::vector<LoadPointPhase> phases, std::vector<std::string>& notes) {
+  const double end = trace.time.back();
+  const auto end_of = [&](std::size_t i) { return i + 1 < phases.size() ? phases[i + 1].begin : end; };
+  double on = 0, back = 0, fastest = 0;
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    (phases[i].speed < 0 ? back : on) += phases[i].speed == 0 ? 0 : end_of(i) - phases[i].begin;
+    fastest = std::max(fastest, std::abs(phases[i].speed));
   }
-  const auto turned = std::find_if(phases.begin(), phases.end(), is_back);
-  if (turned == phases.end()) return;
-  throw InputError(fmt::format("the load point turns round at {:.6g} s", turned->begin),
-                   "velocity steps have one direction: cut the record, or read it as --kind sliding", {path, 0, ""});
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    if (back > on) phases[i].speed = -phases[i].speed;
+    if (phases[i].speed < 0 && -phases[i].speed < kCreepOfHold * fastest) phases[i].speed = 0;
+    if (phases[i].speed < 0) turns.push_back(i);
+  }
+  if (turns.empty()) return {std::move(phases), 0, 0};
+  std::size_t first = 0, last = 0, begin = 0;
+  turns.push_back(phases.size());
+  const auto time_of = [&](std::size_t i) { return i < phases.size() ? phases[i].begin : end; };
+  for (const std::size_t turn : turns) {
+    if (turn > begin && time_of(turn) - time_of(begin) > time_of(last) - time_of(first)) first = begin, last = turn;
+    begin = turn + 1;
+  }
+  const double turned = phases[turns.front()].begin;
+  if (time_of(last) - time_of(first) < kLeastOneWay * (end - trace.time.front()))
+    throw InputError(fmt::format("the load point turns round at {:.6g} s", turned),
+                     "velocity steps have one direction: cut the record, or read it as --kind sliding",
+                     {trace.path, 0, ""});
+  OneWay out;
+  const auto at = [&](double t) { return std::lower_bound(trace.time.begin(), trace.time.end(), t); };
+  if (first > 0) out.head = static_cast<std::size_t>(at(time_of(first)) - trace.time.begin());
+  if (last < phases.size()) out.tail = static_cast<std::size_t>(trace.time.end() - at(time_of(last)));
+  out.phases.assign(phases.begin() + static_cast<std::ptrdiff_t>(first),
+                    phases.begin() + static_cast<std::ptrdiff_t>(last));
+  notes.push_back(
+      fmt::format("the load point turns round at {:.6g} s: only the record from {:.6g} s to {:.6g} s, in "
+                  "which it goes one way, is used",
+                  turned, time_of(first), time_of(last)));
+  return out;
+}
+
+/// Whether the load point rests between two slides of the same speed, or for long beside one of them.
+bool has_hold(const std::vector<LoadPointPhase>& phases, const std::vector<double>& time) {
+  for (std::size_t i = 1; i + 1 < phases.size(); ++i) {
+    const LoadPointPhase &before = phases[i - 1], &rest = phases[i], &behind = phases[i + 1];
+    if (rest.speed != 0 || !(before.speed > 0) || !(behind.speed > 0)) continue;
+    const double end = i + 2 < phases.size() ? phases[i + 2].begin : time.back();
+    const double shorter = std::min(rest.begin - before.begin, end - behind.begin);
+    const bool same = std::abs(std::log(behind.speed / before.speed)) < kSameSpeed;
+    if (same || behind.begin - rest.begin > kPassageBeside * shorter) return true;
+  }
+  return false;
+}
+
+void drop_ends_of(Trace& trace, std::size_t head, std::size_t tail) {
+  for (std::vector<double>* channel : {&trace.time, &trace.friction, &trace.load, &trace.temperature})
+    drop_ends(*channel, head, tail);
+  trace.steps = steps_within(trace.steps, head, trace.size());
+}
+
+/// Friction that opposes sliding is positive.
+void settle_sign(std::vector<double>& friction, std::vector<std::string>& notes) {
+  const auto below = std::count_if(friction.begin(), friction.end(), [](double mu) { return mu < 0; });
+  if (2 * static_cast<std::size_t>(below) <= friction.size()) return;
+  for (double& mu : friction) mu = -mu;
+  notes.emplace_back("friction: sign reversed so that it opposes sliding");
 }
 
 }  // namespace
@@ -60,16 +122,20 @@ Motion motion_of_load_point(Trace trace) {
     displacement = std::move(trace.drive_position);
   }
   if (motion.load_point.empty()) motion.load_point = phases_of(trace.time, displacement);
-  settle_direction(trace.path, motion.load_point);
+  if (trace.size() > 1) {
+    OneWay used = one_way(trace, std::move(motion.load_point), motion.notes);
+    motion.load_point = std::move(used.phases);
+    drop_ends_of(trace, used.head, used.tail);
+    settle_sign(trace.friction, motion.notes);
+  }
   trace.velocity_kind = VelocityKind::relative;
   trace.velocity.assign(trace.size(), 0.0);
   for (std::size_t i = 0, phase = 0; i < trace.size() && !motion.load_point.empty(); ++i) {
     while (phase + 1 < motion.load_point.size() && motion.load_point[phase + 1].begin <= trace.time[i]) ++phase;
     trace.velocity[i] = motion.load_point[phase].speed;
   }
-  const bool holds = std::any_of(motion.load_point.begin(), motion.load_point.end(),
-                                 [](const LoadPointPhase& phase) { return phase.speed == 0; });
-  if (holds && trace.kind_source != "stated") trace.kind = RecordKind::slide_hold_slide;
+  if (has_hold(motion.load_point, trace.time) && trace.kind_source != "stated")
+    trace.kind = RecordKind::slide_hold_slide;
   require_channels(trace);
   take_kinds(trace, {}, motion);
   motion.time = std::move(trace.time);

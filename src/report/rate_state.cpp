@@ -187,13 +187,33 @@ std::string sliding_speed_text(double speed) {
   return speed < kMillimetre ? brief(speed / kMicrometre) + " um/s" : brief(speed / kMillimetre) + " mm/s";
 }
 
+namespace {
+
+/// Speeds that last, in order; those of the way from one to the other aside.
+std::vector<double> speeds_of(const Motion& motion, const RateStateAnalysis* analysis) {
+  std::vector<double> speeds;
+  if (analysis == nullptr || analysis->steps.empty()) {
+    for (const LoadPointPhase& phase : motion.load_point) speeds.push_back(phase.speed);
+    return speeds;
+  }
+  for (const VelocityStep& step : analysis->steps) {
+    if (speeds.empty() || speeds.back() != step.before) speeds.push_back(step.before);
+    if (step.hold > 0) speeds.push_back(0);
+    speeds.push_back(step.after);
+  }
+  return speeds;
+}
+
+}  // namespace
+
 Facts load_point_facts(const Motion& motion, const RateStateAnalysis* analysis) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> speeds;
-  for (const LoadPointPhase& phase : motion.load_point) {
-    if (speeds.size() < kMost) speeds.push_back(sliding_speed_text(phase.speed));
+  const std::vector<double> all = speeds_of(motion, analysis);
+  for (const double speed : all) {
+    if (speeds.size() < kMost) speeds.push_back(sliding_speed_text(speed));
   }
-  if (motion.load_point.size() > kMost) speeds.push_back(fmt::format("... ({} in all)", motion.load_point.size()));
+  if (all.size() > kMost) speeds.push_back(fmt::format("... ({} in all)", all.size()));
   Facts facts = {
       {"load point", fmt::format("{} ({})", fmt::join(speeds, ", "), source_text(motion.load_point_source))}};
   if (motion.normal_stress.known())

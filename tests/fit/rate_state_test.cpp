@@ -132,6 +132,19 @@ TEST(RateState, NearCriticalStiffness) {
   }
 }
 
+// Where friction swings for long, hardly a start leads to the minimum of all steps: that of the first one does.
+TEST(RateState, SwingsAreFollowedStepByStep) {
+  const RateStateMachine machine = machine_of(StateEvolution::ageing, 1.05, 0.009, 0.013);
+  const std::vector<LoadPointPhase> phases = {{0, 2e-6}, {100, 10e-6}, {140, 2e-6}, {240, 10e-6}};
+  RateStateOptions options = together();
+  options.evolutions = {StateEvolution::ageing};
+  options.detrend = Detrend::displacement;
+  const RateStateAnalysis analysis =
+      fit_rate_state(motion_from(machine, phases, times_until(280, 10), 2e-4, 2e-6), options);
+  ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+  expect_recovered(analysis.fits[0], machine, 0.03, 0.05);
+}
+
 TEST(RateState, FrictionThatRisesWithSpeedIsStableOnAnyMachine) {
   const RateStateMachine machine = machine_of(StateEvolution::ageing, 10, 0.014, 0.010);
   const Motion motion = motion_from(machine, kSteps, times_until(250, 20), 2e-4);

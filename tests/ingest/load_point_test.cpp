@@ -50,6 +50,47 @@ TEST_F(LoadPoint, AStressOverAForceIsRefused) {
   expect_error(alone, {}, "needs the normal stress", "load=NAME:MPa");
 }
 
+TEST_F(LoadPoint, APlainDisplacementIsItsOwnWhereItGoesOneWay) {
+  std::string one_way = "time_s,Velocity (um/s),Displacement (um),mu\n", to_and_fro = "time_s,Displacement (um),mu\n";
+  for (int i = 0; i < 100; ++i) {
+    const int back = i < 95 ? i : 0;  // where the machine returns to
+    one_way += std::to_string(i) + ",2," + std::to_string(2 * back) + ",0.6\n";
+    to_and_fro += std::to_string(i) + "," + std::to_string(i % 20 < 10 ? i % 20 : 20 - i % 20) + ",0.6\n";
+  }
+  const Trace trace = read_trace(write(one_way));
+  EXPECT_EQ(trace.kind, RecordKind::velocity_steps);
+  EXPECT_EQ(trace.kind_source, "a displacement in one direction is all the motion recorded");
+  EXPECT_DOUBLE_EQ(trace.drive_position.at(10), 2e-5);
+  expect_error(write(to_and_fro), {}, "no velocity column", "name the columns");
+  ReadOptions named;
+  named.columns = {{"x_d", "Displacement"}};
+  EXPECT_EQ(read_trace(write(to_and_fro), named).drive_position.size(), 100U);
+}
+
+TEST_F(LoadPoint, ASpeedInMicrometresThatIsSetInStepsIsItsOwn) {
+  std::string steps = "time_s,Velocity (um/s),mu\n", moves = steps;
+  for (int i = 0; i < 100; ++i) {
+    steps += std::to_string(i) + (i / 25 % 2 == 0 ? ",2,0.6\n" : ",20,0.6\n");
+    moves += std::to_string(i) + "," + std::to_string(2 + i % 9) + ",0.6\n";
+  }
+  const Trace trace = read_trace(write(steps));
+  EXPECT_EQ(trace.kind, RecordKind::velocity_steps);
+  EXPECT_DOUBLE_EQ(trace.load_point_speed.at(30), 2e-5);
+  EXPECT_NE(read_trace(write(moves)).kind, RecordKind::velocity_steps);
+}
+
+TEST_F(LoadPoint, RowsOfOneTimeAndUnitsGivenAsADotAreRead) {
+  std::string text = "Time\tLP_Disp\tmu\nsec\tmicron\t.\n";
+  for (int i = 0; i < 120; ++i) {
+    text += std::to_string(i) + "\t" + std::to_string(i) + "\t0.6\n";
+    if (i == 60) text += "60\t60\t0.6\n";  // where the sampling changes
+  }
+  const Trace trace = read_trace(write(text));
+  EXPECT_EQ(trace.size(), 120U);
+  ASSERT_EQ(trace.warnings.size(), 1U);
+  EXPECT_THAT(trace.warnings.front(), HasSubstr("1 row at the time of the row before was left out"));
+}
+
 TEST_F(LoadPoint, WhereTheKindIsStatedAnyDisplacementOrSpeedIsItsOwn) {
   ReadOptions options;
   options.kind = RecordKind::slide_hold_slide;
