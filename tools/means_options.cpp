@@ -40,7 +40,14 @@ double value_of(const std::string& text, Quantity quantity, const std::string& o
                    fmt::format("give {} such as {}", to_string(quantity), example_of(quantity)));
 }
 
-/// "1rpm..8rpm" as a few values in equal ratios, or "9mm,12mm" as they are. Empty: none.
+/// A number as a person sets it: of two digits, within 5 %.
+double two_digits(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  return std::round(x / unit) * unit;
+}
+
+/// "1rpm..8rpm" as a few values in equal ratios, those between the ends of two digits in the unit of the range where
+/// that keeps them apart, or "9mm,12mm" as they are. Empty: none.
 template <class ValueOf>
 std::vector<double> values_of(const std::string& text, const std::string& option, ValueOf&& value) {
   if (text.empty()) return {};
@@ -62,7 +69,11 @@ std::vector<double> values_of(const std::string& text, const std::string& option
   if (is_bare(lower)) lower += ends[1].substr(std::min(ends[1].size(), ends[1].find_first_not_of("+-.0123456789eE ")));
   const double low = value(lower), high = value(ends[1]);
   if (!(high > low)) throw InputError(option + ": '" + text + "' does not rise", "write the lower value first");
-  return evenly_spaced(low, high, kLevelsOfRange, true);
+  std::vector<double> levels = evenly_spaced(low, high, kLevelsOfRange, true);
+  const double unit = low / std::stod(lower);
+  for (std::size_t k = 1; high > 1.5 * low && k + 1 < levels.size(); ++k)
+    levels[k] = unit * two_digits(levels[k] / unit);
+  return levels;
 }
 
 std::vector<double> values_of(const std::string& text, Quantity quantity, const std::string& option) {

@@ -92,7 +92,7 @@ void add_plan(const Command& app) {
   add_input_options(verb, *settings);
   add_means_options(verb, *means);
   verb.add_option("--time-limit", settings->time_limit,
-                  "End the diagnoses of simulated records after this time (10s, 2min) and report what is known")
+                  "Simulate no more runs after this time (10s, 2min) and report what is known")
       .group(section::kMeans);
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);

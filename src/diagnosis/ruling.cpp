@@ -33,11 +33,6 @@ Trial fit_beside(const DiagnosisContext& context, const Law& law, const std::vec
 
 }  // namespace
 
-double chance_to_distinguish(double mean, double spread) {
-  const double deviation = 2 * std::sqrt(std::max(mean, 1.0) * spread);
-  return 0.5 * std::erfc((limits::kDistinguishable - mean) / deviation / std::sqrt(2.0));
-}
-
 Ruling rule_between(std::span<const Record> records, const Law& law, const std::vector<Effect>& beside,
                     const std::vector<Effect>& effects, const Instruments& instruments) {
   Ruling out;

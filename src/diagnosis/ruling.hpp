@@ -35,8 +35,4 @@ struct Ruling {
 Ruling rule_between(std::span<const Record> records, const Law& law, const std::vector<Effect>& beside,
                     const std::vector<Effect>& effects, const Instruments& instruments = {});
 
-/// Normal approximation to the chance that a difference in held-out squares with this mean, in the unit of
-/// Ruling::OfEffect::behind, distinguishes two models. spread: by which its variance is larger than that of one record.
-double chance_to_distinguish(double mean, double spread = 1);
-
 }  // namespace tribofit::diagnosis

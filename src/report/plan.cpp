@@ -60,7 +60,9 @@ std::string render_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan, c
   TerminalText text(options);
   text.line(question_sentence(diagnosed, plan), 0);
   if (plan.answered() && !plan.experiments.empty()) {
-    text.table(experiments_table(plan), kExperimentsShown);
+    ReportTable experiments = experiments_table(plan);
+    experiments.file = "the file of --json";
+    text.table(experiments, kExperimentsShown);
     text.table(predictions_table(plan, plan.experiments.front(), is_force(diagnosed)));
   }
   text.heading("Plan");

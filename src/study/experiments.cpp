@@ -43,7 +43,7 @@ class ExperimentMaker {
     if (takes_revolutions(question_)) {
       needed = std::max({needed, longer * kPlannedRevolutions * 2 * std::numbers::pi / run.speed, 2 * own_.duration});
     }
-    run.duration = std::min(needed, longest_ / parts);
+    run.duration = std::min({needed, longest_ / parts, kMostSimulatedCycles / parts * period(run)});
     return run;
   }
 

@@ -113,10 +113,12 @@ std::size_t trace_to_continue(const DiagnosedTraces& diagnosed) {
 /// the exact one that a likelihood takes it for.
 void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQuestion& question) {
   std::vector<double> weights(question.models.size(), 1.0);
+  question.behind.assign(weights.size(), 0.0);
   if (question.kind == QuestionKind::group) {
     const diagnosis::Ruling now = diagnosis::rule_between(records_of(diagnosed), question.law, question.beside,
                                                           question.asked, options.instruments);
     for (std::size_t k = 0; k < weights.size(); ++k) {
+      question.behind[k] = now.effects[k].behind;
       weights[k] = std::exp(-std::clamp(now.effects[k].behind, 0.0, kMostBehind) / (2 * kTemper));
     }
   }

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
@@ -50,13 +53,24 @@ bool is_of_plateau(const std::string& key) {
                      [&](const Effect& effect) { return describe(effect).key == key && is_kinematic(effect); });
 }
 
+/// An experiment with what its simulated runs say.
+struct Weighed {
+  PlannedExperiment planned;
+  std::vector<std::vector<Evidence>> draws = {};  ///< of each model
+  bool drawn_again = false;                       ///< these are all of them, and not the first one
+};
+
 double worth(const PlannedExperiment& one) {
   return one.probability - kCostOfMinute * one.minutes();
 }
 
-void rank(std::vector<PlannedExperiment>& all) {
+void rank(std::vector<Weighed>& all) {
   std::stable_sort(all.begin(), all.end(),
-                   [](const PlannedExperiment& a, const PlannedExperiment& b) { return worth(a) > worth(b); });
+                   [](const Weighed& a, const Weighed& b) { return worth(a.planned) > worth(b.planned); });
+}
+
+bool is_late(const PlanOptions& options) {
+  return options.until && std::chrono::steady_clock::now() >= *options.until;
 }
 
 /// Models that are likely enough to be simulated as the true one.
@@ -68,35 +82,6 @@ std::vector<std::size_t> likely_models(const OpenQuestion& question) {
   return likely;
 }
 
-/// Expected chances of the first `count` experiments for draw number `draw` of every likely model, averaged with those
-/// of the draws before it.
-void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
-            std::size_t count, std::uint64_t draw, const std::function<void(double)>& say,
-            std::vector<PlannedExperiment>& all) {
-  const std::vector<std::size_t> likely = likely_models(question);
-  std::vector<Chance> chances(std::min(count, all.size()) * likely.size());
-  std::atomic<std::size_t> done{0};
-  run_tasks(chances.size(), options.threads, [&](std::size_t t) {
-    const Experiment& experiment = all[t / likely.size()].experiment;
-    chances[t] = expected_chance(diagnosed, question, experiment, likely[t % likely.size()], draw, options);
-    say(static_cast<double>(++done) / static_cast<double>(chances.size()));
-  });
-  const double before = static_cast<double>(draw);
-  for (std::size_t e = 0; e < std::min(count, all.size()); ++e) {
-    PlannedExperiment& one = all[e];
-    if (draw == 0) one.of_models.assign(question.models.size(), std::numeric_limits<double>::quiet_NaN());
-    bool any = false;
-    for (std::size_t k = 0; k < likely.size(); ++k) {
-      const Chance& chance = chances[e * likely.size() + k];
-      double& mean = one.of_models[likely[k]];
-      mean = draw == 0 ? chance.named : (mean * before + chance.named) / (before + 1);
-      any |= chance.simulated;
-    }
-    if (!any) one.reason = "its motion could not be simulated";
-    one.expected = one.probability = over_models(question, one.of_models);
-  }
-}
-
 /// Cycles of all records, as many as a run of this length has, too.
 double cycles_with(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment) {
   double cycles = 0;
@@ -106,9 +91,96 @@ double cycles_with(const DiagnosedTraces& diagnosed, const OpenQuestion& questio
   return cycles + frequency * experiment.duration();
 }
 
+/// What is known of the chances of an experiment from its draws. growth: see Growth.
+std::vector<double> chances_of(const OpenQuestion& question, const Weighed& one, const Growth& growth = {}) {
+  std::vector<double> chances(question.models.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const std::size_t m : likely_models(question)) {
+    chances[m] = chance_to_name(question, m, one.draws[m], growth);
+  }
+  return chances;
+}
+
+/// Simulates draws number `range.first` to `range.second` (not itself) of every likely model for some of the
+/// experiments, which say the expected chances.
+void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
+            const std::vector<std::size_t>& experiments, std::pair<std::uint64_t, std::uint64_t> range,
+            const std::function<void(double)>& say, std::vector<Weighed>& all) {
+  const std::vector<std::size_t> likely = likely_models(question);
+  const std::size_t each = range.second - range.first;
+  std::vector<std::optional<Evidence>> found(experiments.size() * likely.size() * each);
+  std::atomic<std::size_t> done{0};
+  run_tasks(found.size(), options.threads, [&](std::size_t t) {
+    if (is_late(options)) return;
+    const Experiment& experiment = all[experiments[t / each / likely.size()]].planned.experiment;
+    found[t] =
+        weigh_draw(diagnosed, question, experiment, likely[t / each % likely.size()], range.first + t % each, options);
+    say(static_cast<double>(++done) / static_cast<double>(found.size()));
+  });
+  for (std::size_t k = 0; k < experiments.size(); ++k) {
+    Weighed& weighed = all[experiments[k]];
+    const std::span own(found.data() + k * likely.size() * each, likely.size() * each);
+    if (!std::all_of(own.begin(), own.end(), [](const auto& draw) { return draw.has_value(); })) {
+      if (!weighed.draws.empty()) continue;
+      weighed.planned.reason = "there was no time to weigh it";
+      weighed.planned.of_models.assign(question.models.size(), std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    weighed.draws.assign(question.models.size(), {});
+    bool any = false;
+    for (std::size_t t = 0; t < own.size(); ++t) {
+      any |= own[t]->simulated;
+      weighed.draws[likely[t / each]].push_back(std::move(*own[t]));
+    }
+    weighed.drawn_again = range.first > 0;
+    PlannedExperiment& one = weighed.planned;
+    if (!any) one.reason = "its motion could not be simulated";
+    one.of_models = chances_of(question, weighed);
+    one.expected = one.probability = over_models(question, one.of_models);
+  }
+}
+
+/// Makes the runs of an experiment as long as is worth it, within the time and what can be simulated.
+void lengthen(const DiagnosedTraces& diagnosed, const OpenQuestion& question, double longest, Weighed& one) {
+  PlannedExperiment& planned = one.planned;
+  const std::vector<RunConditions>& runs = planned.experiment.runs;
+  if (runs.empty() || !planned.reason.empty() || !runs.front().pauses.empty()) return;
+  const double before = cycles_with(diagnosed, question, {}),
+               all = cycles_with(diagnosed, question, planned.experiment);
+  PlannedExperiment best = planned;
+  for (const double factor : kLongerRuns) {
+    PlannedExperiment longer = planned;
+    for (RunConditions& run : longer.experiment.runs) run.duration *= factor;
+    const double cycles = before + factor * (all - before);
+    if (longer.experiment.duration() > longest || cycles > kMostSimulatedCycles) break;
+    longer.of_models = chances_of(question, one, {factor, cycles / all});
+    longer.expected = longer.probability = over_models(question, longer.of_models);
+    if (worth(longer) > worth(best)) best = std::move(longer);
+  }
+  planned = std::move(best);
+}
+
+/// Draws again those that may be the best: the chances of one that leads by a single draw are too high. Those draws are
+/// not among the new ones.
+void draw_best_again(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
+                     PlanProgress& progress, std::vector<Weighed>& all) {
+  for (std::size_t round = 0; round < kExperimentsDrawnAgain; ++round) {
+    rank(all);
+    std::size_t next = 0;
+    while (next < all.size() && all[next].drawn_again) ++next;
+    if (next == all.size() || next >= kExperimentsInFull || is_late(options)) return;
+    expect(
+        diagnosed, question, options, {next}, {1, 1 + kDrawsOfModel},
+        [&](double part) {
+          progress.say("weighing the best again",
+                       0.4 + 0.2 * (static_cast<double>(round) + part) / static_cast<double>(kExperimentsDrawnAgain));
+        },
+        all);
+  }
+}
+
 /// Diagnoses simulated records of the best experiments in full.
 void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
-                   PlanProgress& progress, std::vector<PlannedExperiment>& all) {
+                   PlanProgress& progress, std::vector<Weighed>& all) {
   struct Task {
     std::size_t experiment, model;
     std::uint64_t draw;
@@ -119,10 +191,11 @@ void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& questio
   const std::vector<std::size_t> likely = likely_models(question);
   std::size_t chosen = 0;
   for (std::size_t e = 0; e < all.size() && chosen < kExperimentsInFull; ++e) {
-    if (all[e].experiment.runs.empty() || !all[e].reason.empty() || all[e].expected < 0.5 * kHopeless) continue;
+    const PlannedExperiment& one = all[e].planned;
+    if (one.experiment.runs.empty() || !one.reason.empty() || one.expected < 0.5 * kHopeless) continue;
     ++chosen;
     const double records = kMostDiagnosedCycles / static_cast<double>(kExperimentsInFull) /
-                           cycles_with(diagnosed, question, all[e].experiment);
+                           cycles_with(diagnosed, question, one.experiment);
     const auto draws = static_cast<std::size_t>(options.effort * records / static_cast<double>(likely.size()));
     const std::size_t least = chosen == 1 && options.effort > 0 ? 1 : 0;  // the first is always looked at in full
     for (std::size_t draw = 0; draw < std::clamp(draws, least, kMostDrawsInFull); ++draw) {
@@ -132,28 +205,29 @@ void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& questio
   std::atomic<std::size_t> done{0};
   run_tasks(tasks.size(), options.threads, [&](std::size_t t) {
     Task& task = tasks[t];
-    if (options.until && std::chrono::steady_clock::now() >= *options.until) return;
-    task.answer =
-        diagnose_simulated(diagnosed, question, all[task.experiment].experiment, task.model, task.draw, options);
+    if (is_late(options)) return;
+    task.answer = diagnose_simulated(diagnosed, question, all[task.experiment].planned.experiment, task.model,
+                                     task.draw, options);
     task.done = true;
     progress.say("diagnosing simulated records",
                  0.6 + 0.3 * static_cast<double>(++done) / static_cast<double>(tasks.size()));
   });
   for (std::size_t e = 0; e < all.size(); ++e) {
+    PlannedExperiment& one = all[e].planned;
     for (const std::size_t m : likely) {
       double named = 0, count = 0;
       for (const Task& task : tasks) {
         if (task.experiment != e || task.model != m || !task.done) continue;
         named += task.answer == Answer::named ? 1 : 0;
         count += 1;
-        all[e].wrong += task.answer == Answer::wrong ? 1 : 0;
+        one.wrong += task.answer == Answer::wrong ? 1 : 0;
       }
-      all[e].simulated += static_cast<std::size_t>(count);
-      all[e].named += static_cast<std::size_t>(named);
-      double& chance = all[e].of_models[m];
+      one.simulated += static_cast<std::size_t>(count);
+      one.named += static_cast<std::size_t>(named);
+      double& chance = one.of_models[m];
       chance = (kWeightOfExpected * chance + named) / (kWeightOfExpected + count);
     }
-    all[e].probability = over_models(question, all[e].of_models);
+    one.probability = over_models(question, one.of_models);
   }
 }
 
@@ -224,23 +298,25 @@ RunPlan plan_runs(const DiagnosedTraces& diagnosed, const PlanOptions& options) 
   const Identification& trace = diagnosed.traces[question.trace];
   const Means means = out.usual_means ? usual_means(trace, options.means.longest) : options.means;
   out.own = conditions_of_record(question, trace);
+  std::vector<Weighed> weighed;
   for (Experiment& experiment : experiments_for(question, trace, means)) {
-    out.experiments.push_back({.experiment = std::move(experiment)});
+    weighed.push_back({{.experiment = std::move(experiment)}});
   }
+  std::vector<std::size_t> every(weighed.size());
+  std::iota(every.begin(), every.end(), std::size_t{0});
   expect(
-      diagnosed, question, options, out.experiments.size(), 0,
-      [&](double part) { progress.say("weighing experiments", 0.05 + 0.4 * part); }, out.experiments);
-  rank(out.experiments);
-  for (std::uint64_t draw = 1; draw < kDrawsOfModel; ++draw) {
-    expect(
-        diagnosed, question, options, kExperimentsDrawnAgain, draw,
-        [&](double part) { progress.say("weighing the best again", 0.45 + 0.15 * part); }, out.experiments);
-  }
-  rank(out.experiments);
-  diagnose_best(diagnosed, question, options, progress, out.experiments);
-  rank(out.experiments);
+      diagnosed, question, options, every, {0, 1},
+      [&](double part) { progress.say("weighing experiments", 0.05 + 0.35 * part); }, weighed);
+  const double longest = means.longest > 0 ? means.longest : kUsualLongest;
+  for (Weighed& one : weighed) lengthen(diagnosed, question, longest, one);
+  draw_best_again(diagnosed, question, options, progress, weighed);
+  rank(weighed);
+  diagnose_best(diagnosed, question, options, progress, weighed);
+  rank(weighed);
+  for (Weighed& one : weighed) out.experiments.push_back(std::move(one.planned));
   out.hopeless = out.experiments.empty() || out.experiments.front().probability < kHopeless;
   for (std::size_t e = 0; e < std::min(kExperimentsToSee, out.experiments.size()); ++e) {
+    if (e > 0 && is_late(options)) break;
     progress.say("what is to be seen", 0.9 + 0.02 * static_cast<double>(e));
     out.experiments[e].predictions = predict_seen(question, out.experiments[e].experiment, options);
   }

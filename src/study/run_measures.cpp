@@ -117,7 +117,8 @@ Loop loop_of(const MeanSlip& slip) {
 RunCurve break_aways(const SimulatedRun& run) {
   RunCurve out;
   for (const Cycle& cycle : run.segmentation.cycles) {
-    if (cycle.stick.size() == 0 || !cycle.stick_complete || !std::isfinite(cycle.break_away_friction)) continue;
+    if (cycle.stick.size() == 0 || !cycle.stick_complete) continue;
+    if (!std::isfinite(cycle.break_away_friction) || !std::isfinite(cycle.stick_time)) continue;
     out.x.push_back(cycle.stick_time);
     out.y.push_back(cycle.break_away_friction);
   }
@@ -146,7 +147,7 @@ double after_long_sticks(const RunCurve& all) {
 RunCurve levels(const SimulatedRun& run) {
   RunCurve out;
   for (const Cycle& cycle : run.segmentation.cycles) {
-    if (!cycle.slip_complete || cycle.slip.size() < 8) continue;
+    if (!cycle.slip_complete || cycle.slip.size() < 8 || !std::isfinite(cycle.break_away_time)) continue;
     double sum = 0;
     for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) sum += cycle.direction * run.motion.friction[i];
     out.x.push_back(cycle.break_away_time);

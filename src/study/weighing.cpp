@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "diagnosis/limits.hpp"
 #include "diagnosis/ruling.hpp"
 #include "limits.hpp"
 #include "run_measures.hpp"
+#include "tap.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -23,11 +23,37 @@ double normal_tail_below(double z) {
   return 0.5 * std::erfc(-z / std::sqrt(2.0));
 }
 
-/// Chance that another record of the same truth gives a p-value below `level`, from that of one.
-double chance_of_p(double p_value, double level) {
+/// Chance that the p-value of another record of the same truth is below `level`, from those of some draws. cycles: so
+/// many times as many as the draws had.
+double chance_of_p(const std::vector<Evidence>& draws, double level, double cycles) {
   const boost::math::normal_distribution<double> normal;
   const auto z_of = [&](double p) { return boost::math::quantile(normal, 1 - std::clamp(p, 1e-15, 1 - 1e-15)); };
-  return normal_tail_below((z_of(p_value) - z_of(level)) / std::sqrt(2.0));
+  double sum = 0;
+  for (const Evidence& draw : draws) sum += z_of(draw.p_value);
+  const auto n = static_cast<double>(draws.size());
+  return normal_tail_below((std::sqrt(cycles) * sum / n - z_of(level)) / std::sqrt(1 + 1 / n));
+}
+
+/// Chance that another record of the same truth distinguishes it from a rival that was `now` behind before the run.
+///
+/// What the run adds to the difference has, with the right one known, a variance of four times its mean; what the
+/// records gave before is what it is. Draws of other parameters spread more, which shows in the draws: the theory
+/// counts as kDrawsOfTheory of them. The mean is that of the draws, with its error. longer: the run, over those drawn.
+double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t rival, double now, double longer) {
+  double sum = 0, squares = 0, n = 0;
+  for (const Evidence& draw : draws) {
+    if (std::isfinite(draw.ahead[rival])) sum += draw.ahead[rival] - now, n += 1;
+  }
+  const auto all = static_cast<double>(draws.size());
+  if (n == 0) return 1;
+  const double added = sum / n, of_theory = 4 * std::max(added, 1.0);
+  for (const Evidence& draw : draws) {
+    if (std::isfinite(draw.ahead[rival])) squares += std::pow(draw.ahead[rival] - now - added, 2);
+  }
+  const double variance = longer * (kDrawsOfTheory * of_theory + squares) / (kDrawsOfTheory + n - 1);
+  const double mean = now + longer * added;
+  const double beyond = (mean - diagnosis::limits::kDistinguishable) / std::sqrt(variance * (1 + longer / n));
+  return (all - n + n * normal_tail_below(beyond)) / all;
 }
 
 /// A machine of the model, drawn from its posterior.
@@ -65,86 +91,55 @@ std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vecto
   return records;
 }
 
-/// Uncertainties of what a hand reads off a tap: where edges of two channels lie, beside a part of a sample, and how
-/// slow an edge is.
-constexpr double kReadingOfEdge = 0.02e-3 /* s */, kPartOfSample = 0.3, kReadingOfSlope = 0.25;
-
-/// What a tap shows of each answer: a shift of the channels [s], and the time of a filter [s].
-struct TapShows {
-  double shift = 0, filter = 0;
-};
-TapShows tap_shows(const OpenQuestion& question, std::size_t model) {
-  TapShows out;
-  const Effect& effect = question.asked[std::min(model, question.asked.size() - 1)];
-  if (question.without(model)) return out;
-  const EffectInfo info = describe(effect);
-  const Machine& machine = question.machines[model].machine;
-  const double value = machine.parameters[machine.model.offset_of(info.key)];
-  if (info.declared_by == InstrumentValue::vibrometer_delay) out.shift = value;
-  // A corner in Hz, or a time constant of one pole.
-  if (info.declared_by == InstrumentValue::force_bandwidth) {
-    out.filter = info.parameters[0].unit == "Hz" ? 1 / (2 * std::numbers::pi * value) : value;
-  }
-  return out;
-}
-
-/// Chance that a tap recorded at this rate tells this answer from all others: an edge that is shifted, beyond three
-/// standard uncertainties as for what an instruments file declares, or one that is slower than a filter of a quarter of
-/// the rate makes it, which a few samples show.
-double chance_of_tap(const OpenQuestion& question, std::size_t truth, double rate) {
-  const double edge = std::hypot(kReadingOfEdge, kPartOfSample / rate), slow = 4 / (2 * std::numbers::pi * rate);
-  const TapShows own = tap_shows(question, truth);
-  double least = 1;
-  for (std::size_t other = 0; other < question.models.size(); ++other) {
-    if (other == truth) continue;
-    const TapShows its = tap_shows(question, other);
-    const double by_shift = std::abs(own.shift - its.shift) / edge,
-                 by_filter = std::abs(own.filter - its.filter) / slow;
-    double chance = by_shift > 0 ? chance_beyond(by_shift) : 0;
-    if (by_filter > 0) chance = std::max(chance, normal_tail_below((by_filter - 1) / kReadingOfSlope));
-    least = std::min(least, chance);
-  }
-  return least;
-}
-
-/// Chance that the truth is named alone, from what the rule says of one record.
-double chance_of_ruling(const diagnosis::Ruling& ruling, const OpenQuestion& question, std::size_t truth) {
-  using namespace diagnosis;
-  if (question.kind == QuestionKind::possible) {
-    const double p_value = ruling.effects.front().p_value;
-    return question.without(truth)
-               ? 1 - chance_of_p(p_value, limits::kChanceOfPossible)
-               : (ruling.effects.front().passes || p_value < 1 ? chance_of_p(p_value, Limits{}.p_value) : 0);
-  }
-  const Ruling::OfEffect& own = ruling.effects[truth];
-  if (!own.passes && own.p_value >= limits::kChanceOfPossible) return 0;
-  double chance = chance_of_p(own.p_value, Limits{}.p_value);
-  if (!own.passes) chance = std::min(chance, 0.5);
-  for (std::size_t other = 0; other < ruling.effects.size(); ++other) {
-    const Ruling::OfEffect& rival = ruling.effects[other];
-    if (other == truth || !rival.passes) continue;
-    // What one record says of the mean has the spread of another record.
-    constexpr double kOfTwoRecords = 2;
-    chance = std::min(chance, chance_to_distinguish(rival.behind - own.behind, kOfTwoRecords));
-  }
-  return chance;
-}
-
 }  // namespace
 
 double chance_beyond(double sigmas) {
   return normal_tail_below(sigmas - diagnosis::limits::kDeclaredSigmas);
 }
 
-Chance expected_chance(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
-                       std::size_t truth, std::uint64_t draw, const PlanOptions& options) {
-  if (experiment.tap > 0) return {chance_of_tap(question, truth, experiment.tap)};
+Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
+                    std::size_t truth, std::uint64_t draw, const PlanOptions& options) {
+  Evidence out;
+  if (experiment.tap > 0) {
+    out.known = chance_of_tap(question, truth, experiment.tap);
+    return out;
+  }
   const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, seed_of(options, truth, draw));
-  if (runs.empty()) return {0, false};
-  const std::vector<Record> records = with_runs(diagnosed, runs);
-  const diagnosis::Ruling ruling =
-      diagnosis::rule_between(records, question.law, question.beside, question.asked, options.instruments);
-  return {chance_of_ruling(ruling, question, truth)};
+  out.simulated = !runs.empty();
+  if (!out.simulated) return out;
+  const diagnosis::Ruling ruling = diagnosis::rule_between(with_runs(diagnosed, runs), question.law, question.beside,
+                                                           question.asked, options.instruments);
+  const diagnosis::Ruling::OfEffect& own = ruling.effects[std::min(truth, ruling.effects.size() - 1)];
+  out.p_value = own.p_value;
+  out.ruled_out = !own.passes && own.p_value < diagnosis::Limits{}.p_value;
+  for (std::size_t k = 0; k < ruling.effects.size(); ++k) {
+    const bool rivals = k != truth && ruling.effects[k].passes;
+    out.ahead.push_back(rivals ? ruling.effects[k].behind - own.behind : std::numeric_limits<double>::infinity());
+  }
+  return out;
+}
+
+double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
+                      const Growth& growth) {
+  using namespace diagnosis;
+  std::vector<Evidence> seen;
+  for (const Evidence& draw : draws) {
+    if (draw.known >= 0) return draw.known;
+    if (draw.simulated) seen.push_back(draw);
+  }
+  if (seen.empty()) return 0;
+  const double simulated = static_cast<double>(seen.size()) / static_cast<double>(draws.size());
+  if (question.without(truth)) return simulated * (1 - chance_of_p(seen, limits::kChanceOfPossible, 1));
+  const auto ruled_out = std::count_if(seen.begin(), seen.end(), [](const Evidence& draw) { return draw.ruled_out; });
+  double chance = (1 - static_cast<double>(ruled_out) / static_cast<double>(seen.size())) *
+                  chance_of_p(seen, Limits{}.p_value, growth.of_cycles);
+  if (question.kind == QuestionKind::group) {
+    for (std::size_t rival = 0; rival < question.models.size(); ++rival) {
+      const double now = question.behind[rival] - question.behind[truth];
+      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, growth.of_runs));
+    }
+  }
+  return simulated * chance;
 }
 
 Answer diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
@@ -294,29 +289,6 @@ PredictedCurves::OfModel band_of(const std::vector<RunCurve>& draws, RunView vie
 
 }  // namespace
 
-namespace {
-
-/// What a tap shows, within what can be read off it.
-std::vector<Prediction> predict_tap(const OpenQuestion& question, double rate) {
-  const double edge = std::hypot(kReadingOfEdge, kPartOfSample / rate);
-  Prediction shift{"shift between the edges of the channels", "ms", 1e-3},
-      filter{"time of the edge of friction", "ms", 1e-3};
-  for (std::size_t m = 0; m < question.models.size(); ++m) {
-    const TapShows shows = tap_shows(question, m);
-    shift.models.push_back({shows.shift, shows.shift - 2 * edge, shows.shift + 2 * edge});
-    filter.models.push_back(
-        {shows.filter, shows.filter - 2 * kPartOfSample / rate, shows.filter + 2 * kPartOfSample / rate});
-    shift.apart = std::max(shift.apart, std::abs(shows.shift) / edge);
-    filter.apart = std::max(filter.apart, shows.filter * rate / kPartOfSample);
-  }
-  std::vector<Prediction> out;
-  if (shift.apart > 0) out.push_back(std::move(shift));
-  if (filter.apart > 0) out.push_back(std::move(filter));
-  return out;
-}
-
-}  // namespace
-
 std::vector<Prediction> predict_seen(const OpenQuestion& question, const Experiment& experiment,
                                      const PlanOptions& options) {
   std::vector<Prediction> out;
@@ -348,6 +320,27 @@ std::vector<Prediction> predict_seen(const OpenQuestion& question, const Experim
   return out;
 }
 
+namespace {
+
+/// Friction of the mean slip less that of the first model, over the parts of the slip: drawn as they are, the loops lie
+/// on one another. Bands are those of the records of a model about its own mean.
+PredictedCurves less_first(const PredictedCurves& loops, const std::string& first) {
+  PredictedCurves out{"part of the slip", "1", 1, "friction less that of " + first, {}};
+  const PredictedCurves::OfModel& own = loops.models.front();
+  for (const PredictedCurves::OfModel& model : loops.models) {
+    PredictedCurves::OfModel& less = out.models.emplace_back();
+    for (std::size_t k = 0; model.y.size() == own.y.size() && k < own.y.size(); ++k) {
+      less.x.push_back(static_cast<double>(k) / static_cast<double>(own.y.size() - 1));
+      less.y.push_back(model.y[k] - own.y[k]);
+      less.lower95.push_back(model.lower95[k] - own.y[k]);
+      less.upper95.push_back(model.upper95[k] - own.y[k]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const Experiment& experiment,
                                             const PlanOptions& options) {
   if (experiment.runs.empty()) return {};
@@ -373,6 +366,10 @@ std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const 
       curves.models.push_back(band_of(own, view));
     }
     out.push_back(std::move(curves));
+  }
+  if (out.back().models.front().y.size() > 1) {
+    const std::string& first = question.models.front().name;
+    out.push_back(less_first(out.back(), first.empty() ? "no effect more" : first));
   }
   return out;
 }

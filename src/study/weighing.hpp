@@ -8,16 +8,29 @@
 
 namespace tribofit {
 
-/// How likely an experiment is to settle a question if one of the models is the true one.
-struct Chance {
-  double named = 0;       ///< that the rule of evidence names the true answer, and it alone
-  bool simulated = true;  ///< false: no run of it could be simulated
+/// What the rule of evidence says of the records with a simulated run of one draw of the truth.
+struct Evidence {
+  bool simulated = true;   ///< false: no run of it could be simulated
+  double known = -1;       ///< chance of an experiment that is not simulated; below 0: it is
+  double p_value = 1;      ///< of the true effect; of the one that is possible, where that is asked about
+  bool ruled_out = false;  ///< it would not be named though its p-value is small enough: implausible, or too small
+  /// By how much the held-out squares of each rival are behind those of the truth, over the noise of a difference (see
+  /// Ruling); infinite for a rival that would not be named anyway, and for the truth itself.
+  std::vector<double> ahead = {};
+};
+/// truth: index of the model; draw: which one of its posterior.
+Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
+                    std::size_t truth, std::uint64_t draw, const PlanOptions& options);
+
+/// Runs that are longer than those that were simulated: what they add to a difference grows with them.
+struct Growth {
+  double of_runs = 1;    ///< their length over that of the simulated ones
+  double of_cycles = 1;  ///< cycles of all records, over those with the simulated ones
 };
 
-/// Chance of one draw of the truth from its posterior, by the expected difference of the models (see plan_runs()).
-/// truth: index of the model; draw: which one.
-Chance expected_chance(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
-                       std::size_t truth, std::uint64_t draw, const PlanOptions& options);
+/// Chance that the rule of evidence names the true answer, and it alone, from some draws of it (see plan_runs()).
+double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
+                      const Growth& growth = {});
 
 /// Chance that a value so many of its standard uncertainties from nothing is beyond three of them when it is measured.
 double chance_beyond(double sigmas);

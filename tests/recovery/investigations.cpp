@@ -241,6 +241,8 @@ Investigation investigate(const Case& c, const InvestigationOptions& options) {
         out.seconds = processor_seconds() - begin;
         out.open = leaves_open(c, plan);
         if (!out.open) return out;
+        for (const ModelInQuestion& m : plan.models)
+          out.answers.emplace_back(m.probability, m.name.substr(0, m.name.find(':')) == key_of(c));
         first = plan;
       }
       if (!plan.answered() || plan.experiments.empty() || plan.hopeless) {
@@ -281,6 +283,30 @@ std::string progress_table(const std::vector<const Investigation*>& open, std::s
   for (std::size_t k = 1; k <= most; ++k) {
     text += fmt::format("| {} | {} | {} |\n", k, k <= 3 ? share_of(within(&Investigation::planned, k), n) : "",
                         share_of(within(&Investigation::random, k), n));
+  }
+  return text;
+}
+
+/// How often answers that were called so likely before any further run were the truth.
+std::string answers_table(const std::vector<const Investigation*>& open) {
+  struct Fifth {
+    double n = 0, stated = 0, hits = 0;
+  };
+  std::array<Fifth, 5> fifths{};
+  for (const Investigation* one : open) {
+    for (const auto& [probability, is_truth] : one->answers) {
+      Fifth& fifth = fifths[std::min<std::size_t>(4, static_cast<std::size_t>(5 * probability))];
+      fifth.n += 1;
+      fifth.stated += probability;
+      fifth.hits += is_truth ? 1 : 0;
+    }
+  }
+  std::string text = "| answer called likely by | answers | mean stated | it was the truth |\n|---|---|---|---|\n";
+  for (std::size_t k = 0; k < fifths.size(); ++k) {
+    const Fifth& f = fifths[k];
+    if (f.n == 0) continue;
+    text += fmt::format("| {} to {} % | {} | {:.0f} % | {} |\n", 20 * k, 20 * (k + 1), static_cast<std::size_t>(f.n),
+                        100 * f.stated / f.n, share_of(f.hits, f.n));
   }
   return text;
 }
@@ -338,7 +364,7 @@ std::string investigations_tables(const std::vector<Investigation>& all) {
   text += progress_table(planned, 6);
   text += fmt::format("\nWrong names: {} of the diagnoses after planned runs, {} after random ones.\n\n",
                       share_of(wrong, runs), share_of(wrong_random, random_runs));
-  return text + calibration_table(planned);
+  return text + calibration_table(planned) + "\n" + answers_table(open);
 }
 
 }  // namespace recovery

@@ -5,6 +5,7 @@
 /// drawn at random from those that the plan could choose from.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hidden_effects.hpp"
@@ -25,9 +26,11 @@ struct FurtherRun {
 
 struct Investigation {
   Case tested;
-  std::string first;                ///< names after the first record
-  bool open = false;                ///< the truth was among those that the first record left open
-  bool hopeless = false;            ///< a plan said that nothing settles it
+  std::string first;      ///< names after the first record
+  bool open = false;      ///< the truth was among those that the first record left open
+  bool hopeless = false;  ///< a plan said that nothing settles it
+  std::vector<std::pair<double, bool>>
+      answers;                      ///< of the first plan: how likely each was, and whether it is the truth
   std::vector<FurtherRun> planned;  ///< until the truth is named alone, or three
   std::vector<FurtherRun> random;   ///< the same, or `most_random`
   double seconds = 0;               ///< of one processor, for the first plan

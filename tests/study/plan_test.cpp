@@ -37,20 +37,12 @@ TraceInput open_record(const std::string& effect, double value, double duration,
   return {trace->path, {}, trace};
 }
 
-struct Planned {
-  DiagnosedTraces diagnosed;
-  RunPlan plan;
-};
-
-Planned plan_of(const TraceInput& input, const Means& means, double effort = 0, int threads = 0) {
-  Planned out;
-  out.diagnosed = diagnose({input});
+RunPlan plan_of(const DiagnosedTraces& diagnosed, const Means& means, double effort = 0, int threads = 0) {
   PlanOptions options;
   options.means = means;
   options.effort = effort;
   options.threads = threads;
-  out.plan = plan_runs(out.diagnosed, options);
-  return out;
+  return plan_runs(diagnosed, options);
 }
 
 std::vector<std::string> names_of(const RunPlan& plan) {
@@ -60,14 +52,14 @@ std::vector<std::string> names_of(const RunPlan& plan) {
 }
 
 /// A lag that these few cycles do not distinguish from a delay or a filter of the reading.
-const TraceInput& open_lag() {
-  static const TraceInput input = open_record("frictional-lag", 0.5, 6, 4000, 0.006);
-  return input;
+const DiagnosedTraces& open_lag() {
+  static const DiagnosedTraces diagnosed = diagnose({open_record("frictional-lag", 0.5, 6, 4000, 0.006)});
+  return diagnosed;
 }
 
 TEST(Plan, ATapSettlesALagOrADelayThatNoSpeedDoes) {
-  const Means means{.speeds = {2 * kRpm, 8 * kRpm}, .rates = {50000}, .longest = 60, .tap = true};
-  const RunPlan plan = plan_of(open_lag(), means).plan;
+  const Means means{.rates = {50000}, .longest = 5, .tap = true};
+  const RunPlan plan = plan_of(open_lag(), means);
   ASSERT_TRUE(plan.answered()) << plan.reason;
   ASSERT_EQ(plan.kind, QuestionKind::group);
   EXPECT_THAT(names_of(plan), testing::Contains("frictional-lag"));
@@ -80,15 +72,15 @@ TEST(Plan, ATapSettlesALagOrADelayThatNoSpeedDoes) {
 }
 
 TEST(Plan, SpeedsAloneAreHopelessForALagOrADelay) {
-  const RunPlan plan = plan_of(open_lag(), {.speeds = {2 * kRpm}, .longest = 20}).plan;
+  const RunPlan plan = plan_of(open_lag(), {.speeds = {2 * kRpm}, .longest = 20});
   ASSERT_TRUE(plan.answered()) << plan.reason;
   EXPECT_TRUE(plan.hopeless);
   for (const PlannedExperiment& one : plan.experiments) EXPECT_LT(one.probability, kHopeless);
 }
 
 TEST(Plan, DoesNotDependOnThreads) {
-  const Means means{.speeds = {2 * kRpm}, .longest = 10};
-  const RunPlan one = plan_of(open_lag(), means, 0, 1).plan, two = plan_of(open_lag(), means, 0, 2).plan;
+  const Means means{.speeds = {8 * kRpm}, .longest = 5};
+  const RunPlan one = plan_of(open_lag(), means, 0, 1), two = plan_of(open_lag(), means, 0, 2);
   ASSERT_EQ(one.experiments.size(), two.experiments.size());
   for (std::size_t k = 0; k < one.experiments.size(); ++k) {
     EXPECT_EQ(one.experiments[k].experiment.runs, two.experiments[k].experiment.runs);
@@ -97,12 +89,13 @@ TEST(Plan, DoesNotDependOnThreads) {
 }
 
 TEST(Plan, NothingIsSettledWhereAnEffectIsFoundAlone) {
-  const Planned planned = plan_of(open_record("frictional-lag", 3, 6, 4000, 0.002), {});
-  ASSERT_EQ(planned.diagnosed.diagnosis.ladder.size(), 2U);
-  ASSERT_TRUE(planned.diagnosed.diagnosis.ladder.back().equivalent.empty());
-  EXPECT_EQ(planned.plan.kind, QuestionKind::nothing);
-  EXPECT_TRUE(planned.plan.answered());
-  EXPECT_TRUE(planned.plan.experiments.empty());
+  const DiagnosedTraces diagnosed = diagnose({open_record("frictional-lag", 3, 6, 4000, 0.002)});
+  ASSERT_EQ(diagnosed.diagnosis.ladder.size(), 2U);
+  ASSERT_TRUE(diagnosed.diagnosis.ladder.back().equivalent.empty());
+  const RunPlan plan = plan_of(diagnosed, {});
+  EXPECT_EQ(plan.kind, QuestionKind::nothing);
+  EXPECT_TRUE(plan.answered());
+  EXPECT_TRUE(plan.experiments.empty());
 }
 
 TEST(Plan, SaysWhyNothingCanBePlanned) {

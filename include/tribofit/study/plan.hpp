@@ -142,7 +142,7 @@ struct PlanOptions {
   std::vector<Law> laws = {};  ///< to start from, as the diagnosis did
   /// Called now and then with what is being done and the part done (0 to 1), from one thread at a time.
   std::function<void(std::string_view, double)> progress = {};
-  /// When no more records are diagnosed; what is known by then is reported.
+  /// When no more runs are simulated; what is known by then is reported.
   std::optional<std::chrono::steady_clock::time_point> until = {};
 };
 
@@ -156,9 +156,11 @@ inline constexpr double kHopeless = 0.2;
 /// the records. The simulated runs are judged together with the records by the rule of evidence of the diagnosis. For
 /// all experiments the expected difference of the held-out squares between the models (twice a log likelihood ratio,
 /// W. G. Hunter, A. M. Reiner, Technometrics 7 (1965) 307, doi:10.2307/1266591; G. E. P. Box, W. J. Hill, Technometrics
-/// 9 (1967) 57, doi:10.2307/1266318) gives the chance that the rule distinguishes them, by a normal approximation;
-/// for the best few, records are diagnosed in full, and what is named counts beside that chance as a beta prior.
-/// Experiments are ranked by probability less a cost for each minute.
+/// 9 (1967) 57, doi:10.2307/1266318) gives the chance that the rule distinguishes them, by a normal approximation: with
+/// the right one known, what a run adds to that difference has a variance of four times its mean, which grows with the
+/// run; each is made as long as is worth it. For the best few the mean is that of several draws, and records are
+/// diagnosed in full: what is named counts beside that chance as a beta prior. Experiments are ranked by probability
+/// less a cost for each minute.
 ///
 /// Only stick-slip on a rig that can be identified is simulated; `reason` says why where it cannot be.
 /// Cost: some 30 judgements of a few models each and a dozen diagnoses, 10 to 20 s of two processors for a record of
