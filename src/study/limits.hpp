@@ -88,8 +88,9 @@ inline constexpr std::size_t kFewestLevels = 10;
 
 // ---- the plan
 
-/// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer.
-inline constexpr double kSamplesOfSlip = 200;
+/// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer. Of runs that take
+/// more samples than this a part of them, as the diagnosis does where cycles are many.
+inline constexpr double kSamplesOfSlip = 200, kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
 
 /// By which the evidence between two models is weakened before it counts as odds, since none is exact: of 113 simulated
 /// records that leave a group open the mean logarithm of the probability of the truth is -0.70 with 1.4, -0.71 with 1

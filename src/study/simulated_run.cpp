@@ -115,7 +115,9 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   drive.speed = speed_of_run(run);
   SimulationOptions options;
   options.duration = run.duration;
-  options.rate = std::min(run.rate, record.simulated_rate);
+  const double enough =
+      std::clamp(kSimulatedSamples / run.duration, kLeastPartOfRate * record.simulated_rate, record.simulated_rate);
+  options.rate = std::min(run.rate, enough);
   options.scatter = record.scatter;
   options.seed = seed;
   if (!(run.reversing > 0)) options.settle = settling_time(machine.rig, drive, machine.parameters);
