@@ -91,11 +91,11 @@ double cycles_with(const DiagnosedTraces& diagnosed, const OpenQuestion& questio
   return cycles + frequency * experiment.duration();
 }
 
-/// What is known of the chances of an experiment from its draws. growth: see Growth.
-std::vector<double> chances_of(const OpenQuestion& question, const Weighed& one, const Growth& growth = {}) {
+/// What is known of the chances of an experiment from its draws. lengthening: see Lengthening.
+std::vector<double> chances_of(const OpenQuestion& question, const Weighed& one, const Lengthening& lengthening = {}) {
   std::vector<double> chances(question.models.size(), std::numeric_limits<double>::quiet_NaN());
   for (const std::size_t m : likely_models(question)) {
-    chances[m] = chance_to_name(question, m, one.draws[m], growth);
+    chances[m] = chance_to_name(question, m, one.draws[m], lengthening);
   }
   return chances;
 }

@@ -120,7 +120,7 @@ Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& questi
 }
 
 double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
-                      const Growth& growth) {
+                      const Lengthening& lengthening) {
   using namespace diagnosis;
   std::vector<Evidence> seen;
   for (const Evidence& draw : draws) {
@@ -132,11 +132,11 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
   if (question.without(truth)) return simulated * (1 - chance_of_p(seen, limits::kChanceOfPossible, 1));
   const auto ruled_out = std::count_if(seen.begin(), seen.end(), [](const Evidence& draw) { return draw.ruled_out; });
   double chance = (1 - static_cast<double>(ruled_out) / static_cast<double>(seen.size())) *
-                  chance_of_p(seen, Limits{}.p_value, growth.of_cycles);
+                  chance_of_p(seen, Limits{}.p_value, lengthening.of_cycles);
   if (question.kind == QuestionKind::group) {
     for (std::size_t rival = 0; rival < question.models.size(); ++rival) {
       const double now = question.behind[rival] - question.behind[truth];
-      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, growth.of_runs));
+      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, lengthening.of_runs));
     }
   }
   return simulated * chance;

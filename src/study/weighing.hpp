@@ -23,14 +23,14 @@ Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& questi
                     std::size_t truth, std::uint64_t draw, const PlanOptions& options);
 
 /// Runs that are longer than those that were simulated: what they add to a difference grows with them.
-struct Growth {
+struct Lengthening {
   double of_runs = 1;    ///< their length over that of the simulated ones
   double of_cycles = 1;  ///< cycles of all records, over those with the simulated ones
 };
 
 /// Chance that the rule of evidence names the true answer, and it alone, from some draws of it (see plan_runs()).
 double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
-                      const Growth& growth = {});
+                      const Lengthening& lengthening = {});
 
 /// Chance that a value so many of its standard uncertainties from nothing is beyond three of them when it is measured.
 double chance_beyond(double sigmas);

@@ -100,9 +100,9 @@ function conditionsChoice() {
   const { conditions } = workbench.world;
   if (conditions.steps) return make("p", {}, "The record has steps with conditions of their own, which the command line states.");
   const known = (value, unit) => (value === null || value === undefined ? "" : `${Number(value.toPrecision(6))} ${unit}`);
-  const of = { radius: known(conditions.radius_mm, "mm"), speed: known(conditions.speed_rpm, "rpm"), load: known(conditions.load_N, "N") };
+  const values = { radius: known(conditions.radius_mm, "mm"), speed: known(conditions.speed_rpm, "rpm"), load: known(conditions.load_N, "N") };
   // What the record itself says stands in grey: left empty, it is found there again.
-  const inputs = Object.entries(of).map(([name, value]) => {
+  const inputs = Object.entries(values).map(([name, value]) => {
     const stated = /command line|workbench/.test(conditions[`${name}_source`] || "");
     return [name, make("input", { type: "text", id: `condition-${name}`, size: "10", maxlength: "60", spellcheck: "false",
       value: stated ? value : "", placeholder: value || "not known" })];
