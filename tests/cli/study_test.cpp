@@ -104,8 +104,9 @@ TEST(StudyCommand, AMapThatWasKilledEndsTheSame) {
   const std::string whole = contents(shop / "whole/map.csv");
   EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 6401);
   bool was_cut = false;
-  for (const char* after : {"0.05", "0.2", "0.1", "0.3"}) {
-    shop.shell(std::string("timeout -s KILL ") + after + " '" TRIBOFIT_IDENTIFY "' " + map + " --csv cut");
+  for (const char* after : {"0", "0.1"}) {  // of the first rows
+    shop.shell("'" TRIBOFIT_IDENTIFY "' " + map + " --csv cut & id=$!; for i in $(seq 1000); do\n" +
+               "  [ ! -s cut/map.rows ] || break; sleep 0.02; done; sleep " + after + "; kill -KILL $id; wait $id");
     was_cut =
         was_cut || (std::filesystem::exists(shop / "cut/map.rows") && !std::filesystem::exists(shop / "cut/map.csv"));
   }
