@@ -16,12 +16,12 @@ const simulate = (radius, seed, out) => run("simulate", "--radius", radius, "--s
 for (const radius of ["9mm", "15mm"]) for (const seed of ["1", "2"]) simulate(radius, seed, `runs/r${radius}_${seed}.csv`);
 writeFileSync(join(folder, "table.csv"), "radius_mm,mu_s,mu_k\n9,0.521,0.388\n15,0.509,0.318\n");
 const trace = ["--radius", "15mm", "--load", "50N", "runs/r15mm_1.csv"];
-run("study", "speed", "--points", "12", "--quiet", "--report", "speed.html", ...trace);
+run("study", "speed", "--points", "8", "--quiet", "--report", "speed.html", ...trace);
 run("study", "phase", "--at", "4rpm,20mm/s,600mm/s", "--quiet", "--report", "phase.html", ...trace);
 run("study", "response", "--quiet", "--report", "response.html", ...trace);
-run("study", "sensitivity", "--points", "7", "--quiet", "--report", "sensitivity.html", ...trace);
-run("study", "map", "--quiet", "--report", "map.html", "--radius", "15mm", "--x", "stiffness=8N/mm..20N/mm:20", "--y",
-  "mass=0.5kg..1.5kg:15");
+run("study", "sensitivity", "--points", "5", "--quiet", "--report", "sensitivity.html", ...trace);
+run("study", "map", "--quiet", "--report", "map.html", "--radius", "15mm", "--x", "stiffness=8N/mm..20N/mm:10", "--y",
+  "mass=0.5kg..1.5kg:8");
 run("twin", "--quiet", "--report", "twin.html", ...trace);
 run("runs", "--pattern", "r{radius}_{repeat}.csv", "--load", "50N", "--speed", "4rpm", "--out", "results", "--quiet",
   "--compare", "table.csv", "--report", "campaign.html");
