@@ -11,7 +11,7 @@ const playwright = await import(pathToFileURL(driver));
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 const run = (...words) => execFileSync(identify, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
-run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "8s", "--rate", "5kHz", "--effect",
+run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "10s", "--rate", "5kHz", "--effect",
   "frictional-lag:tau=4ms", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "lag.csv");
 
 const servers = [];
