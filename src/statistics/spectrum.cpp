@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "fast_length.hpp"
 #include "golden_section.hpp"
 #include "limits.hpp"
 #include "reductions.hpp"
@@ -14,17 +15,6 @@
 
 namespace tribofit {
 namespace {
-
-// Next size with no prime factor above five, for which the transform is fast.
-std::size_t good_size(std::size_t n) {
-  for (;; ++n) {
-    std::size_t rest = n;
-    for (std::size_t p : {2u, 3u, 5u}) {
-      while (rest % p == 0) rest /= p;
-    }
-    if (rest == 1 && n % 2 == 0) return n;
-  }
-}
 
 // sin^2 window, periodic; by rotation instead of a cosine per sample.
 class Hann {
@@ -102,7 +92,7 @@ double block_transmission(double frequency, double block) {
 Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
   Spectrum spectrum;
   if (signal.size() < 4 || !(step > 0)) return spectrum;
-  const std::size_t size = good_size(signal.size());
+  const std::size_t size = fast_length(signal.size());
   const double mean = mean_of(signal);
   std::vector<double> padded(size, 0.0);
   Hann window(signal.size());
@@ -186,7 +176,7 @@ SpectralPeak fundamental(std::span<const double> signal, double step, std::size_
 }
 
 std::vector<double> products_at_every_lag(std::span<const double> x, std::span<const double> y) {
-  const std::size_t lags = x.size() + y.size() - 1, size = good_size(lags);
+  const std::size_t lags = x.size() + y.size() - 1, size = fast_length(lags);
   std::vector<double> first(size), second(size);
   std::copy(x.begin(), x.end(), first.begin());
   std::reverse_copy(y.begin(), y.end(), second.begin());

@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "fast_length.hpp"
 #include "golden_section.hpp"
 #include "limits.hpp"
 
@@ -76,10 +77,10 @@ SineFit sine_in(const std::vector<double>& d, double frequency) {
   return {{frequency, {a, b}}, a * xc + b * xs};
 }
 
-/// Squares of the spectrum at k/(2n), k = 0 ... n.
-std::vector<double> periodogram(const std::vector<double>& w) {
+/// Squares of the spectrum at k/bins, k = 0 ... bins/2.
+std::vector<double> periodogram(const std::vector<double>& w, std::size_t bins) {
   std::vector<double> padded(w);
-  padded.resize(2 * w.size(), 0.0);
+  padded.resize(bins, 0.0);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> spectrum;
@@ -94,7 +95,8 @@ std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
   constexpr std::size_t kLeak = 4;  // bins on either side that hold some of a line
   const std::size_t n = d.size();
   if (n < kFewestOfLine) return std::nullopt;
-  const std::vector<double> power = periodogram(prewhitened(d, first_autocorrelation(d)));
+  const std::size_t bins = fast_length(2 * n);  // half as wide as the record resolves, or a little less
+  const std::vector<double> power = periodogram(prewhitened(d, first_autocorrelation(d)), bins);
   std::size_t peak = 0;
   double least = kChanceOfPeriod / static_cast<double>(n);
   for (std::size_t k = kSlowestBinOfLine; k + 1 < power.size(); ++k) {
@@ -107,16 +109,15 @@ std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
       sum += power[i];
       count += 1;
     }
-    const double independent = count / 2;  // bins are half as wide as the record resolves
+    const double independent = count * static_cast<double>(n) / static_cast<double>(bins);
     if (!(independent >= 4)) continue;
     const double chance = sum > 0 ? std::pow(1 + 2 * power[k] / sum, -independent) : 0;
     if (power[k] > 0 && chance < least) peak = k, least = chance;
   }
   if (peak == 0) return std::nullopt;
-  const auto bins = 2 * static_cast<double>(n);
   const auto left = [&](double frequency) { return -sine_in(d, frequency).squares; };
-  const double at = static_cast<double>(peak);
-  return sine_in(d, golden_section(left, (at - 1) / bins, std::min(0.5 - 1 / bins, (at + 1) / bins), 24).at).line;
+  const double at = static_cast<double>(peak), width = 1 / static_cast<double>(bins);
+  return sine_in(d, golden_section(left, (at - 1) * width, std::min(0.5 - width, (at + 1) * width), 24).at).line;
 }
 
 void take_out(const SeriesLine& line, std::vector<double>& d) {
