@@ -62,7 +62,8 @@ std::string bound_reached(const CandidateResult& judged, const Candidate& candid
 std::string why_not(const CandidateResult& judged, const Candidate& candidate, const Observations& observations) {
   const double value = judged.trial.p[judged.trial.model.offset_of(candidate.info.key)];
   if (candidate.allowed && !candidate.allowed->holds(value)) {
-    return "it would need a value outside the uncertainty in the instruments file";
+    return candidate.allowed->is_uncertainty ? "it would need a value outside the uncertainty in the instruments file"
+                                             : "it would need a value below what the instruments file states";
   }
   if (!judged.plausible) {
     const std::string bound = bound_reached(judged, candidate, observations);

@@ -29,7 +29,7 @@ std::optional<Declared> declared_value(const Instruments& instruments, Instrumen
     case InstrumentValue::force_mass_below:
       return sensor.mass_below;
     case InstrumentValue::force_bandwidth:
-      return sensor.bandwidth;
+      return sensor.bandwidth ? sensor.bandwidth : sensor.bandwidth_at_least;
     case InstrumentValue::vibrometer_delay:
       return instruments.vibrometer.delay;
   }
@@ -43,7 +43,8 @@ std::optional<AllowedRange> allowed_beside_declared(const Instruments& instrumen
   const std::optional<Declared> declared = declared_value(instruments, value, kind, load);
   if (!declared) return std::nullopt;
   if (value == InstrumentValue::force_bandwidth) {
-    return AllowedRange{declared->value - limits::kDeclaredSigmas * declared->uncertainty, HUGE_VAL};
+    return AllowedRange{declared->value - limits::kDeclaredSigmas * declared->uncertainty, HUGE_VAL,
+                        instruments.force_sensor.bandwidth.has_value()};
   }
   return AllowedRange{-limits::kDeclaredSigmas * declared->uncertainty,
                       limits::kDeclaredSigmas * declared->uncertainty};

@@ -11,12 +11,13 @@ namespace tribofit::diagnosis {
 /// Values of the first parameter of an effect that are still possible [SI; of friction: 1 or N].
 struct AllowedRange {
   double lower = 0, upper = 0;
+  bool is_uncertainty = true;  ///< of a value that was declared and corrected: what lies within needs no other name
   bool holds(double value) const { return value >= lower && value <= upper; }
 };
 
 /// What is possible beside what the instruments file declares, within three of the standard uncertainties declared;
 /// nothing where the file does not say. What was declared has been corrected: no more than its uncertainty is left. A
-/// filter is not slower than the declared bandwidth.
+/// filter is not slower than the declared bandwidth, nor than one that is known to be at least so.
 /// value: that is about the effect; kind, load: of the record; a zero in N is taken over the load.
 std::optional<AllowedRange> allowed_beside_declared(const Instruments& instruments, InstrumentValue value,
                                                     FrictionKind kind, const Condition& load);

@@ -145,63 +145,6 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   return out;
 }
 
-bool are_distinguishable(const DiagnosisContext& context, const CandidateResult& better, const CandidateResult& worse) {
-  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
-  return difference > limits::kDistinguishable * noise_of(context.fine, better.trial) * better.design_effect &&
-         difference > limits::kDistinguishableSize * context.noise_squares();
-}
-
-namespace {
-
-/// Of the forms of one effect one has the name: the plain one, unless the data tell another from it.
-void keep_one_form(const DiagnosisContext& context, const std::vector<Candidate>& candidates,
-                   std::vector<CandidateResult>& judged) {
-  for (CandidateResult& form : judged) {
-    const EffectInfo& info = candidates[form.candidate].info;
-    if (info.option.empty() || !form.passes) continue;
-    const auto plain = std::find_if(judged.begin(), judged.end(), [&](const CandidateResult& other) {
-      const EffectInfo& known = candidates[other.candidate].info;
-      return known.key == info.key && known.option.empty();
-    });
-    if (plain == judged.end() || !plain->passes) continue;
-    (are_distinguishable(context, form, *plain) ? *plain : form).passes = false;
-  }
-}
-
-}  // namespace
-
-Choice choose(const DiagnosisContext& context, std::vector<CandidateResult>& judged,
-              const std::vector<Candidate>& candidates) {
-  keep_one_form(context, candidates, judged);
-  Choice choice;
-  std::optional<std::size_t> best;
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes) continue;
-    if (!best || judged[k].trial.held_out_squares < judged[*best].trial.held_out_squares) best = k;
-  }
-  if (!best) return choice;
-  choice.leader = best;
-  // The simplest of those that do as well leads.
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes || are_distinguishable(context, judged[*best], judged[k])) continue;
-    const std::size_t now = judged[*choice.leader].trial.p.size(), other = judged[k].trial.p.size();
-    const bool lower = judged[k].trial.held_out_squares < judged[*choice.leader].trial.held_out_squares;
-    if (other < now || (other == now && lower)) choice.leader = k;
-  }
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (k == *choice.leader || !judged[k].passes || are_distinguishable(context, judged[*best], judged[k])) continue;
-    choice.group.push_back(judged[k].candidate);
-  }
-  // What the declared uncertainty of an instrument leaves room for is no reason to name anything else.
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!judged[k].passes || !candidates[judged[k].candidate].allowed) continue;
-    if (are_distinguishable(context, judged[*best], judged[k])) continue;
-    choice.leader = k;
-    choice.group.clear();
-  }
-  return choice;
-}
-
 namespace {
 
 /// Every testable candidate beside the top of a ladder, judged first at low resolution and then, those that may lead

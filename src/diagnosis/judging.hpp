@@ -32,6 +32,10 @@ struct CandidateResult {
 struct Choice {
   std::optional<std::size_t> leader;  ///< index in `judged`
   std::vector<std::size_t> group;     ///< candidates
+  /// Held-out squares of each above the best, over the noise of a difference; infinite where it does not pass.
+  std::vector<double> behind = {};
+  /// What the least size of a difference is in the same unit: it grows with the record, as differences do.
+  double least_by_size = 0;
 };
 
 /// How much better `richer` is than `poorer`, from which it differs by one effect. tests: the p-value is corrected for

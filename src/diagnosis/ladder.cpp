@@ -74,7 +74,8 @@ bool extend_by_pair(const DiagnosisContext& context, Ladder& ladder, const Candi
   if (choice.leader) {
     const CandidateResult& shown = ladder.last[*choice.leader];
     if (shown.candidate == second.candidate) group = choice.group;
-    if (shown.trial.held_out_squares <= second.trial.held_out_squares) {
+    const bool is_rival = std::find(choice.group.begin(), choice.group.end(), second.candidate) != choice.group.end();
+    if (is_rival || shown.trial.held_out_squares <= second.trial.held_out_squares) {
       second = shown;
       group = choice.group;
     }

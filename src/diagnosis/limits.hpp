@@ -18,7 +18,13 @@ namespace limits {
 inline constexpr std::size_t kFewestCycles = 12;  ///< two blocks of five and some to spare: fewer leave nothing to test
 inline constexpr std::size_t kFineValues = 20000;  ///< in all slips: more do not move a verdict, and cost time
 inline constexpr std::size_t kFewestFine = 80,
-                             kMostFine = 400;       ///< a slip; a ring needs 80, the noise no more than 400
+                             kMostFine = 400;  ///< a slip; a ring needs 80, the noise no more than 400
+/// Values in all slips for those effects that come near each other, and the part of the fall of the best from which
+/// they do: over means of half a millisecond a filter does better than the lag of 0.15 ms that made the record (80 s),
+/// over single samples the lag is clearly ahead.
+inline constexpr std::size_t kFinestValues = 400000;
+inline constexpr double kContenderPart = 0.9;
+inline constexpr double kLeastFiner = 1.5;          ///< so many times as many values: fewer show nothing new
 inline constexpr std::size_t kCoarseValues = 5000;  ///< enough to see which candidate is hopeless
 inline constexpr std::size_t kFewestCoarse = 16, kMostCoarse = 40;  ///< a slip; 16 still show both of its branches
 

@@ -69,6 +69,10 @@ std::size_t fine_values(std::size_t cycles) {
   return std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine);
 }
 
+std::size_t finest_values(std::size_t cycles) {
+  return std::clamp(limits::kFinestValues / cycles, fine_values(cycles), limits::kMostFine);
+}
+
 std::size_t coarse_values(std::span<const Record> records, std::size_t cycles) {
   const bool filtered = std::any_of(records.begin(), records.end(),
                                     [](const Record& record) { return record.motion->friction_low_pass.any(); });

@@ -25,6 +25,9 @@ Floor floor_of(std::span<const Record> records);
 /// Values of a slip in which candidates are fitted.
 std::size_t fine_values(std::size_t cycles);
 
+/// And in which those that come near each other are compared.
+std::size_t finest_values(std::size_t cycles);
+
 /// And in which they are screened. A filter is not seen in means over more than its time.
 std::size_t coarse_values(std::span<const Record> records, std::size_t cycles);
 

@@ -71,8 +71,11 @@ Ruling rule_between(std::span<const Record> records, const Law& law, const std::
     const CandidateResult& unit_of = best != nullptr ? *best : judged[t];
     const double unit = noise_of(context.fine, unit_of.trial) * unit_of.design_effect;
     effect.fall = judged[t].fall / unit;
-    if (best != nullptr) effect.behind = (judged[t].trial.held_out_squares - best->trial.held_out_squares) / unit;
+    if (best == nullptr) continue;
+    effect.behind =
+        judged[t].passes ? choice.behind[t] : (judged[t].trial.held_out_squares - best->trial.held_out_squares) / unit;
   }
+  out.least_by_size = choice.least_by_size;
   if (choice.leader) out.leader = asked[*choice.leader];
   for (const std::size_t candidate : choice.group) {
     for (std::size_t t = 0; t < judged.size(); ++t) {

@@ -17,12 +17,13 @@ struct Ruling {
     std::string spelled;
     bool passes = false;  ///< it would be named if it were alone
     double p_value = 1;   ///< corrected for the whole catalogue
-    double fall = 0;      ///< of the held-out squares, in the unit of `behind`
+    double fall = 0;      ///< of the held-out squares, over the noise of a difference
     /// Held-out squares more than the best of those that pass, over the noise of a difference. Two models are
-    /// distinguishable from limits::kDistinguishable on; with the right one known it is normal with the variance four
-    /// times its mean.
+    /// distinguishable from limits::kDistinguishable and `least_by_size` on; with the right one known it is normal with
+    /// the variance four times its mean.
     double behind = 0;
   };
+  double least_by_size = 0;           ///< in the same unit, for these records: longer ones ask for more in proportion
   std::vector<OfEffect> effects;      ///< as asked; those that cannot act on the model, or that these data cannot show,
                                       ///< pass never
   std::optional<std::size_t> leader;  ///< of those

@@ -132,24 +132,6 @@ void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
 
 }  // namespace
 
-Level::Level(const Observations& given)
-    : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
-
-DiagnosisContext::DiagnosisContext(std::span<const Record> given, const Observations& finely,
-                                   const Observations& coarsely, double sensor_noise, double break_away_scatter)
-    : records(given),
-      fine(finely),
-      coarse(coarsely),
-      blocks(finely),
-      noise(sensor_noise),
-      scatter(break_away_scatter) {}
-
-double DiagnosisContext::floor_squares(const ModelResiduals::Whitening& whitening) const {
-  double sensitivity = 0;
-  for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
-  return noise_squares() + scatter * scatter * sensitivity;
-}
-
 double noise_of(const Level& level, const Trial& trial) {
   return (trial.squares - trial.stick.left + trial.stick.rigid) / level.values;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,6 +64,10 @@ struct DiagnosisContext {
 
   int threads = 1;  ///< over candidates
 
+  /// More values a slip than `fine`, for models that come near each other; made when it is first asked for. nullptr
+  /// where there are no more.
+  const Level* finest() const;
+
   DiagnosisContext(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
                    double sensor_noise, double break_away_scatter);
   /// For each of so many tasks that are done side by side.
@@ -71,6 +76,10 @@ struct DiagnosisContext {
   double noise_squares() const { return fine.samples * noise * noise; }
   /// Squares that noise and scatter leave together, in slips whose friction follows break-away as the whitening says.
   double floor_squares(const ModelResiduals::Whitening& whitening) const;
+
+ private:
+  struct Finest;
+  std::shared_ptr<Finest> finest_;
 };
 
 /// Variance of a row of friction beside the model of a trial.

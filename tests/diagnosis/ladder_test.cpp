@@ -154,8 +154,10 @@ TEST(Choose, AFormOfAnEffectHasTheNameOnlyWhereTheDataDistinguishIt) {
 TEST(Choose, WhatADeclaredInstrumentLeavesRoomForNeedsNoOtherName) {
   const Made made;
   std::vector<Candidate> all = candidates_of({"frictional-lag", "channel-delay"});
-  all[1].allowed = AllowedRange{-1e-3, 1e-3};
+  all[1].allowed = AllowedRange{-1e-3, 1e-3, false};  // a bound is no reason for a name
   std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + 0.5 * apart(made), 4)};
+  EXPECT_EQ(choose(made.context, judged, all).leader, 0u);
+  all[1].allowed->is_uncertainty = true;
   Choice choice = choose(made.context, judged, all);
   EXPECT_EQ(choice.leader, 1u);
   EXPECT_THAT(choice.group, IsEmpty());

@@ -1,0 +1,50 @@
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "limits.hpp"
+#include "record_evidence.hpp"
+#include "trial.hpp"
+
+namespace tribofit::diagnosis {
+
+Level::Level(const Observations& given)
+    : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
+
+struct DiagnosisContext::Finest {
+  std::once_flag made;
+  std::optional<Observations> observations;
+  std::optional<Level> level;
+};
+
+DiagnosisContext::DiagnosisContext(std::span<const Record> given, const Observations& finely,
+                                   const Observations& coarsely, double sensor_noise, double break_away_scatter)
+    : records(given),
+      fine(finely),
+      coarse(coarsely),
+      blocks(finely),
+      noise(sensor_noise),
+      scatter(break_away_scatter),
+      finest_(std::make_shared<Finest>()) {}
+
+const Level* DiagnosisContext::finest() const {
+  std::call_once(finest_->made, [&] {
+    const std::size_t cycles = count_cycles(records), most = finest_values(cycles);
+    const auto is_finer = [](std::size_t more, std::size_t fewer) {
+      return static_cast<double>(more) >= limits::kLeastFiner * static_cast<double>(fewer);
+    };
+    if (!is_finer(most, fine_values(cycles))) return;
+    finest_->observations = observe_all(records, all_channels(records), most, noise);
+    if (is_finer(finest_->observations->size(), fine.observations.size()))
+      finest_->level.emplace(*finest_->observations);
+  });
+  return finest_->level ? &*finest_->level : nullptr;
+}
+
+double DiagnosisContext::floor_squares(const ModelResiduals::Whitening& whitening) const {
+  double sensitivity = 0;
+  for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
+  return noise_squares() + scatter * scatter * sensitivity;
+}
+
+}  // namespace tribofit::diagnosis
