@@ -76,6 +76,7 @@ class InstrumentsReader {
   void read_force_sensor(const Json& json, Instruments::ForceSensor& f) const {
     section(json, "force_sensor",
             {{"bandwidth", positive(f.bandwidth, Quantity::frequency)},
+             {"bandwidth_at_least", positive(f.bandwidth_at_least, Quantity::frequency)},
              {"zero", [&](const Json& value, const std::string& key) { f.zero = zero(value, key, f.zero_is_force); }},
              {kCrosstalkKey, any(f.crosstalk, Quantity::dimensionless)},
              {"mass_below", not_negative(f.mass_below, Quantity::mass)},
@@ -84,6 +85,8 @@ class InstrumentsReader {
                 if (!value.is_boolean()) fail(key, "must be true or false", "say whether mu is Ft/Fn measured");
                 f.load_measured = value.get<bool>();
               }}});
+    if (f.bandwidth && f.bandwidth_at_least)
+      fail("force_sensor.bandwidth_at_least", "is given together with force_sensor.bandwidth", "keep one of the two");
   }
 
   void read_rig(const Json& json, Instruments::Rig& r) const {

@@ -55,6 +55,16 @@ TEST(Declared, AFilterIsNotSlowerThanDeclared) {
   EXPECT_TRUE(allowed->holds(2000));
 }
 
+TEST(Declared, NoFilterIsBelowABandwidthThatIsKnownToBeAtLeastSo) {
+  Instruments lab;
+  lab.force_sensor.bandwidth_at_least = {1000, 0};
+  const auto allowed = allowed_beside_declared(lab, declared_by("force-bandwidth"), FrictionKind::coefficient, {});
+  ASSERT_TRUE(allowed);
+  EXPECT_FALSE(allowed->is_uncertainty) << "nothing was corrected";
+  EXPECT_FALSE(allowed->holds(990));
+  EXPECT_TRUE(allowed->holds(20000));
+}
+
 TEST(Declared, AKnownGainLeavesTheRadiusAndAKnownRadiusTheGain) {
   Conditions used;
   used.radius = {0.015, "command line"};

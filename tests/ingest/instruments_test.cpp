@@ -64,6 +64,8 @@ TEST_F(InstrumentsFile, MistakesAreNamed) {
   expect_refused(R"({"rig": {"radius": true}})", "must be a value with a unit", "15mm");
   expect_refused(R"({"vibrometer": {"sign": 2}})", "must be 1 or -1", "-1");
   expect_refused(R"({"force_sensor": {"load_measured": "yes"}})", "must be true or false", "Ft/Fn");
+  expect_refused(R"({"force_sensor": {"bandwidth": "1 kHz", "bandwidth_at_least": "5 kHz"}})",
+                 "bandwidth_at_least: is given together with force_sensor.bandwidth", "keep one");
   expect_refused("[1, 2]", "must be an object", "instruments");
   EXPECT_THROW(read_instruments(path("absent.json")), InputError);
 }

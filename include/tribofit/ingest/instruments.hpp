@@ -26,7 +26,9 @@ struct Instruments {
     int sign = +1;                      ///< -1: the vibrometer points the other way
   } vibrometer;
   struct ForceSensor {
-    std::optional<Declared> bandwidth;   ///< second-order corner [Hz]
+    std::optional<Declared> bandwidth;  ///< second-order corner [Hz]
+    /// A corner that the sensor's is not below [Hz], as a tap shows it: nothing is corrected, lower ones are ruled out.
+    std::optional<Declared> bandwidth_at_least;
     std::optional<Declared> zero;        ///< reading at no force: of mu [1], or of Ft [N] (see zero_is_force)
     bool zero_is_force = false;          ///< the zero was declared in N
     std::optional<Declared> crosstalk;   ///< part of Fn that shows in Ft [1]

@@ -14,9 +14,8 @@ struct ForceBandwidth {
   /// Distinguishes a filter from a lag and from a memory of the contact.
   static constexpr std::string_view tap_the_block =
       "tap the resting block: without sliding only a filter makes the edge slower; where the edge is sharp, give what "
-      "it "
-      "allows as force_sensor.bandwidth of the instruments file; where it is not, record with a spring four times as "
-      "stiff too: slips take half as long, and a lag, a memory and a filter then part";
+      "it allows as force_sensor.bandwidth_at_least of the instruments file; where it is not, record with a spring "
+      "four times as stiff too: slips take half as long, and a lag, a memory and a filter then part";
 
   static EffectInfo info() {
     return {
