@@ -9,6 +9,7 @@
 #include "diagnosis_sentences.hpp"
 #include "numbers.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
+#include "tribofit/friction/effects/force_bandwidth.hpp"
 
 namespace tribofit {
 namespace {
@@ -167,6 +168,10 @@ std::vector<std::string> plan_notes(const RunPlan& plan) {
         "longer record. --speeds, --radii, --loads, --springs, --pauses, --reversing, --tap and --rates say what can "
         "be done.");
   }
+  if (!plan.experiments.empty() && plan.experiments.front().experiment.tap > 0) {
+    notes.push_back(
+        fmt::format("A slower edge of the tap is the filter itself: fit it with --effect {}.", ForceBandwidth::key));
+  }
   if (!plan.not_asked.empty()) {
     notes.push_back("Not asked, because these records cannot show them: " + enumerated(plan.not_asked) + ".");
   }
@@ -187,7 +192,10 @@ Suggestion next_after_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan
     return {"once the gain that it shows stands in lab.json (vibrometer.gain)", with_lab()};
   }
   if (best.experiment.tap > 0) {
-    return {"once what the tap shows stands in lab.json (vibrometer.delay, force_sensor.bandwidth)", with_lab()};
+    return {
+        "once the shift that the tap shows stands in lab.json (vibrometer.delay), and what a sharp edge allows "
+        "(force_sensor.bandwidth_at_least)",
+        with_lab()};
   }
   std::vector<std::string> files;
   bool same_place = true, repeats = false;

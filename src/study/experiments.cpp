@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 
@@ -12,6 +13,14 @@ namespace {
 
 bool is_same(double a, double b) {
   return std::abs(a - b) <= kSameCondition * std::max(std::abs(a), std::abs(b));
+}
+
+/// As a machine is set to it: two digits in rpm.
+double settable(double speed) {
+  const double rpm = std::abs(speed) / kRpm;
+  if (!(rpm > 0)) return speed;
+  const double step = std::pow(10, std::floor(std::log10(rpm)) - 1);
+  return std::copysign(std::round(rpm / step) * step * kRpm, speed);
 }
 
 /// What shows over the disc's angle or goes on over time takes a record of several revolutions.
@@ -165,7 +174,7 @@ RunConditions conditions_of_record(const OpenQuestion& question, const Identific
 Means usual_means(const Identification& trace, double longest) {
   Means means;
   means.longest = longest;
-  for (const double part : kUsualSpeeds) means.speeds.push_back(part * trace.motion.conditions.speed.value);
+  for (const double part : kUsualSpeeds) means.speeds.push_back(settable(part * trace.motion.conditions.speed.value));
   return means;
 }
 

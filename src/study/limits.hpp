@@ -88,9 +88,9 @@ inline constexpr std::size_t kFewestLevels = 10;
 
 // ---- the plan
 
-/// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer. Of runs that take
-/// more samples than this a part of them, as the diagnosis does where cycles are many.
-inline constexpr double kSamplesOfSlip = 200, kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
+/// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer, and compares
+/// effects that come near each other over as many. Of runs that take more samples than this a part of them.
+inline constexpr double kSamplesOfSlip = 400, kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
 
 /// By which the evidence between two models is weakened before it counts as odds, since none is exact: of 113 simulated
 /// records that leave a group open the mean logarithm of the probability of the truth is -0.70 with 1.4, -0.71 with 1
@@ -130,14 +130,19 @@ inline constexpr double kDrawsOfTheory = 4;
 inline constexpr double kLongerRuns[] = {1.5, 2, 3, 4, 6, 8, 12};
 inline constexpr double kMostSimulatedCycles = 400;
 
-/// Experiments and draws that are diagnosed in full, and the weight of the expected chance beside them, in diagnoses.
-/// Small: the expected chance knows the models in question alone, a diagnosis the whole catalogue. Of a run at 8 rpm
-/// that should distinguish a lag from a filter with 1.0, none of four diagnoses named the lag alone.
-inline constexpr std::size_t kExperimentsInFull = 2, kMostDrawsInFull = 4;
+/// Experiments that are diagnosed in full, the most of them where the best of all is none of these yet, draws of each
+/// model, and the weight of the expected chance beside them, in diagnoses. Small: the expected chance knows the models
+/// in question alone, a diagnosis the whole catalogue. Of a run at 8 rpm that should distinguish a lag from a filter
+/// with 1.0, none of four diagnoses named the lag alone.
+inline constexpr std::size_t kExperimentsInFull = 2, kMostExperimentsInFull = 4, kMostDrawsInFull = 4;
 inline constexpr double kWeightOfExpected = 1;
 
-/// Cycles, old and new, that are diagnosed in full in all; a core diagnoses some hundred a second.
-inline constexpr double kMostDiagnosedCycles = 1500;
+/// Cycles, old and new, that are diagnosed in full for an experiment; a core diagnoses some hundred a second.
+inline constexpr double kMostDiagnosedCycles = 750;
+
+/// Uncertainties of what a hand reads off a tap: where edges of two channels lie [s], beside a part of a sample, and
+/// how slow an edge is, in parts of its time. Smaller: a tap is thought to distinguish what nobody reads off it.
+inline constexpr double kReadingOfEdge = 0.02e-3, kPartOfSample = 0.3, kReadingOfSlope = 0.25;
 
 /// Draws of each model for the ranges of what is seen, and experiments of which that is said.
 inline constexpr std::size_t kDrawsToSee = 6, kExperimentsToSee = 4;

@@ -58,6 +58,8 @@ struct Weighed {
   PlannedExperiment planned;
   std::vector<std::vector<Evidence>> draws = {};  ///< of each model
   bool drawn_again = false;                       ///< these are all of them, and not the first one
+  bool looked_at = false;                         ///< in full, or that takes too long
+  std::vector<double> expected_of = {};           ///< of each model, by the draws alone
 };
 
 double worth(const PlannedExperiment& one) {
@@ -168,66 +170,94 @@ void draw_best_again(const DiagnosedTraces& diagnosed, const OpenQuestion& quest
     std::size_t next = 0;
     while (next < all.size() && all[next].drawn_again) ++next;
     if (next == all.size() || next >= kExperimentsInFull || is_late(options)) return;
-    expect(
-        diagnosed, question, options, {next}, {1, 1 + kDrawsOfModel},
-        [&](double part) {
-          progress.say("weighing the best again",
-                       0.4 + 0.2 * (static_cast<double>(round) + part) / static_cast<double>(kExperimentsDrawnAgain));
-        },
-        all);
+    const auto say = [&](double part) {
+      progress.say("weighing the best again",
+                   0.4 + 0.2 * (static_cast<double>(round) + part) / static_cast<double>(kExperimentsDrawnAgain));
+    };
+    expect(diagnosed, question, options, {next}, {1, 1 + kDrawsOfModel}, say, all);
   }
 }
 
-/// Diagnoses simulated records of the best experiments in full.
-void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
-                   PlanProgress& progress, std::vector<Weighed>& all) {
+/// An experiment of which a full diagnosis of simulated records says more than its draws.
+bool is_only_expected(const Weighed& one) {
+  return !one.planned.experiment.runs.empty() && one.planned.reason.empty() && one.planned.simulated == 0;
+}
+
+/// Full diagnoses beside what was expected of them.
+struct Verified {
+  double named = 0, expected = 0;
+  /// Of the expected chances of other experiments: they know the models in question alone, not the whole catalogue.
+  double part() const { return std::min(1.0, (kWeightOfExpected + named) / (kWeightOfExpected + expected)); }
+};
+
+/// Lowers the chances of those that were not diagnosed in full by what full diagnoses made of the others.
+void lower_expected(const OpenQuestion& question, const Verified& verified, std::vector<Weighed>& all) {
+  for (Weighed& one : all) {
+    if (!is_only_expected(one)) continue;
+    for (std::size_t m = 0; m < one.expected_of.size(); ++m)
+      one.planned.of_models[m] = verified.part() * one.expected_of[m];
+    one.planned.probability = over_models(question, one.planned.of_models);
+  }
+}
+
+/// Diagnoses simulated records of an experiment in full: what is named counts beside the expected chance.
+void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
+                      bool at_least_one, const std::function<void(double)>& say, Weighed& weighed, Verified& verified) {
   struct Task {
-    std::size_t experiment, model;
+    std::size_t model;
     std::uint64_t draw;
-    Answer answer = Answer::open;
-    bool done = false;
+    std::optional<Answer> answer = {};
   };
-  std::vector<Task> tasks;
+  PlannedExperiment& one = weighed.planned;
   const std::vector<std::size_t> likely = likely_models(question);
-  std::size_t chosen = 0;
-  for (std::size_t e = 0; e < all.size() && chosen < kExperimentsInFull; ++e) {
-    const PlannedExperiment& one = all[e].planned;
-    if (one.experiment.runs.empty() || !one.reason.empty() || one.expected < 0.5 * kHopeless) continue;
-    ++chosen;
-    const double records = kMostDiagnosedCycles / static_cast<double>(kExperimentsInFull) /
-                           cycles_with(diagnosed, question, one.experiment);
-    const auto draws = static_cast<std::size_t>(options.effort * records / static_cast<double>(likely.size()));
-    const std::size_t least = chosen == 1 && options.effort > 0 ? 1 : 0;  // the first is always looked at in full
-    for (std::size_t draw = 0; draw < std::clamp(draws, least, kMostDrawsInFull); ++draw) {
-      for (const std::size_t m : likely) tasks.push_back({e, m, 500 + draw});
-    }
+  const double records = kMostDiagnosedCycles / cycles_with(diagnosed, question, one.experiment);
+  const auto worth_it = static_cast<std::size_t>(options.effort * records / static_cast<double>(likely.size()));
+  const std::size_t least = at_least_one ? 1U : 0U, draws = std::clamp(worth_it, least, kMostDrawsInFull);
+  std::vector<Task> tasks;
+  for (std::size_t draw = 0; draw < draws; ++draw) {
+    for (const std::size_t m : likely) tasks.push_back({m, 500 + draw});
   }
   std::atomic<std::size_t> done{0};
   run_tasks(tasks.size(), options.threads, [&](std::size_t t) {
-    Task& task = tasks[t];
     if (is_late(options)) return;
-    task.answer = diagnose_simulated(diagnosed, question, all[task.experiment].planned.experiment, task.model,
-                                     task.draw, options);
-    task.done = true;
-    progress.say("diagnosing simulated records",
-                 0.6 + 0.3 * static_cast<double>(++done) / static_cast<double>(tasks.size()));
+    tasks[t].answer = diagnose_simulated(diagnosed, question, one.experiment, tasks[t].model, tasks[t].draw, options);
+    say(static_cast<double>(++done) / static_cast<double>(tasks.size()));
   });
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    PlannedExperiment& one = all[e].planned;
-    for (const std::size_t m : likely) {
-      double named = 0, count = 0;
-      for (const Task& task : tasks) {
-        if (task.experiment != e || task.model != m || !task.done) continue;
-        named += task.answer == Answer::named ? 1 : 0;
-        count += 1;
-        one.wrong += task.answer == Answer::wrong ? 1 : 0;
-      }
-      one.simulated += static_cast<std::size_t>(count);
-      one.named += static_cast<std::size_t>(named);
-      double& chance = one.of_models[m];
-      chance = (kWeightOfExpected * chance + named) / (kWeightOfExpected + count);
+  weighed.looked_at = true;
+  for (const std::size_t m : likely) {
+    double named = 0, count = 0;
+    for (const Task& task : tasks) {
+      if (task.model != m || !task.answer) continue;
+      named += *task.answer == Answer::named ? 1 : 0;
+      count += 1;
+      one.wrong += *task.answer == Answer::wrong ? 1U : 0U;
     }
-    one.probability = over_models(question, one.of_models);
+    one.simulated += static_cast<std::size_t>(count);
+    one.named += static_cast<std::size_t>(named);
+    verified.named += named, verified.expected += count * weighed.expected_of[m];
+    one.of_models[m] = (kWeightOfExpected * weighed.expected_of[m] + named) / (kWeightOfExpected + count);
+  }
+  one.probability = over_models(question, one.of_models);
+}
+
+/// Diagnoses the best experiments in full, until the best of all is one of them.
+void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
+                   PlanProgress& progress, std::vector<Weighed>& all) {
+  for (Weighed& one : all) one.expected_of = one.planned.of_models;
+  Verified verified;
+  for (std::size_t round = 0; round < kMostExperimentsInFull && !is_late(options); ++round) {
+    rank(all);
+    const auto next = std::find_if(all.begin(), all.end(), [](const Weighed& one) {
+      return is_only_expected(one) && !one.looked_at && one.planned.expected >= 0.5 * kHopeless;
+    });
+    if (next == all.end() || (round >= kExperimentsInFull && next != all.begin())) break;
+    const auto say = [&](double part) {
+      progress.say("diagnosing simulated records",
+                   0.6 + 0.3 * (static_cast<double>(round) + part) / static_cast<double>(kMostExperimentsInFull));
+    };
+    // The first is always looked at, however long it takes.
+    diagnose_in_full(diagnosed, question, options, round == 0 && options.effort > 0, say, *next, verified);
+    lower_expected(question, verified, all);
   }
 }
 

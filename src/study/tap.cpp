@@ -4,15 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "limits.hpp"
 #include "weighing.hpp"
 
 namespace tribofit {
 
 namespace {
-
-/// Uncertainties of what a hand reads off a tap: where edges of two channels lie, beside a part of a sample, and how
-/// slow an edge is.
-constexpr double kReadingOfEdge = 0.02e-3 /* s */, kPartOfSample = 0.3, kReadingOfSlope = 0.25;
 
 /// What a tap shows of each answer: a shift of the channels [s], and the time of a filter [s].
 struct TapShows {

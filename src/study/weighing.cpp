@@ -38,11 +38,15 @@ double chance_of_p(const std::vector<Evidence>& draws, double level, double cycl
 ///
 /// What the run adds to the difference has, with the right one known, a variance of four times its mean; what the
 /// records gave before is what it is. Draws of other parameters spread more, which shows in the draws: the theory
-/// counts as kDrawsOfTheory of them. The mean is that of the draws, with its error. longer: the run, over those drawn.
-double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t rival, double now, double longer) {
-  double sum = 0, squares = 0, n = 0;
+/// counts as kDrawsOfTheory of them. The mean is that of the draws, with its error.
+double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t rival, double now,
+                             const Lengthening& lengthening) {
+  const double longer = lengthening.of_runs;
+  double sum = 0, squares = 0, n = 0, size = 0;
   for (const Evidence& draw : draws) {
-    if (std::isfinite(draw.ahead[rival])) sum += draw.ahead[rival] - now, n += 1;
+    if (!std::isfinite(draw.ahead[rival])) continue;
+    sum += draw.ahead[rival] - now, n += 1;
+    size += draw.least_by_size * lengthening.of_cycles;
   }
   const auto all = static_cast<double>(draws.size());
   if (n == 0) return 1;
@@ -52,7 +56,8 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   }
   const double variance = longer * (kDrawsOfTheory * of_theory + squares) / (kDrawsOfTheory + n - 1);
   const double mean = now + longer * added;
-  const double beyond = (mean - diagnosis::limits::kDistinguishable) / std::sqrt(variance * (1 + longer / n));
+  const double least = std::max(diagnosis::limits::kDistinguishable, size / n);
+  const double beyond = (mean - least) / std::sqrt(variance * (1 + longer / n));
   return (all - n + n * normal_tail_below(beyond)) / all;
 }
 
@@ -111,6 +116,7 @@ Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& questi
                                                            question.asked, options.instruments);
   const diagnosis::Ruling::OfEffect& own = ruling.effects[std::min(truth, ruling.effects.size() - 1)];
   out.p_value = own.p_value;
+  out.least_by_size = ruling.least_by_size;
   out.ruled_out = !own.passes && own.p_value < diagnosis::Limits{}.p_value;
   for (std::size_t k = 0; k < ruling.effects.size(); ++k) {
     const bool rivals = k != truth && ruling.effects[k].passes;
@@ -136,7 +142,7 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
   if (question.kind == QuestionKind::group) {
     for (std::size_t rival = 0; rival < question.models.size(); ++rival) {
       const double now = question.behind[rival] - question.behind[truth];
-      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, lengthening.of_runs));
+      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, lengthening));
     }
   }
   return simulated * chance;

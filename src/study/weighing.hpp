@@ -17,6 +17,7 @@ struct Evidence {
   /// By how much the held-out squares of each rival are behind those of the truth, over the noise of a difference (see
   /// Ruling); infinite for a rival that would not be named anyway, and for the truth itself.
   std::vector<double> ahead = {};
+  double least_by_size = 0;  ///< see Ruling
 };
 /// truth: index of the model; draw: which one of its posterior.
 Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,

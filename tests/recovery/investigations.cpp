@@ -66,9 +66,11 @@ double corner_of_tap(double rate) {
   return rate / 4;
 }
 
-/// What a tap shows: delay and bandwidth for the instruments file. True where it shows the truth itself: an edge that
-/// is shifted is a delay, one that is slower than the samples a filter.
-bool tap(const Case& c, double rate, Instruments& instruments) {
+/// What a tap shows of the truth: nothing, a shift of the edges that can be declared, or a filter, which it names.
+enum class Tapped { nothing, delay, filter };
+
+/// With delay and least bandwidth for the instruments file.
+Tapped tap(const Case& c, double rate, Instruments& instruments) {
   const Ingredient& what = c.hidden.front();
   const EffectInfo effect = describe(make_effect(what.key));
   std::vector<std::string> keys;
@@ -82,10 +84,11 @@ bool tap(const Case& c, double rate, Instruments& instruments) {
     instruments.vibrometer.delay->uncertainty = std::hypot(0.02e-3, 0.3 / rate);
   }
   const bool is_filter = effect.declared_by == InstrumentValue::force_bandwidth;
-  if (is_filter && what.values[0] < corner_of_tap(rate)) return true;
-  instruments.force_sensor.bandwidth = Declared{corner_of_tap(rate), 0.1 * corner_of_tap(rate)};
-  return effect.declared_by == InstrumentValue::vibrometer_delay &&
-         std::abs(what.values[0]) * 1e-3 > 3 * instruments.vibrometer.delay->uncertainty;
+  if (is_filter && what.values[0] < corner_of_tap(rate)) return Tapped::filter;
+  instruments.force_sensor.bandwidth_at_least = Declared{corner_of_tap(rate), 0};
+  const bool is_delay = effect.declared_by == InstrumentValue::vibrometer_delay &&
+                        std::abs(what.values[0]) * 1e-3 > 3 * instruments.vibrometer.delay->uncertainty;
+  return is_delay ? Tapped::delay : Tapped::nothing;
 }
 
 /// An investigation as it goes on.
@@ -93,7 +96,7 @@ struct Bench {
   const Case& c;
   recovery::Experiment made;  ///< so far
   Instruments instruments;
-  bool shown_by_hand = false;
+  Tapped tapped = Tapped::nothing;
 
   DiagnosedTraces diagnose() const {
     Simulated simulated = simulate_case(c, made);
@@ -102,7 +105,7 @@ struct Bench {
   }
 
   void make(const tribofit::Experiment& experiment, const RunConditions& own) {
-    if (experiment.tap > 0) shown_by_hand |= tap(c, experiment.tap, instruments);
+    if (experiment.tap > 0) tapped = tap(c, experiment.tap, instruments);
     for (const RunConditions& run : experiment.runs) {
       made.runs.push_back({.setting = Setting::fast,
                            .speed = run.speed / c.speed,
@@ -141,11 +144,12 @@ FurtherRun further_run(Bench& bench, const PlannedExperiment& one, const RunCond
   bench.make(one.experiment, own);
   diagnosed = bench.diagnose();
   const std::vector<Name> names = names_of(diagnosed.diagnosis);
-  // Shown by hand, it is corrected: nothing is left of it, or it stands with nobody who fits as well.
+  // A filter is seen in the edge. A delay that is declared is corrected: nothing is left of it.
   const bool rivals_left =
       std::any_of(names.begin(), names.end(), [&](const Name& n) { return n.added != key_of(bench.c); });
-  out.alone = bench.shown_by_hand ? !rivals_left || is_alone(bench.c, names) : is_alone(bench.c, names);
-  out.wrong = bench.shown_by_hand ? rivals_left && is_wrong(bench.c, names) : is_wrong(bench.c, names);
+  out.alone =
+      bench.tapped == Tapped::filter || is_alone(bench.c, names) || (bench.tapped == Tapped::delay && !rivals_left);
+  out.wrong = bench.tapped != Tapped::filter && rivals_left && is_wrong(bench.c, names);
   out.names = text_of(names);
   return out;
 }
@@ -176,7 +180,7 @@ bool leaves_open(const Case& c, const RunPlan& plan) {
 
 void investigate_by_chance(const Case& c, const RunPlan& first, const InvestigationOptions& options,
                            Investigation& out) {
-  Bench bench{c, {}, {}, false};
+  Bench bench{c, {}, {}};
   Random random(c.seed ^ 0xabcdefu);
   DiagnosedTraces diagnosed;
   while (out.random.size() < options.most_random) {
@@ -223,7 +227,7 @@ Investigation investigate(const Case& c, const InvestigationOptions& options) {
   Investigation out;
   out.tested = c;
   try {
-    Bench bench{c, {}, {}, false};
+    Bench bench{c, {}, {}};
     DiagnosedTraces diagnosed = bench.diagnose();
     const std::vector<Name> names = names_of(diagnosed.diagnosis);
     out.first = text_of(names);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 
+#include "diagnosis/ruling.hpp"
+#include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
@@ -86,6 +88,29 @@ TEST(Plan, DoesNotDependOnThreads) {
     EXPECT_EQ(one.experiments[k].experiment.runs, two.experiments[k].experiment.runs);
     EXPECT_EQ(one.experiments[k].probability, two.experiments[k].probability);
   }
+}
+
+TEST(Plan, UsualSpeedsAreThoseAMachineIsSetTo) {
+  const RunPlan plan = plan_of(open_lag(), {.longest = 5});
+  ASSERT_TRUE(plan.usual_means);
+  ASSERT_FALSE(plan.experiments.empty());
+  for (const PlannedExperiment& one : plan.experiments) {
+    for (const RunConditions& run : one.experiment.runs) {
+      if (run.speed == plan.own.speed) continue;
+      const double tenths = 10 * run.speed / kRpm;  // of 1, 2, 8 or 16 rpm
+      EXPECT_NEAR(tenths, std::round(tenths), 1e-9);
+    }
+  }
+}
+
+TEST(Ruling, AFilterIsNotPreferredToAShortLagInALongRecord) {
+  // Four samples in a mean take 0.4 ms: over such means a filter does better than the lag of 0.15 ms that is there.
+  const Identification trace = prepare_trace(open_record("frictional-lag", 0.15, 40, 20000, 0.003));
+  std::vector<Record> records(3, {&trace.motion, &trace.segmentation});
+  const diagnosis::Ruling ruling = diagnosis::rule_between(
+      records, ExponentialLaw{}, {}, {make_effect("frictional-lag"), make_effect("force-bandwidth")});
+  EXPECT_EQ(ruling.leader, 0U);
+  EXPECT_EQ(ruling.effects[0].behind, 0);
 }
 
 TEST(Plan, NothingIsSettledWhereAnEffectIsFoundAlone) {
