@@ -29,7 +29,9 @@ Chart predicted_chart(const RunPlan& plan, const PredictedCurves& curves, const 
   return chart;
 }
 
-ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan) {
+}  // namespace
+
+ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options) {
   const bool force = !diagnosed.traces.empty() && diagnosed.traces.front().motion.friction_kind == FrictionKind::force;
   ReportSection section{"plan", "What to run next", {}};
   section.plain(question_sentence(diagnosed, plan));
@@ -45,20 +47,17 @@ ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan
     }
   }
   for (const std::string& note : plan_notes(plan)) section.soft(note);
+  const Suggestion next = next_after_plan(diagnosed, plan, options);
+  section.plain("Next, " + next.reason + ":");
+  section.command(next.command);
   return section;
 }
-
-}  // namespace
 
 Report plan_report(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options) {
   Report report = report_of(diagnosed, options);
   report.kind = "plan";
   report.lead = question_sentence(diagnosed, plan) + " " + plan_verdict(diagnosed, plan);
-  ReportSection section = plan_section(diagnosed, plan);
-  const Suggestion next = next_after_plan(diagnosed, plan, options);
-  section.plain("Next, " + next.reason + ":");
-  section.command(next.command);
-  report.sections.insert(report.sections.begin(), std::move(section));
+  report.sections.insert(report.sections.begin(), plan_section(diagnosed, plan, options));
   return report;
 }
 

@@ -168,6 +168,8 @@ Json diagnosis_json(const WorkbenchDiagnosis& diagnosis) {
                               {"held_out_std_error", number(step.held_out_std_error)},
                               {"rmse", number(step.rmse)}});
   }
+  json["leaves_open"] = diagnosis.leaves_open;
+  json["plan"] = diagnosis.plan ? section_json(*diagnosis.plan) : Json(nullptr);
   return json;
 }
 

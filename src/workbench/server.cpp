@@ -198,6 +198,9 @@ void WorkbenchServer::State::add_handlers() {
     const bool begun = session()->begin_diagnosis(choice_from(asked.at("choice")));
     answer(response, {{"begun", begun}});
   });
+  post("/api/plan", [this](const Json&, httplib::Response& response) {
+    answer(response, {{"begun", session()->begin_plan()}});
+  });
   post("/api/cancel", [this](const Json&, httplib::Response& response) {
     session()->cancel_diagnosis();
     answer(response, {{"cancelled", true}});

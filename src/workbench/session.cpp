@@ -304,7 +304,15 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   std::vector<std::string> own = arguments_of(part);
   own.erase(own.begin(), own.begin() + 2);  // the law: both climb
   add(own);
-  return s.diagnosis.begin(s.options.input, identify, part, command_line(terminal, {}, s.options.input.path));
+  const std::string command = command_line(terminal, {}, s.options.input.path);
+  terminal.arguments.erase(terminal.arguments.begin());  // a plan says its own verb
+  terminal.inputs = {s.options.input.path};
+  terminal.instruments_declared = s.options.instruments_declared;
+  return s.diagnosis.begin({s.options.input, identify, part, terminal}, command);
+}
+
+bool WorkbenchSession::begin_plan() {
+  return state_->diagnosis.begin_plan();
 }
 
 void WorkbenchSession::cancel_diagnosis() {

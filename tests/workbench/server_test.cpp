@@ -105,6 +105,13 @@ TEST_F(Server, takes_small_plain_bodies_only) {
   EXPECT_EQ(show(R"({"law":"exponential"})")->status, 200);
 }
 
+TEST_F(Server, plans_nothing_where_nothing_was_diagnosed) {
+  const auto answer = client().Post("/api/plan", headers(), "{}", kType);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_FALSE(Json::parse(answer->body)["begun"].get<bool>());
+}
+
 TEST_F(Server, says_what_is_wrong_and_lives_on) {
   const auto bad = show(R"({"law":"exponential","formulas":["hump = a*exp(-v"]})");
   ASSERT_TRUE(bad);

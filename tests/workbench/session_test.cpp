@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "lagging.hpp"
@@ -207,6 +208,31 @@ TEST(Session, diagnoses_as_the_command_does) {
   ASSERT_EQ(ladder.size(), found.ladder.size());
   EXPECT_EQ(ladder.back()["held_out_rmse"].get<double>(), found.ladder.back().held_out_rmse);
   EXPECT_GT(session.show(found.found, FitDetail::quick).rung.fit.error.held_out_rmse, 0);
+}
+
+TEST(Session, plans_the_run_that_settles_what_a_diagnosis_leaves_open) {
+  if (std::string_view(TRIBOFIT_IDENTIFY).empty()) GTEST_SKIP() << "no command simulates the record";
+  const Lagging record("8s", workbench_test::kDoubtfulLag);
+  WorkbenchSession session(record.options());
+  EXPECT_FALSE(session.begin_plan()) << "nothing was diagnosed";
+  ASSERT_TRUE(session.begin_diagnosis({}));
+  const WorkbenchDiagnosis open = waited_for(session);
+  ASSERT_TRUE(open.leaves_open) << open.sentence;
+  ASSERT_TRUE(session.begin_plan());
+  EXPECT_FALSE(session.begin_plan()) << "one runs";
+  session.cancel_diagnosis();
+  WorkbenchDiagnosis planned = waited_for(session);
+  EXPECT_EQ(planned.state, WorkbenchDiagnosis::State::done) << "the diagnosis stands";
+  EXPECT_EQ(planned.plan, nullptr);
+  ASSERT_TRUE(session.begin_plan());
+  planned = waited_for(session);
+  ASSERT_NE(planned.plan, nullptr) << planned.sentence;
+  EXPECT_EQ(planned.sentence, open.sentence);
+  std::vector<std::string> captions;
+  for (const ReportItem& item : planned.plan->items) {
+    if (const auto* table = std::get_if<ReportTable>(&item)) captions.push_back(table->caption);
+  }
+  EXPECT_THAT(captions, testing::Contains(HasSubstr("Experiments")));
 }
 
 TEST(Session, lets_nobody_wait_behind_a_slow_fit) {

@@ -18,6 +18,9 @@ std::string render_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan, c
 /// "not_asked", "reason", "next"}; every number in the unit its name says.
 std::string plan_json(const DiagnosedTraces& diagnosed, const RunPlan& plan, const JsonOptions& options = {});
 
+/// The section of a report that shows the plan, with the command to type afterwards.
+ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
+
 /// The report of the diagnosis, the plan before it, with a chart of what each model predicts for the first experiment.
 Report plan_report(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
 

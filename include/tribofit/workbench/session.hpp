@@ -59,7 +59,9 @@ struct WorkbenchDiagnosis {
     double held_out_rmse = 0, held_out_std_error = 0, rmse = 0;  ///< [1 or N]
   };
   std::vector<Step> ladder;
-  double floor_rmse = 0;  ///< [1 or N]
+  double floor_rmse = 0;                      ///< [1 or N]
+  bool leaves_open = false;                   ///< effects are not distinguishable, or one is possible: a run may tell
+  std::shared_ptr<const ReportSection> plan;  ///< of the runs that would, once it was asked for
 };
 
 /// What pages say of the trace before anything is fitted.
@@ -121,6 +123,8 @@ class WorkbenchSession {
   /// False where one is running already.
   bool begin_diagnosis(const WorkbenchChoice& choice);
   void cancel_diagnosis();
+  /// Plans the runs that settle what that diagnosis left open; false where it left nothing open, or one runs.
+  bool begin_plan();
   WorkbenchDiagnosis diagnosis() const;
 
   /// The session as JSON: trace with its checksum, options, choices in order.

@@ -103,7 +103,7 @@ function conditionsChoice() {
   const values = { radius: known(conditions.radius_mm, "mm"), speed: known(conditions.speed_rpm, "rpm"), load: known(conditions.load_N, "N") };
   // What the record itself says stands in grey: left empty, it is found there again.
   const inputs = Object.entries(values).map(([name, value]) => {
-    const stated = /command line|workbench/.test(conditions[`${name}_source`] || "");
+    const stated = (conditions[`${name}_source`] || "").includes("command line");
     return [name, make("input", { type: "text", id: `condition-${name}`, size: "10", maxlength: "60", spellcheck: "false",
       value: stated ? value : "", placeholder: value || "not known" })];
   });

@@ -300,9 +300,25 @@ function showFinding(state) {
   }
   const rows = state.ladder.map((step) => [step.added ? `+ ${step.added}` : `${state.found.law} law`,
     `${number(step.held_out_rmse)} ± ${number(step.held_out_std_error, 2)}`]);
+  const section = make("section", { id: "workbench-plan" });
+  if (state.plan) fillSection(section, state.plan);
   box.replaceChildren(table("Ladder of the diagnosis", ["Rung", "Held-out error"], [...rows, ["Noise floor", number(state.floor_rmse)]], [1]),
-    make("button", { type: "button", id: "take-finding", onclick: () => goTo(state.found, true) }, "Show the model found"),
-    make("pre", {}, state.command));
+    make("div", { className: "row" },
+      make("button", { type: "button", id: "take-finding", onclick: () => goTo(state.found, true) }, "Show the model found"),
+      state.leaves_open && !state.plan ? make("button", { type: "button", id: "workbench-plan-runs",
+        title: "Simulate the runs that could distinguish what this record leaves open", onclick: beginPlan }, "What to run next") : null),
+    make("pre", {}, state.command), section);
+}
+
+async function beginPlan(event) {
+  event.target.disabled = true;
+  try {
+    await ask("/api/plan", {});
+    followDiagnosis();
+  } catch (trouble) {
+    event.target.disabled = false;
+    showTrouble(trouble);
+  }
 }
 
 async function saveSession() {
