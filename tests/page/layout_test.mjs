@@ -16,14 +16,14 @@ function makePages() {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(join(folder, "runs"), { recursive: true });
   const run = (...words) => execFileSync(identify, words, { cwd: folder, stdio: ["ignore", "ignore", "inherit"] });
-  const simulate = (name, ...words) => run("simulate", "--radius", "15mm", "--noise-mu", "0.003", "--noise-v", "0.02mm/s",
+  const simulate = (name, radius, ...words) => run("simulate", "--radius", radius, "--noise-mu", "0.003", "--noise-v", "0.02mm/s",
     "--scatter", "0.004", "--rate", "2kHz", "--quiet", "--out", name, ...words);
   const page = (name, ...words) => {
     run(...words, "--quiet", "--report", `${name}.html`);
     pages.push(`${name}.html`);
   };
   const pages = [], record = ["--radius", "15mm", "--load", "50N", "hidden.csv"];
-  simulate("hidden.csv", "--duration", "32s", "--effect", "runout:A=0.05,phase=1", "--seed", "7");
+  simulate("hidden.csv", "15mm", "--duration", "32s", "--effect", "runout:A=0.05,phase=1", "--seed", "7");
   page("diagnosis", "diagnose", ...record);
   page("speed", "study", "speed", "--radius", "15mm", "--points", "12");
   if (few) return pages;
@@ -36,9 +36,16 @@ function makePages() {
   page("sensitivity", "study", "sensitivity", "--radius", "15mm", "--points", "9");
   for (const radius of ["9", "12", "15"]) {
     for (const repeat of ["1", "2"]) {
-      simulate(`runs/r${radius}mm_${repeat}.csv`, "--duration", "6s", "--radius", `${radius}mm`, "--seed", radius + repeat);
+      simulate(`runs/r${radius}mm_${repeat}.csv`, `${radius}mm`, "--duration", "6s", "--seed", radius + repeat);
     }
   }
+  run("simulate", "--radius", "15mm", "--duration", "12s", "--rate", "2kHz", "--noise-mu", "0.006", "--noise-v", "0.1mm/s",
+    "--scatter", "0.004", "--effect", "frictional-lag:tau=0.4", "--quiet", "--out", "lag.csv");
+  page("plan", "plan", "--radius", "15mm", "--load", "50N", "--tap", "--speeds", "1rpm,8rpm", "lag.csv");
+  run("simulate", "--kind", "velocity-steps", "--rate", "50Hz", "--duration", "140s", "--speed-steps",
+    "0s:2um/s,20s:10um/s,50s:2um/s,90s:10um/s", "--rate-state", "a=0.01,b=0.015,D_c=8um,k=0.004/um,mu_0=0.6",
+    "--noise-mu", "0.0002", "--quiet", "--out", "steps.csv");
+  page("steps", "--kind", "velocity-steps", "steps.csv");
   page("batch", "runs", "--pattern", "r{radius}mm_{repeat}.csv", "--speed", "4rpm", "--load", "50N", "--share", "alpha");
   return pages;
 }

@@ -15,11 +15,12 @@ function marked(text) {
 const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
 const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
 
-/** A title on two lines where a narrow screen has no room for one. */
-function brokenTitle(text) {
-  const most = Math.floor((innerWidth - 90) / 7.5);
+/** A title on as many lines as so many pixels ask for. */
+const letterWidth = 7.5;
+function brokenTitle(text, room = innerWidth - 90) {
+  const most = Math.max(10, Math.floor(room / letterWidth));
   const blank = text.length > most ? text.lastIndexOf(" ", most) : -1;
-  return blank > 0 ? `${text.slice(0, blank)}\n${text.slice(blank + 1)}` : text;
+  return blank > 0 ? `${text.slice(0, blank)}\n${brokenTitle(text.slice(blank + 1), room)}` : text;
 }
 const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
 
@@ -169,8 +170,7 @@ function layoutOf(chart) {
     margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
     showlegend: false, hoverlabel: { bgcolor: styles.paper, bordercolor: styles.axis, font: { color: styles.text } },
     height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
-    xaxis: axisOf(chart.x, { anchor: nth("y", count - 1),
-      ...(chart.x.names && chart.x.names.length > 5 && innerWidth < 500 ? { tickangle: -90 } : {}) }) };
+    xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
   let top = 1;
   chart.panels.forEach((panel, k) => {
     const height = (free * panel.part) / whole;
@@ -179,6 +179,14 @@ function layoutOf(chart) {
   });
   if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
   return layout;
+}
+
+/** Title and names below a chart, as its width has room for them: names that do not fit stand upright. */
+function fitBelow(layout, chart, width) {
+  const longest = (axis) => letterWidth * Math.max(0, ...(axis.names || []).map((name) => plain(name).length));
+  const room = width - 76 - Math.max(...chart.panels.map((panel) => longest(panel.axis)));
+  layout.xaxis.title.text = marked(brokenTitle(titleOf(chart.x), room));
+  if (chart.x.names && longest(chart.x) + 12 > room / layout.xaxis.ticktext.length) layout.xaxis.tickangle = -90;
 }
 
 /** The numbers of a chart: a row a point. */
@@ -276,6 +284,7 @@ function makeChart(chart) {
 
 function draw(item) {
   waiting = waiting.filter((other) => other !== item);
+  fitBelow(item.layout, item.chart, item.layout.width || item.plot.clientWidth);
   Plotly.react(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
     doubleClick: "reset", scrollZoom: false });
   item.drawn = true;

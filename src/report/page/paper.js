@@ -10,6 +10,7 @@ function savePicture(item, format) {
   const layout = { ...whole, showlegend: true, width: 900, height,
     title: { text: plain(item.chart.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
     legend: { orientation: "h", y: -0.18, yanchor: "top" } };
+  fitBelow(layout, item.chart, layout.width);
   return Plotly.toImage({ data, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
     .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
 }

@@ -58,7 +58,8 @@ const tableWidths = new ResizeObserver((entries) => {
 /** A table; columns named in `numeric` are set to the right. Where it is wider than its place it scrolls, and says so. */
 function table(caption, header, rows, numeric = []) {
   const order = columnOrder(header, numeric);
-  const align = (k) => (numeric.includes(k) ? { className: "number" } : {});
+  const isLong = (k) => rows.some((row) => String(row[k] ?? "").length > 16);
+  const align = (k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {});
   const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, symbols(String(content)));
   const whole = make("table", {}, caption ? make("caption", {}, symbols(caption)) : null,
     make("thead", {}, make("tr", {}, ...order.map((k) => (header[k] ? cell("th", header[k], k, { scope: "col" }) : make("td"))))),
