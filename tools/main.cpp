@@ -37,7 +37,7 @@ constexpr const char* kProgramFooter =
     "2 wrong usage; 3 unreadable or invalid input.";
 
 /// Channels come and go by tens of megabytes. What is given back to the system is cleared by it before it comes again,
-/// which takes a fifth of the time of a fit.
+/// which takes a tenth of the time of a fit.
 void keep_memory() {
 #ifdef __GLIBC__
   constexpr int kMostKept = 1 << 30, kLargest = 32 << 20;  // glibc takes no more for the second

@@ -8,10 +8,23 @@
 
 namespace tribofit::diagnosis {
 
+namespace {
+
+/// Part of the squares of the noise from which a difference counts.
+double least_size(const DiagnosisContext& context) {
+  return limits::kDistinguishableSize * context.noise_squares();
+}
+
+/// Difference of held-out squares from which two models are distinguishable. unit: noise of such a difference.
+double least_difference(const DiagnosisContext& context, double unit) {
+  return std::max(limits::kDistinguishable * unit, least_size(context));
+}
+
+}  // namespace
+
 bool are_distinguishable(const DiagnosisContext& context, const CandidateResult& better, const CandidateResult& worse) {
-  const double difference = worse.trial.held_out_squares - better.trial.held_out_squares;
-  return difference > limits::kDistinguishable * noise_of(context.fine, better.trial) * better.design_effect &&
-         difference > limits::kDistinguishableSize * context.noise_squares();
+  const double unit = noise_of(context.fine, better.trial) * better.design_effect;
+  return worse.trial.held_out_squares - better.trial.held_out_squares > least_difference(context, unit);
 }
 
 namespace {
@@ -57,7 +70,7 @@ class Standings {
  private:
   void judge_by(const DiagnosisContext& context, double unit) {
     unit_ = unit;
-    least_ = std::max(limits::kDistinguishable * unit_, limits::kDistinguishableSize * context.noise_squares());
+    least_ = least_difference(context, unit);
   }
 
   static double squares(const std::vector<CandidateResult>& judged, std::size_t k) {
@@ -108,7 +121,7 @@ Choice choose(const DiagnosisContext& context, std::vector<CandidateResult>& jud
   choice.leader = standings.best();
   if (!choice.leader) return choice;
   for (std::size_t k = 0; k < judged.size(); ++k) choice.behind.push_back(standings.behind(k) / standings.unit());
-  choice.least_by_size = limits::kDistinguishableSize * context.noise_squares() / standings.unit();
+  choice.least_by_size = least_size(context) / standings.unit();
   // The simplest of those that do as well leads.
   for (std::size_t k = 0; k < judged.size(); ++k) {
     if (!standings.is_as_good(k)) continue;

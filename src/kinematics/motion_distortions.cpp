@@ -153,10 +153,10 @@ void MotionStages::find_friction_filter() {
   const bool is_known = !low_pass_.creeps && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step, threads_);
-  const std::optional<Declared>& at_least = instruments_.force_sensor.bandwidth_at_least;
-  if (at_least && 2 * std::numbers::pi * found.tau.value * at_least->value > 1) return;  // as declared there is none
-  motion_.friction_low_pass = found.tau;
   friction_fall_ = found.fall;
+  const std::optional<Declared>& at_least = instruments_.force_sensor.bandwidth_at_least;
+  if (at_least && 2 * std::numbers::pi * found.tau.value * at_least->value > 1) return;  // declared not to be there
+  motion_.friction_low_pass = found.tau;
   // A filter that holds its input for a sample is half of one early.
   const bool holds = found.tau.any() && std::abs(found.early) < kHeldInput;
   if (holds) follow_clock(trace_.velocity, 0, -found.early, low_pass_.resticks);

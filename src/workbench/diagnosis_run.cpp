@@ -47,9 +47,9 @@ bool DiagnosisRun::begin(DiagnosisRequest request, const std::string& command) {
   if (thread_.joinable()) thread_.join();  // it has said its last word
   status_ = {};
   cancelled_ = false;
+  request_ = std::move(request);
   // May throw where the machine gives no more threads: then nothing runs. The thread waits for the mutex before it
   // reports.
-  request_ = std::move(request);
   thread_ = std::thread([this] { run(); });
   status_.state = WorkbenchDiagnosis::State::running;
   status_.command = command;

@@ -206,6 +206,17 @@ TEST(Distortions, ALowPassOfFrictionAloneIsFound) {
   }
 }
 
+TEST(Distortions, NoLowPassOfFrictionIsUndoneBelowTheBandwidthThatIsDeclared) {
+  Trace trace = silent(4);
+  filter(trace.friction, 20000 / (2 * std::numbers::pi * 200));
+  add_noise(trace);
+  Instruments below, above;
+  below.force_sensor.bandwidth_at_least = {100, 0};
+  above.force_sensor.bandwidth_at_least = {400, 0};
+  EXPECT_TRUE(compute_motion(trace, below).friction_low_pass.any());
+  EXPECT_FALSE(compute_motion(trace, above).friction_low_pass.any());
+}
+
 /// Friction that is recorded early has jumped before re-stick; what noise with a memory does from there on is no
 /// filter.
 TEST(Distortions, EarlyFrictionWithSlowNoiseIsNotFiltered) {

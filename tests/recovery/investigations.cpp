@@ -271,7 +271,7 @@ std::string share_of(double hits, double n) {
   const double z = 1.96, p = hits / n, middle = (p + z * z / (2 * n)) / (1 + z * z / n),
                half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
   return fmt::format("{:.0f} % ({:.0f} of {}; {:.0f} to {:.0f} %)", 100 * p, hits, static_cast<std::size_t>(n),
-                     100 * (middle - half), 100 * (middle + half));
+                     100 * std::max(0.0, middle - half), 100 * (middle + half));
 }
 
 /// Of the runs of each arm, how many named the truth alone after so many.

@@ -104,7 +104,7 @@ TEST(Plan, UsualSpeedsAreThoseAMachineIsSetTo) {
 }
 
 TEST(Ruling, AFilterIsNotPreferredToAShortLagInALongRecord) {
-  // Four samples in a mean take 0.4 ms: over such means a filter does better than the lag of 0.15 ms that is there.
+  // So many slips are judged by means over 0.4 ms, and over such means a filter does better than the lag that is there.
   const Identification trace = prepare_trace(open_record("frictional-lag", 0.15, 40, 20000, 0.003));
   std::vector<Record> records(3, {&trace.motion, &trace.segmentation});
   const diagnosis::Ruling ruling = diagnosis::rule_between(

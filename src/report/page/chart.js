@@ -15,8 +15,9 @@ function marked(text) {
 const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
 const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
 
-/** A title on as many lines as so many pixels ask for. */
 const letterWidth = 7.5;
+
+/** A title on as many lines as so many pixels ask for. */
 function brokenTitle(text, room = innerWidth - 90) {
   const most = Math.max(10, Math.floor(room / letterWidth));
   const blank = text.length > most ? text.lastIndexOf(" ", most) : -1;
