@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "conclusions.hpp"
+#include "differing_runs.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
@@ -224,6 +225,7 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
     Diagnosed diagnosed = diagnose_all();
     const bool finished = diagnosed.diagnosis.verdict != Verdict::unfinished;
     if (finished && undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
+    withhold_of_differing_runs(traces, options, effects.from_the_start, diagnosed);
     out.diagnosis = std::move(diagnosed.diagnosis);
     std::optional<Fit> uncorrected;
     if (traces.size() == 1 && !diagnosed.fits.empty())

@@ -173,9 +173,9 @@ inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
 /// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
-/// What wanders in the residuals over the noise of a sample, from which on a law has left much. Smaller: drift is
-/// reported; larger: only gross failures are.
-inline constexpr double kMuchLeft = 4;
+/// D_c behind a step within which a contact adapts: e^-5 of the change is left. What is left there over what is left
+/// elsewhere from which on a law lacks something, the chance that noise makes it so, and independent values that tell.
+inline constexpr double kAdapted = 5, kMuchLeft = 1.15, kChanceOfExcess = 1e-3, kFewestOfExcess = 5;
 /// A hold loads the contact as if the speed had changed by e^4.6 (a hundredfold), to begin with.
 inline constexpr double kHoldAsRatio = 4.6;
 /// Second D_c over the first, to begin with.

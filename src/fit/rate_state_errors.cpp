@@ -26,6 +26,12 @@ struct Errors {
   std::vector<double> freedom;
 };
 
+/// Root of the mean square of what is left behind the steps over that elsewhere, and the chance that noise makes it so
+/// large.
+struct Excess {
+  double factor = 1, p_value = 1;
+};
+
 class FitErrors {
  public:
   FitErrors(const RateStateProblem& problem, const RateStateData& data, const std::vector<double>& p)
@@ -52,13 +58,7 @@ class FitErrors {
 
   /// Noise of what is left; the free unknowns are those whose columns are kept.
   WanderingNoise noise(const std::vector<Eigen::Index>& free) const {
-    Eigen::VectorXd left = residual_.cwiseQuotient(root_count_);
-    Eigen::MatrixXd jacobian(rows_, static_cast<Eigen::Index>(free.size()));
-    for (std::size_t k = 0; k < free.size(); ++k)
-      jacobian.col(static_cast<Eigen::Index>(k)) = weighted_.col(free[k]).cwiseQuotient(root_count_);
-    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-    jacobian *= scale.asDiagonal();
-    return estimate_noise(series(), left, jacobian, own_columns());
+    return noise_where(free, [](std::size_t) { return true; });
   }
 
   /// Minus twice the logarithm of the likelihood of what is left, with that noise.
@@ -104,6 +104,35 @@ class FitErrors {
     return normal * (design.transpose() * right);
   }
 
+  /// What is left while a contact adapts to a step, over what is left elsewhere. Noise knows nothing of the steps, so
+  /// that a law that describes them leaves as much behind them as elsewhere, however the noise wanders. That noise is
+  /// the one elsewhere: what a law that fails leaves behind the steps wanders too.
+  Excess excess_behind_steps(double distance, const std::vector<Eigen::Index>& free) const {
+    std::vector<bool> adapts(times_.size());
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      const double step = data_.steps[problem_.steps()[k]].displacement;
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        const double slid = data_.displacement[problem_.value_of(i)] - step;
+        adapts[i] = slid > 0 && slid < distance;
+      }
+    }
+    const WanderingNoise noise = noise_where(free, [&](std::size_t i) { return !adapts[i]; });
+    double squares[2] = {0, 0}, values[2] = {0, 0}, independent[2] = {0, 0};
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        const double lasts = i + 1 < end_of(k) ? times_[i + 1] - times_[i] : times_[i] - times_[i - 1];
+        const double left = residual_(static_cast<Eigen::Index>(i)) / root_count_(static_cast<Eigen::Index>(i));
+        const std::size_t where = adapts[i] ? 0 : 1;
+        squares[where] += left * left / variance_of_mean(lasts, counts_[i], noise);
+        values[where] += 1;
+        independent[where] += noise.time > 0 ? std::min(1.0, lasts / (2 * noise.time)) : 1;
+      }
+    }
+    if (independent[0] < kFewestOfExcess || independent[1] < kFewestOfExcess) return {};
+    const double ratio = squares[0] / values[0] / (squares[1] / values[1]);
+    return {std::sqrt(ratio), f_p_value(ratio, independent[0], independent[1])};
+  }
+
   Errors errors_of(const Eigen::MatrixXd& rows, const WanderingNoise& noise) const {
     const NoiseMoments moments = noise_moments(series(), rows, noise);
     Errors out{moments.white + moments.slow, {}};
@@ -121,6 +150,41 @@ class FitErrors {
   }
 
  private:
+  std::size_t end_of(std::size_t k) const { return k + 1 < begins_.size() ? begins_[k + 1] : times_.size(); }
+
+  /// Noise of what is left at some of the values.
+  template <class Takes>
+  WanderingNoise noise_where(const std::vector<Eigen::Index>& free, const Takes& takes) const {
+    std::vector<Eigen::Index> rows;
+    std::vector<double> times, counts;
+    std::vector<std::size_t> begins;
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      begins.push_back(rows.size());
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        if (!takes(i)) continue;
+        rows.push_back(static_cast<Eigen::Index>(i));
+        times.push_back(times_[i]);
+        counts.push_back(counts_[i]);
+      }
+    }
+    const Eigen::VectorXd left = residual_(rows).cwiseQuotient(root_count_(rows));
+    Eigen::MatrixXd jacobian(left.size(), static_cast<Eigen::Index>(free.size()));
+    for (std::size_t k = 0; k < free.size(); ++k)
+      jacobian.col(static_cast<Eigen::Index>(k)) = weighted_(rows, free[k]).cwiseQuotient(root_count_(rows));
+    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    jacobian *= scale.asDiagonal();
+    return estimate_noise({times, counts, begins}, left, jacobian, own_columns()(rows, Eigen::all));
+  }
+
+  /// Of the mean of `count` samples over a time that lasts.
+  static double variance_of_mean(double lasts, double count, const WanderingNoise& noise) {
+    const double white = noise.white * noise.white / count;
+    if (!(noise.time > 0)) return white;
+    const double times = count > 1 ? lasts / noise.time : 0;  // a sample is no mean
+    const double kept = times > 1e-3 ? 2 / times * (1 - (1 - std::exp(-times)) / times) : 1;
+    return white + noise.slow * noise.slow * kept;
+  }
+
   /// Constant and slope of each step, one below the other.
   Eigen::MatrixXd own_columns() const {
     Eigen::MatrixXd own(rows_, problem_.design_of(0).cols());
@@ -244,6 +308,19 @@ void set_own_values(const FitErrors& found, std::size_t steps, const std::vector
   }
 }
 
+/// Says where a law leaves more while the contact adapts than elsewhere.
+void say_excess(const FitErrors& found, std::size_t states, const std::vector<Eigen::Index>& free, RateStateFit& fit) {
+  double distance = 0;
+  for (std::size_t i = 0; i < states; ++i) distance = std::max(distance, fit.parameters[2 + 2 * i].value);
+  const Excess excess = found.excess_behind_steps(kAdapted * distance, free);
+  if (!(excess.p_value < kChanceOfExcess) || excess.factor < kMuchLeft) return;
+  fit.messages.push_back(fmt::format(
+      "what is left is {:.2g} times as large within {:.3g} um behind the steps as elsewhere: this law does not "
+      "describe "
+      "all of them{}",
+      excess.factor, 1e6 * kAdapted * distance, states > 1 ? "" : "; two state variables may (--states 2)"));
+}
+
 }  // namespace
 
 RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data, const RateStateUnknowns& unknowns,
@@ -272,6 +349,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data
   set_stability(states, solution.p, fit.degrees_of_freedom, fit);
   set_correlations(fit);
   set_own_values(found, problem.steps().size(), free, influence, noise, fit);
+  say_excess(found, states, free, fit);
   return fit;
 }
 
@@ -304,12 +382,6 @@ void add_messages(RateStateFit& fit) {
                       name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
     }
   }
-  if (fit.noise_time > 0 && fit.noise_slow > kMuchLeft * fit.noise_white)
-    fit.messages.push_back(fmt::format(
-        "what is left wanders by {:.2g}, {:.0f} times the noise of a sample: this law does not describe all "
-        "of it{}",
-        fit.noise_slow, fit.noise_slow / fit.noise_white,
-        fit.parameters.size() > 4 ? "" : "; two state variables may (--states 2)"));
   for (const Correlation& c : fit.correlations) {
     fit.messages.push_back(
         fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "

@@ -141,15 +141,16 @@ class Assembler {
                      file());
   }
 
-  /// A joint has no radius: torque and rotational speed are those at a lever of 1 m.
+  /// A joint has no radius: torque and rotational speed are those at a lever of 1 m. A disc has one, stated or not.
   void set_lever() {
-    const bool steady = run_.is_points() || run_.kind == RecordKind::sliding;
     const bool unknown = std::none_of(trace_.steps.begin(), trace_.steps.end(),
                                       [](const Step& step) { return step.conditions.radius.known(); });
     const bool torque = run_.has(Channel::torque) && !run_.has(Channel::mu) && !run_.has(Channel::force);
     const Column* column = run_.columns.find(run_.has(Channel::v_b) ? Channel::v_b : Channel::v_r);
-    const bool turns = column != nullptr ? column->angular : run_.has(Channel::speed);
-    if (!steady || !unknown || !torque || !turns) return;
+    const bool steady = run_.is_points() || run_.kind == RecordKind::sliding;
+    const bool turns = column != nullptr ? column->angular && (steady || column->channel == Channel::v_r)
+                                         : steady && run_.has(Channel::speed);
+    if (!unknown || !torque || !turns) return;
     const Condition lever = {1, "lever of 1 m"};
     trace_.conditions.radius = lever;
     for (Step& step : trace_.steps) step.conditions.radius = lever;

@@ -345,6 +345,8 @@ inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
 /// leaves as it entered it, each within a sample, over which so little of the jump is left, and of its range at least.
 inline constexpr std::size_t kWidestSpike = 2, kWidestExcursion = 64;
 inline constexpr double kExcursionQuiet = 0.25, kExcursionBack = 0.5, kExcursionDepth = 0.01;
+/// Part of the usual largest sliding speed above which zeros between two samples are none of rest.
+inline constexpr double kOfUsualSpeed = 0.25;
 /// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
 /// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the noise floor.
 inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;

@@ -3,14 +3,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "limits.hpp"
+#include "recording_faults.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 
 bool are_lost(const LostSamples& lost, std::size_t plateaus) {
   return lost.jumps >= kFewestJumps &&
          static_cast<double>(lost.jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
+}
+
+double noise_in_motion(std::span<const double> velocity) {
+  std::vector<double> off;
+  for (std::size_t i = 1; i + 1 < velocity.size(); ++i) {
+    if (velocity[i - 1] != 0 && velocity[i] != 0 && velocity[i + 1] != 0)
+      off.push_back(std::abs(off_line(velocity, i)));
+  }
+  constexpr double kOffLine = 1.5;  // variance of what white noise is off the line between its neighbours
+  return off.empty() ? 0 : kSigmaPerMad * median(std::move(off)) / std::sqrt(kOffLine);
 }
 
 LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise,

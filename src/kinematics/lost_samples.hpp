@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "plateau_search.hpp"
 #include "tribofit/ingest/trace.hpp"
@@ -16,6 +17,10 @@ struct LostSamples {
 
 /// Too many for blows on the rig. plateaus: of stick.
 bool are_lost(const LostSamples& lost, std::size_t plateaus);
+
+/// Noise of a velocity that may read exactly zero at rest, as an encoder does: how far samples in motion are off the
+/// line between their neighbours, as a standard deviation [m/s]; 0 where none moves.
+double noise_in_motion(std::span<const double> velocity);
 
 /// noise: of the velocity [m/s]; step: sampling interval [s]. Jumps from rest, or to it, are the rig's own where most
 /// sticks have one. Cost: one pass.

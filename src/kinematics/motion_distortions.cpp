@@ -24,8 +24,11 @@ void MotionStages::undo_distortions() {
   undo_zero_drift();
   find_zero();
   undo_zero();
-  if (search_.sticks && !steps_.velocity_repeats)
-    jumps_ = find_lost_samples(trace_, search_, disc_, std::max(search_.noise, steps_.velocity), motion_.step);
+  if (search_.sticks && !steps_.velocity_repeats) {
+    const double moving = is_block() ? 0 : noise_in_motion(trace_.velocity);
+    const double noise = std::max({search_.noise, steps_.velocity, moving});
+    jumps_ = find_lost_samples(trace_, search_, disc_, noise, motion_.step);
+  }
   // What was lost of slips is missing in the way of the block.
   if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();

@@ -101,10 +101,24 @@ bool is_never_still(std::span<const double> x, const std::vector<SampleSpan>& ru
          static_cast<double>(equal)<kFewRepeats * n&& static_cast<double>(turns)> kManyTurns * n;
 }
 
-std::vector<SampleSpan> find_frozen(const ChannelOutline& channel) {
+/// Whether a sliding velocity that reads zero was zero: an encoder repeats it. A plug that was loose gives the speed
+/// back that it took.
+bool is_rest(const ChannelOutline& channel, const SampleSpan& run) {
+  const std::span<const double> x = channel.x;
+  if (x[run.begin] != 0) return false;
+  if (run.begin == 0 || run.end == x.size()) return true;
+  const double before = x[run.begin - 1], after = x[run.end];
+  const double usual = std::max(std::abs(channel.usual.low), std::abs(channel.usual.high));
+  const double less = std::min(std::abs(before), std::abs(after)), more = std::max(std::abs(before), std::abs(after));
+  return before * after <= 0 || less < (1 - kExcursionBack) * more || less < kOfUsualSpeed * usual;
+}
+
+std::vector<SampleSpan> find_frozen(const ChannelOutline& channel, bool is_sliding_velocity) {
   const std::span<const double> x = channel.x;
   std::vector<SampleSpan> runs = find_runs(channel, kShortestZero);
-  std::erase_if(runs, [&](const SampleSpan& run) { return run.size() < kShortestFrozen && x[run.begin] != 0; });
+  std::erase_if(runs, [&](const SampleSpan& run) {
+    return (run.size() < kShortestFrozen && x[run.begin] != 0) || (is_sliding_velocity && is_rest(channel, run));
+  });
   if (runs.empty() || !is_never_still(x, runs)) return {};
   // A limit of the range is no frozen channel, however often it is reached.
   const Extremes& range = channel.values.whole;
@@ -117,7 +131,8 @@ std::vector<SampleSpan> find_frozen(const ChannelOutline& channel) {
 
 }  // namespace
 
-ChannelFaults find_channel_faults(const ChannelOutline& recorded, const ChannelOutline& beside) {
+ChannelFaults find_channel_faults(const ChannelOutline& recorded, const ChannelOutline& beside,
+                                  bool is_sliding_velocity) {
   ChannelFaults faults;
   if (recorded.size() < kFewestDistributed) return faults;
   std::vector<double> cleaned;
@@ -131,7 +146,7 @@ ChannelFaults find_channel_faults(const ChannelOutline& recorded, const ChannelO
     channel = &outline_of_cleaned;
   };
   clean(faults.markers = find_markers(*channel));
-  clean(faults.frozen = find_frozen(*channel));
+  clean(faults.frozen = find_frozen(*channel, is_sliding_velocity));
   faults.spikes = find_spikes(*channel, beside);
   return faults;
 }

@@ -26,7 +26,9 @@ struct ChannelFaults {
 
 /// Markers first: what looks for frozen stretches does not see them, nor what looks for spikes either of these.
 /// `beside`: another channel of the machine; where it moves at the same time, a lone sample is a slip of few samples.
-ChannelFaults find_channel_faults(const ChannelOutline& channel, const ChannelOutline& beside);
+/// is_sliding_velocity: the channel is zero at rest.
+ChannelFaults find_channel_faults(const ChannelOutline& channel, const ChannelOutline& beside,
+                                  bool is_sliding_velocity);
 
 /// Markers alone.
 std::vector<SampleSpan> find_marker_values(std::span<const double> channel);

@@ -49,10 +49,11 @@ SpoiltSamples::SpoiltSamples(Trace& trace, ChannelOutlines& channels, int thread
   still_ = longest_still_of(channels);
   // Both as recorded: what one shows says what the other is.
   const bool made = trace.kind == RecordKind::motion_only, made_velocity = !trace.velocity_std_error.empty();
+  const bool rests_at_zero = trace.velocity_kind == VelocityKind::relative;
   ChannelFaults friction, velocity, lost;
   run_tasks(2, threads, [&](std::size_t k) {
-    if (k == 0 && !made) friction = find_channel_faults(channels.friction, channels.velocity);
-    if (k == 1 && !made_velocity) velocity = find_channel_faults(channels.velocity, channels.friction);
+    if (k == 0 && !made) friction = find_channel_faults(channels.friction, channels.velocity, false);
+    if (k == 1 && !made_velocity) velocity = find_channel_faults(channels.velocity, channels.friction, rests_at_zero);
   });
   clean(trace.friction, channels.friction, friction, "friction", SampleFault::friction);
   clean(trace.velocity, channels.velocity, velocity, "velocity", SampleFault::velocity);

@@ -152,8 +152,10 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
       std::count_if(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
   if (static_cast<std::size_t>(break_aways) >= segmentation::kFewestCycles) return false;
   std::size_t sliding = 0;
-  for (const RawSlip& slide : segmentation::without_rests(motion, segmentation::find_slides(motion), t.peak))
+  for (const RawSlip& slide : segmentation::without_rests(motion, segmentation::find_slides(motion), t.peak)) {
+    if (segmentation::keeps_speed(motion, slide.samples)) return true;
     sliding += slide.samples.size();
+  }
   return 2 * sliding > motion.size();
 }
 

@@ -41,6 +41,9 @@ inline constexpr double kTurnOverNoise = 10;
 /// where its ends, without these parts, are at the level of its middle.
 inline constexpr std::size_t kShortestStick = 3, kShortestShape = 10;
 inline constexpr double kEndsOfStick = 0.1, kMiddleOfStick = 0.3;
+/// Samples of a slide whose speed a drive keeps, and its quartiles at the most apart, over its median.
+inline constexpr std::size_t kShortestSlide = 50;
+inline constexpr double kKeptSpeed = 0.3;
 /// Samples of a mean, and such means in a row, that make a rest within sliding.
 inline constexpr std::size_t kRestOver = 16, kFewestRests = 2;
 /// Cycles that carry an analysis of cycles: a spread needs three, fewer leave no degree of freedom beside a mean and

@@ -238,4 +238,13 @@ bool only_reverses(const Motion& motion, const RawSlip& before, const RawSlip& a
   return std::abs(last - first) / static_cast<double>(third) > thresholds.stick;
 }
 
+bool keeps_speed(const Motion& motion, const SampleRange& slide) {
+  if (slide.size() < kShortestSlide) return false;
+  std::vector<double> speed(motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(slide.begin),
+                            motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(slide.end));
+  for (double& v : speed) v = std::abs(v);
+  const double low = quantile(speed, 0.25), middle = quantile(speed, 0.5), high = quantile(std::move(speed), 0.75);
+  return high - low < kKeptSpeed * middle;
+}
+
 }  // namespace tribofit::segmentation

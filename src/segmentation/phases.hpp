@@ -40,6 +40,10 @@ std::vector<RawSlip> find_slides(const Motion& motion);
 /// The same without the stretches in which v_r is zero within its noise: before, between and after.
 std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSlip>& slides, double peak);
 
+/// Whether a drive kept the speed of a slide, as no block on a spring does: a slip is half a sine, whose quartiles are
+/// three quarters of its median apart.
+bool keeps_speed(const Motion& motion, const SampleRange& slide);
+
 /// Whether the block rests in what the thresholds take for stick, as v_r shows it: its middle is at zero within the
 /// noise (or the block moves along with a disc of varying speed), and it is no turning point of a smooth motion.
 bool rests(const Motion& motion, const SampleRange& stick, const Thresholds& thresholds);

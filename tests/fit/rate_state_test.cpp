@@ -269,4 +269,25 @@ TEST(RateState, ThreadsDoNotMoveTheResult) {
   }
 }
 
+/// Noise that wanders is no failure of the law; a law that cannot follow the response is, and is called so.
+TEST(RateState, WanderingNoiseIsNotTakenForALawThatFails) {
+  const RateStateMachine machine = machine_of(StateEvolution::slip, 8);
+  Motion motion = motion_from(machine, kSteps, times_until(260, 20), 1e-5);
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  double wanders = 0;
+  for (double& friction : motion.friction) {
+    wanders = 0.9 * wanders + 2e-5 * normal(generator);
+    friction += wanders;
+  }
+  const auto says = [&](StateEvolution evolution) {
+    RateStateOptions options = together();
+    options.evolutions = {evolution};
+    const RateStateAnalysis found = fit_rate_state(motion, options);
+    return ::testing::PrintToString(found.fits.at(0).messages);
+  };
+  EXPECT_THAT(says(StateEvolution::slip), ::testing::Not(::testing::HasSubstr("does not describe")));
+  EXPECT_THAT(says(StateEvolution::ageing), ::testing::HasSubstr("does not describe"));
+}
+
 }  // namespace tribofit

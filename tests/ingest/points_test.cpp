@@ -1,5 +1,7 @@
 #include "temp_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 // Tables of steady points: rows of friction and sliding velocity that no clock orders.
@@ -75,6 +77,18 @@ TEST_F(Points, ALongTableWithoutATimeIsARecordWhoseRateIsMissing) {
   ReadOptions stated;
   stated.kind = RecordKind::points;
   EXPECT_EQ(read_trace(file, stated).size(), 6000U);
+}
+
+TEST_F(Points, ARecordOfAJointNeedsNoRadiusAndOneOfADiscDoes) {
+  std::string joint = "time [s],v_r [rad/s],torque [Nm]\n", disc = "time [s],speed [rpm],torque [Nm]\n";
+  for (int i = 0; i < 40; ++i) {
+    joint += fmt::format("{:.2f},{},2\n", 0.01 * i, 0.5 + 0.001 * i);
+    disc += fmt::format("{:.2f},{},2\n", 0.01 * i, 60 + 0.1 * i);
+  }
+  const Trace trace = read_trace(write(joint));
+  EXPECT_DOUBLE_EQ(trace.velocity.front(), 0.5);
+  EXPECT_THAT(trace.notes, Contains(HasSubstr("lever of 1 m")));
+  expect_error(write(disc), {}, "needs the friction radius", "--radius");
 }
 
 TEST_F(Points, AJointWithoutARadiusHasALeverOfAMetre) {

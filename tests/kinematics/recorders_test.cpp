@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -105,6 +106,39 @@ TEST(Recorders, AVelocityThatDropsOutIsLeftOutThere) {
 }
 
 /// Plateaus and the block's mean velocity drift alike: it is the zero. A disc that slows down moves plateaus alone.
+/// A joint that turns at 1 rad/s and stops, 67 times a second: an encoder reads zero at rest, each time exactly.
+Trace joint_that_stops() {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> error;
+  Trace trace;
+  trace.velocity_kind = VelocityKind::relative;
+  for (int i = 0; i < 400; ++i) {
+    const bool rests = i >= 240;
+    trace.time.push_back(i / 67.0);
+    trace.velocity.push_back(rests ? 0 : 1 + 0.05 * error(engine));
+    trace.friction.push_back((rests ? 0.46 : 2) + 0.1 * error(engine));
+  }
+  return trace;
+}
+
+TEST(Recorders, AnEncoderThatReadsZeroAtRestLosesNothing) {
+  const Motion motion = compute_motion(joint_that_stops());
+  const HealthItem& found = item(motion, "drop-outs");
+  EXPECT_EQ(found.status, HealthItem::Status::ok) << found.message;
+  EXPECT_EQ(motion.relative_velocity[300], 0);
+  EXPECT_FALSE(motion.has_fault(300, SampleFault::any));
+}
+
+TEST(Recorders, ALoosePlugInASlidingVelocityIsNoRest) {
+  Trace trace = joint_that_stops();
+  for (std::size_t i = 100; i < 130; ++i) trace.velocity[i] = 0;
+  const Motion motion = compute_motion(std::move(trace));
+  const HealthItem& found = item(motion, "drop-outs");
+  EXPECT_EQ(found.status, HealthItem::Status::problem) << found.message;
+  EXPECT_TRUE(motion.has_fault(110, SampleFault::any));
+  EXPECT_FALSE(motion.has_fault(300, SampleFault::any));
+}
+
 TEST(Recorders, AZeroThatDriftsIsTakenOff) {
   for (const double by : {3e-4, -1e-3}) {
     Trace zero = recorded(6);

@@ -14,6 +14,9 @@ const run = (...words) => execFileSync(identify, words, { cwd: folder, encoding:
 run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "10s", "--rate", "5kHz", "--effect",
   "frictional-lag:tau=4ms", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "lag.csv");
 
+run("simulate", "--radius", "15mm", "--duration", "4s", "--rate", "2kHz", "--noise-mu", "0.01", "--noise-v", "0.1mm/s",
+  "--scatter", "0.004", "--effect", "frictional-lag:tau=0.25ms", "--seed", "4", "--out", "doubtful.csv");
+
 const servers = [];
 process.on("exit", () => servers.forEach((server) => server.kill("SIGKILL"))); // where a check failed
 
@@ -206,6 +209,33 @@ async function diagnose(address) {
   await close();
 }
 
+/** Where a record leaves a group open, the runs that could distinguish it stand beside it; a reload keeps them. */
+async function planBesideTheGroup(address) {
+  const { page, complaints, close } = await open(address, 1280);
+  const done = () => page.waitForFunction(() => document.documentElement.dataset.diagnosis === "done", null, { timeout: 120000 });
+  await page.click("#workbench-diagnose");
+  await page.waitForSelector("#workbench-plan-runs", { timeout: 120000 });
+  await page.click("#workbench-plan-runs");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "running");
+  await page.click("#workbench-cancel");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis !== "running");
+  assert.equal(await page.locator("#workbench-plan table").count(), 0, "a plan that was cancelled shows no experiments");
+  await page.click("#workbench-plan-runs");
+  await page.waitForFunction(() => document.documentElement.dataset.diagnosis === "running");
+  await done();
+  const box = page.locator("#workbench-plan");
+  assert.match(await box.textContent(), /Open: .*frictional-lag \(\d+ %\)/);
+  assert.ok(await box.locator("tbody tr").count() > 2);
+  assert.ok(await box.locator(".main-svg").count() > 0, "what each model predicts is drawn");
+  await page.reload();
+  await settled(page);
+  await done();
+  assert.match(await page.textContent("#workbench-plan"), /Open: /);
+  assert.equal(await page.locator("#workbench-plan-runs").count(), 0, "the button is gone where the plan stands");
+  assert.deepEqual(complaints, []);
+  await close();
+}
+
 /** The server ends while a page waits: within two seconds, and the page says so. */
 async function stopInMidFit({ server, address, ended }) {
   const { page, close } = await open(address, 1280);
@@ -274,5 +304,9 @@ assert.ok(await restored.locator("#workbench-rungs tbody tr").count() > 3);
 await closeRestored();
 again.server.kill("SIGINT");
 assert.equal(await again.ended, 0);
+const doubtful = await explore("--radius", "15mm", "--load", "50N", "doubtful.csv");
+await planBesideTheGroup(doubtful.address);
+doubtful.server.kill("SIGTERM");
+assert.equal(await doubtful.ended, 0);
 await browser.close();
 console.log("the workbench: all as it should be");

@@ -51,6 +51,29 @@ TEST(SlowSliding, SlowIsNotAtRest) {
   }
 }
 
+/// A drive that keeps its speed slides, however long the recorder runs on; two slips of a block on a spring do not.
+TEST(SlowSliding, ALongRestBesideSlidingAtOneSpeedIsNoStickSlip) {
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> error;
+  const auto record_of = [&](const std::function<double(double)>& speed) {
+    Trace trace;
+    trace.velocity_kind = VelocityKind::relative;
+    for (double t = 0; t < 20; t += 0.01) {
+      const double v = speed(t);
+      trace.time.push_back(t);
+      trace.velocity.push_back(v + 2e-3 * error(engine));
+      trace.friction.push_back((v > 0 ? 2 : 0.5) + 0.05 * error(engine));
+    }
+    return find_cycles(compute_motion(std::move(trace)));
+  };
+  EXPECT_EQ(record_of([](double t) { return t < 3 ? 1.0 : 0.0; }).kind, MotionKind::always_slipping);
+  const auto slips = [](double t) {
+    const double in = std::fmod(t, 9);
+    return in > 4 && in < 6 ? std::sin(std::numbers::pi * (in - 4) / 2) : 0.0;
+  };
+  EXPECT_EQ(record_of(slips).kind, MotionKind::stick_slip);
+}
+
 /// The recorder starts before the motor does and stops after it.
 TEST(SlowSliding, ARestAtEitherEndMakesNoStickSlip) {
   std::mt19937_64 engine(4);
