@@ -313,7 +313,8 @@ void say_excess(const FitErrors& found, std::size_t states, const std::vector<Ei
   double distance = 0;
   for (std::size_t i = 0; i < states; ++i) distance = std::max(distance, fit.parameters[2 + 2 * i].value);
   const Excess excess = found.excess_behind_steps(kAdapted * distance, free);
-  if (!(excess.p_value < kChanceOfExcess) || excess.factor < kMuchLeft) return;
+  fit.lacks = excess.p_value < kChanceOfExcess && excess.factor > kMuchLeft;
+  if (!fit.lacks) return;
   fit.messages.push_back(fmt::format(
       "what is left is {:.2g} times as large within {:.3g} um behind the steps as elsewhere: this law does not "
       "describe "

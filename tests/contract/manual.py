@@ -5,13 +5,14 @@
 - `identify help` has every subject that the texts refer to; no line of a text or of the help of a verb is wider than 80
   columns.
 - Every option of every verb is described where it is listed, and every member of the JSON in the schema, once.
-- The lines of Python in the manual (>>> ...) run with pandas on results as the manual makes them; left out where pandas
-  is not installed.
+- The lines of Python in the manual (>>> ...) run with pandas on results as the manual makes them; left out where neither
+  this interpreter nor that of the distribution has pandas.
 
 usage: manual.py REPOSITORY IDENTIFY   exit status 1 and one line per offence
        manual.py --self-test           proves that each rule can fail
 """
 
+import importlib.util
 import json
 import os
 import pathlib
@@ -147,6 +148,15 @@ def self_test():
     return 1 if wrong else 0
 
 
+def go_on_with_pandas():
+    """Where this interpreter lacks pandas, the one of the distribution has it from scripts/packages.txt."""
+    system = "/usr/bin/python3"
+    if importlib.util.find_spec("pandas") or not os.path.exists(system):
+        return
+    if os.path.realpath(sys.executable) != os.path.realpath(system):
+        os.execv(system, [system, "-B", *sys.argv])
+
+
 def main(arguments):
     if arguments == ["--self-test"]:
         return self_test()
@@ -159,4 +169,5 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    go_on_with_pandas()
     sys.exit(main(sys.argv[1:]))

@@ -283,8 +283,9 @@ TEST(RateState, WanderingNoiseIsNotTakenForALawThatFails) {
   const auto says = [&](StateEvolution evolution) {
     RateStateOptions options = together();
     options.evolutions = {evolution};
-    const RateStateAnalysis found = fit_rate_state(motion, options);
-    return ::testing::PrintToString(found.fits.at(0).messages);
+    const RateStateFit fit = fit_rate_state(motion, options).fits.at(0);
+    EXPECT_EQ(fit.lacks, evolution == StateEvolution::ageing);
+    return ::testing::PrintToString(fit.messages);
   };
   EXPECT_THAT(says(StateEvolution::slip), ::testing::Not(::testing::HasSubstr("does not describe")));
   EXPECT_THAT(says(StateEvolution::ageing), ::testing::HasSubstr("does not describe"));
