@@ -26,6 +26,9 @@ Trace read_file(const TraceInput& input, const IdentifyOptions& options) {
   return read_trace(input.path, read);
 }
 
+constexpr const char* kFilterInModel =
+    "the declared filter of the force sensor stands in every model, held as declared";
+
 /// What a trace is read for.
 enum class Purpose { anything, law, rig };
 
@@ -86,7 +89,12 @@ void fit_driven(const IdentifyOptions& options, Identification& trace) {
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
   Identification out = prepare_trace({path, options.read, {}}, options);
-  fit_trace(options, out);
+  const IdentifyOptions modelled = with_declared_filter(options, out.motion);
+  if (!modelled.motion.undo_bandwidth && options.motion.undo_bandwidth) {
+    out = prepare_trace({path, options.read, {}}, modelled);
+    out.notes.push_back(kFilterInModel);
+  }
+  fit_trace(modelled, out);
   return out;
 }
 
@@ -119,9 +127,12 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   return diagnose(inputs, options, {});
 }
 
-DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& options,
+DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& given,
                          const DiagnoseOptions& more) {
-  refuse_same(options.effects);
+  refuse_same(given.effects);
+  IdentifyOptions options = given;
+  if (given.instruments.force_sensor.bandwidth && !inputs.empty())
+    options = with_declared_filter(given, prepare_trace(inputs.front(), given).motion);
   IdentifyOptions kinematic = options;
   kinematic.effects = kinematic_effects(options.effects);
   const auto prepared = [&](const TraceInput& input) {
@@ -132,7 +143,9 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   for (const TraceInput& input : inputs) traces.push_back(prepared(input));
   const std::vector<std::string> copies = diagnosis::exclude_copies(traces);
   DiagnosedTraces out = diagnosis::diagnose_traces(std::move(traces), options, more.diagnosis);
-  out.traces.front().warnings.insert(out.traces.front().warnings.end(), copies.begin(), copies.end());
+  Identification& first = out.traces.front();
+  first.warnings.insert(first.warnings.end(), copies.begin(), copies.end());
+  if (options.effects.size() > given.effects.size()) first.notes.push_back(kFilterInModel);
   if (out.rungs.empty()) return out;
   for (const TraceInput& input : more.confirm) diagnosis::add_confirmation(prepared(input).trace, out);
   diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);

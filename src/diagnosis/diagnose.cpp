@@ -271,6 +271,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
                    left_by_corrections(records, fine, floor.noise) / context.noise_squares();
   context.swing = common_swing(records);
+  context.fine.known = context.coarse.known = fit.given;
   context.threads = options.threads;
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -159,8 +160,7 @@ Fit with_values_of_record(const Fit& joint, const Identification& trace) {
   }
   if (options.given.size() == fit.parameters.size()) return fit;
   const Record record = {&trace.motion, &trace.segmentation};
-  const Fit own =
-      fit_model(fit.model, {&record, 1}, observations_for(fit.model, {&record, 1}), {}, options);
+  const Fit own = fit_model(fit.model, {&record, 1}, observations_for(fit.model, {&record, 1}), {}, options);
   Fit out = fit;
   for (std::size_t k = 0; k < own.parameters.size(); ++k) {
     if (belongs_to_record(k)) out.parameters[k].value = own.parameters[k].value;
@@ -219,13 +219,14 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
     DiagnosisOptions inner = given;
     inner.threads = options.threads;
     inner.from_the_start = effects.from_the_start;
-    const auto diagnose_all = [&] {
-      return diagnose(records_of(traces), options.laws, effects.candidates, options.instruments, options.fit, inner);
+    const auto diagnose_records = [&](std::span<const Record> records) {
+      return diagnose(records, options.laws, effects.candidates, options.instruments, options.fit, inner);
     };
+    const auto diagnose_all = [&] { return diagnose_records(records_of(traces)); };
     Diagnosed diagnosed = diagnose_all();
     const bool finished = diagnosed.diagnosis.verdict != Verdict::unfinished;
     if (finished && undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
-    withhold_of_differing_runs(traces, options, effects.from_the_start, diagnosed);
+    withhold_of_differing_runs(traces, diagnose_records, diagnosed);
     out.diagnosis = std::move(diagnosed.diagnosis);
     std::optional<Fit> uncorrected;
     if (traces.size() == 1 && !diagnosed.fits.empty())

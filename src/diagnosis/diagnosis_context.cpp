@@ -35,8 +35,9 @@ const Level* DiagnosisContext::finest() const {
     };
     if (!is_finer(most, fine_values(cycles))) return;
     finest_->observations = observe_all(records, all_channels(records), most, noise);
-    if (is_finer(finest_->observations->size(), fine.observations.size()))
-      finest_->level.emplace(*finest_->observations);
+    if (!is_finer(finest_->observations->size(), fine.observations.size())) return;
+    finest_->level.emplace(*finest_->observations);
+    finest_->level->known = fine.known;
   });
   return finest_->level ? &*finest_->level : nullptr;
 }

@@ -4,95 +4,122 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <numeric>
+#include <string>
 
+#include "conclusions.hpp"
 #include "fit/assessment.hpp"
-#include "fit/fit_laws.hpp"
 #include "limits.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
 
 namespace {
 
-/// What the law leaves of each run by itself, over all samples.
-struct OwnFits {
-  double held_out_rmse = 0, floor_rmse = 0;
-  bool known = false;
-};
-
-/// The fit of one run by the law that leaves the least of it on cycles that are held out.
-Fit own_fit(const Identification& trace, const IdentifyOptions& options, const std::vector<Effect>& effects) {
-  const Record record = {&trace.motion, &trace.segmentation};
-  Fit least;
-  for (const Law& law : options.laws) {
-    const FrictionModel model(law, effects);
-    Fit fit = fit_model(model, {&record, 1}, observations_for(model, {&record, 1}), options.instruments, options.fit);
-    if (fit.parameters.empty()) continue;
-    const bool less = least.parameters.empty() || fit.error.held_out_rmse < least.error.held_out_rmse;
-    if (less) least = std::move(fit);
-  }
-  return least;
+bool is_shown(const EffectFinding& finding) {
+  return finding.status == EffectStatus::found || finding.status == EffectStatus::equivalent;
 }
 
-OwnFits fit_each(const std::vector<PreparedTrace>& traces, const IdentifyOptions& options,
-                 const std::vector<Effect>& effects) {
-  std::vector<Fit> fits(traces.size());
-  run_tasks(traces.size(), options.threads,
-            [&](std::size_t k) { fits[k] = own_fit(traces[k].trace, options, effects); });
-  OwnFits own;
-  double squares = 0, floors = 0, count = 0;
-  for (const Fit& fit : fits) {
-    if (fit.parameters.empty() || fit.cycles < limits::kFewestCyclesOfARun) return own;
-    const auto n = static_cast<double>(fit.observations);
-    squares += n * fit.error.held_out_rmse * fit.error.held_out_rmse;
-    floors += n * fit.floor.rmse * fit.floor.rmse;
-    count += n;
-  }
-  own.held_out_rmse = std::sqrt(squares / count);
-  own.floor_rmse = std::sqrt(floors / count);
-  own.known = std::isfinite(own.held_out_rmse) && std::isfinite(own.floor_rmse);
-  return own;
+/// The runs with the most cycles, in their order.
+std::vector<const PreparedTrace*> longest_runs(const std::vector<PreparedTrace>& traces) {
+  std::vector<const PreparedTrace*> runs;
+  for (const PreparedTrace& prepared : traces) runs.push_back(&prepared);
+  const auto longer = [](const PreparedTrace* a, const PreparedTrace* b) {
+    return a->trace.segmentation.cycles.size() > b->trace.segmentation.cycles.size();
+  };
+  std::ranges::stable_sort(runs, longer);
+  runs.resize(std::min(runs.size(), limits::kMostSingleRuns));
+  return runs;
 }
 
-void take_effects_back(Diagnosed& diagnosed) {
+/// The finding of every one of the longest runs by itself.
+std::vector<Diagnosis> diagnose_each(const std::vector<PreparedTrace>& traces,
+                                     const DiagnoseRecords& diagnose_records) {
+  const std::vector<const PreparedTrace*> runs = longest_runs(traces);
+  std::vector<Diagnosis> out;
+  for (const PreparedTrace* run : runs) {
+    const Record record = {&run->trace.motion, &run->trace.segmentation};
+    out.push_back(diagnose_records({&record, 1}).diagnosis);
+  }
+  return out;
+}
+
+/// Effects that every run shows by itself.
+std::vector<std::string> shown_by_all(const std::vector<Diagnosis>& single) {
+  std::vector<std::string> keys;
+  for (const EffectFinding& first : single.front().effects) {
+    const bool all = std::ranges::all_of(single, [&](const Diagnosis& d) {
+      const EffectFinding* finding = finding_of(d, first.key);
+      return finding != nullptr && is_shown(*finding);
+    });
+    if (all && std::ranges::find(single.front().from_the_start, first.key) == single.front().from_the_start.end())
+      keys.push_back(first.key);
+  }
+  return keys;
+}
+
+/// A run by itself can show the effect, and none does.
+bool is_denied(const std::string& key, const std::vector<Diagnosis>& single) {
+  return std::ranges::all_of(single, [&](const Diagnosis& d) {
+    const EffectFinding* finding = finding_of(d, key);
+    return finding != nullptr && !is_shown(*finding) && finding->status != EffectStatus::untestable &&
+           finding->status != EffectStatus::possible;
+  });
+}
+
+void withdraw_effects(const std::vector<Diagnosis>& single, Diagnosed& diagnosed) {
   Diagnosis& diagnosis = diagnosed.diagnosis;
   for (EffectFinding& effect : diagnosis.effects) {
-    const bool follows = effect.status == EffectStatus::found || effect.status == EffectStatus::equivalent ||
-                         effect.status == EffectStatus::possible || effect.status == EffectStatus::superseded;
-    if (!follows) continue;
+    const bool follows = is_shown(effect) || effect.status == EffectStatus::possible;
+    if (!follows || !is_denied(effect.key, single)) continue;
     effect.status = EffectStatus::not_supported;
-    effect.reason = "each run by itself is described without it; it follows what differs between the runs";
+    effect.reason = "no run shows it by itself: it follows what differs between the runs";
+    effect.held_out_rmse = effect.error_reduction = effect.p_value = std::nan("");
+    effect.parameters.clear();
+  }
+  const bool kept = std::all_of(diagnosis.ladder.begin() + 1, diagnosis.ladder.end(), [&](const Rung& rung) {
+    const EffectFinding* finding = finding_of(diagnosis, rung.added);
+    return finding != nullptr && finding->status != EffectStatus::not_supported;
+  });
+  if (kept) return;
+  for (EffectFinding& effect : diagnosis.effects) {
+    if (effect.status == EffectStatus::found || effect.status == EffectStatus::equivalent)
+      effect.status = EffectStatus::possible;
   }
   diagnosed.fits.resize(1);
   diagnosis.ladder.resize(1);
   diagnosis.remaining = diagnosis.where;
+  diagnosis.rival_laws.clear();
   diagnosis.formula.clear();
-  diagnosis.messages.clear();  // of what the effects left
 }
 
 }  // namespace
 
-void withhold_of_differing_runs(const std::vector<PreparedTrace>& traces, const IdentifyOptions& options,
-                                const std::vector<Effect>& from_the_start, Diagnosed& diagnosed) {
+void withhold_of_differing_runs(const std::vector<PreparedTrace>& traces, const DiagnoseRecords& diagnose_records,
+                                Diagnosed& diagnosed) {
   Diagnosis& diagnosis = diagnosed.diagnosis;
-  const bool ended = diagnosis.verdict == Verdict::effect_found || diagnosis.verdict == Verdict::unexplained;
+  const bool ended = diagnosis.verdict == Verdict::effect_found || diagnosis.verdict == Verdict::unexplained ||
+                     diagnosis.verdict == Verdict::sufficient;
   if (traces.size() < 2 || !ended || diagnosed.fits.empty()) return;
-  const double floor = diagnosis.floor_rmse, together = diagnosed.fits.back().error.held_out_rmse;
-  if (!(together > kWellAbove * floor)) return;
-  const OwnFits own = fit_each(traces, options, from_the_start);
-  if (!own.known) return;
-  const double left = own.held_out_rmse * own.held_out_rmse - own.floor_rmse * own.floor_rmse;
-  if (!(left < limits::kLeftByOwnFits * (together * together - floor * floor))) return;
-  take_effects_back(diagnosed);
+  const double left = diagnosed.fits.back().error.held_out_rmse;
+  if (!(left > kWellAbove * diagnosis.floor_rmse)) return;
+  const std::vector<Diagnosis> single = diagnose_each(traces, diagnose_records);
+  const bool described = std::ranges::all_of(single, [](const Diagnosis& d) {
+    const bool settled = d.verdict == Verdict::sufficient || d.verdict == Verdict::effect_found;
+    return settled && !d.ladder.empty() && d.ladder.back().held_out_rmse < kWellAbove * d.floor_rmse;
+  });
+  if (!described) return;
+  withdraw_effects(single, diagnosed);
+  const std::vector<std::string> shown = shown_by_all(single);
   diagnosis.verdict = Verdict::unexplained;
-  diagnosis.messages.push_back(fmt::format(
-      "the law differs from run to run: each run fitted by itself leaves {:.3g} on cycles that are held out (noise "
-      "floor {:.3g}), all together leave {:.3g}; no effect is named from differences between runs",
-      own.held_out_rmse, own.floor_rmse, diagnosed.fits.front().error.held_out_rmse));
+  diagnosis.messages = {fmt::format(
+      "the law differs from run to run: each {}by itself is described down to its noise floor{}, all together leave "
+      "{:.1f} times theirs; no effect is named from differences between runs that no run shows",
+      single.size() < traces.size() ? fmt::format("of the {} longest runs ", single.size()) : "run ",
+      shown.empty() ? "" : " with " + listed(shown) + " in every one", left / diagnosis.floor_rmse)};
   diagnosis.next_experiment =
-      "Diagnose each run by itself, and fit them as a campaign: --vary mu_s:radius gives one value of a parameter for "
-      "each value of a condition, and the trends show what it goes with.";
+      "Diagnose each run by itself, and fit the folder as a campaign: its trends show what the parameters depend on.";
 }
 
 }  // namespace tribofit::diagnosis

@@ -130,10 +130,8 @@ inline constexpr double kFarAboveFloor = 1.5;  ///< times the noise floor, from 
 /// The same once effects were added, whose scatter is in it, or where most of it wanders as slow noise does.
 inline constexpr double kFarAboveAfterEffects = 2;
 inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part
-/// Of the squares above the noise floor of all runs together that fits of each run leave where the runs differ, and
-/// cycles of a run that tell.
-inline constexpr double kLeftByOwnFits = 0.25;
-inline constexpr std::size_t kFewestCyclesOfARun = 5;
+/// Runs that are diagnosed by themselves where all together are not described: more cost time and say little more.
+inline constexpr std::size_t kMostSingleRuns = 8;
 inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is not chance
 inline constexpr double kSlowestLine = 15;   ///< slip times of a period: a line as slow is structure over time
 inline constexpr int kHarmonicsOfAngle = 6;  ///< of a turn: a disc's faults are low ones, and more cost evidence

@@ -28,7 +28,7 @@ Trial try_other_law(const DiagnosisContext& context, const Law& law, const Trial
     return {};
   const FrictionModel model(law, std::move(effects), known.model.records());
   const Observations& observations = context.coarse.observations;
-  std::vector<double> start = start_from_data(model, observations, bounds_of(model, observations));
+  std::vector<double> start = start_from_data(model, observations, context.coarse.bounds_of(model));
   for (std::size_t k = model.base_count(); k < start.size(); ++k) {
     for (std::size_t i = known.model.base_count(); i < known.p.size(); ++i) {
       const bool same = model.parameters()[k].full_name() == known.model.parameters()[i].full_name();

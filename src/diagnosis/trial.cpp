@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "fit/influence.hpp"
-#include "fit/starts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/solver.hpp"
 #include "tribofit/friction/evaluate.hpp"
@@ -132,6 +131,12 @@ void wrap_phases(const FrictionModel& model, std::vector<double>& p) {
 
 }  // namespace
 
+Bounds Level::bounds_of(const FrictionModel& model) const {
+  Bounds bounds = tribofit::bounds_of(model, observations);
+  apply_given(model, known, bounds);
+  return bounds;
+}
+
 double noise_of(const Level& level, const Trial& trial) {
   return (trial.squares - trial.stick.left + trial.stick.rigid) / level.values;
 }
@@ -142,7 +147,7 @@ Trial try_model(const DiagnosisContext& context, const Level& level, const Frict
   Trial trial;
   trial.model = model;
   const Observations& observations = level.observations;
-  const Bounds bounds = bounds_of(model, observations);
+  const Bounds bounds = level.bounds_of(model);
   const ModelResiduals plain = residuals_of(observations, model, {}, threads);
   trial.whitening = plain.whitening_at(start.data());
   const ModelResiduals residuals = residuals_of(observations, model, trial.whitening, threads);
@@ -159,7 +164,7 @@ Trial try_model(const DiagnosisContext& context, const Level& level, const Frict
 
 Approach nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
                  const std::vector<std::vector<double>>& starts) {
-  const Bounds bounds = bounds_of(model, level.observations);
+  const Bounds bounds = level.bounds_of(model);
   const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
   Approach best;
   for (const auto& start : starts) {
@@ -176,7 +181,7 @@ std::vector<double> nearest_if_several(const Level& level, const FrictionModel& 
 }
 
 Trial try_base(const DiagnosisContext& context, const Level& level, const FrictionModel& model, int threads) {
-  const Bounds bounds = bounds_of(model, level.observations);
+  const Bounds bounds = level.bounds_of(model);
   const ModelResiduals plain = residuals_of(level.observations, model, {}, threads);
   const std::vector<double> start = start_from_data(model, level.observations, bounds);
   return try_model(context, level, model, minimize(plain, start, bounds.lower, bounds.upper, quick_search(40)).p,
@@ -239,7 +244,7 @@ std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial
   const bool alone = base.model.effects().empty();
   if (!alone || remaining_fall(base.model.law(), base.p, level.observations.fastest).value_or(0) < limits::kStraight)
     return out;
-  std::vector<double> anew = start_from_data(base.model, level.observations, bounds_of(base.model, level.observations));
+  std::vector<double> anew = start_from_data(base.model, level.observations, level.bounds_of(base.model));
   std::copy(base.p.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()), base.p.end(),
             anew.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()));
   for (std::size_t k = 0; k < base.model.base_count(); ++k) {
@@ -310,7 +315,7 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
                             const Candidate& candidate, std::span<const double> residual, const LeastFalls& least) {
   const FrictionModel model = with_effect(base.model, candidate.effect);
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
-  const Bounds bounds = bounds_of(model, level.observations);
+  const Bounds bounds = level.bounds_of(model);
   const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
   std::vector<Promise> promises;
   const std::vector<std::vector<double>> bases = bases_of_search(level, base);

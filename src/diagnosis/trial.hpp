@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "candidates.hpp"
+#include "fit/starts.hpp"
 #include "held_out.hpp"
 #include "tribofit/fit/fit.hpp"
 
@@ -47,8 +48,11 @@ struct Level {
   const Observations& observations;
   double values = 0;   ///< rows of friction, over which the noise of a row is taken
   double samples = 0;  ///< behind them
+  std::vector<GivenParameter> known = {};  ///< bounds that the user gave
 
   explicit Level(const Observations& given);
+  /// Of a model's parameters: those of the catalogue on the scale of the record, or the user's.
+  Bounds bounds_of(const FrictionModel& model) const;
 };
 
 /// What all trials of one diagnosis share.

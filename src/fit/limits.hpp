@@ -174,8 +174,12 @@ inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
 /// D_c behind a step within which a contact adapts: e^-5 of the change is left. What is left there over what is left
-/// elsewhere from which on a law lacks something, the chance that noise makes it so, and independent values that tell.
+/// elsewhere, as a root of mean squares, from which on a law lacks something, the chance that noise makes it so (none of
+/// 60 simulated records with wandering noise was said to lack anything), and independent values without which it cannot
+/// be judged. Smaller: drift of the measurement is blamed on the law; larger: a law that fails a little passes.
 inline constexpr double kAdapted = 5, kMuchLeft = 1.15, kChanceOfExcess = 1e-3, kFewestOfExcess = 5;
+/// What wanders over the noise of a sample from which on it is said where that cannot be judged.
+inline constexpr double kMuchWander = 4;
 /// A hold loads the contact as if the speed had changed by e^4.6 (a hundredfold), to begin with.
 inline constexpr double kHoldAsRatio = 4.6;
 /// Second D_c over the first, to begin with.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
@@ -58,7 +59,7 @@ class FitErrors {
 
   /// Noise of what is left; the free unknowns are those whose columns are kept.
   WanderingNoise noise(const std::vector<Eigen::Index>& free) const {
-    return noise_where(free, [](std::size_t) { return true; });
+    return noise_of_rows(free, [](std::size_t) { return true; });
   }
 
   /// Minus twice the logarithm of the likelihood of what is left, with that noise.
@@ -104,19 +105,21 @@ class FitErrors {
     return normal * (design.transpose() * right);
   }
 
-  /// What is left while a contact adapts to a step, over what is left elsewhere. Noise knows nothing of the steps, so
-  /// that a law that describes them leaves as much behind them as elsewhere, however the noise wanders. That noise is
-  /// the one elsewhere: what a law that fails leaves behind the steps wanders too.
-  Excess excess_behind_steps(double distance, const std::vector<Eigen::Index>& free) const {
+  /// What is left while a contact adapts to a step or a hold, over what is left elsewhere. Noise knows nothing of the
+  /// steps, so that a law that describes them leaves as much behind them as elsewhere, however the noise wanders. That
+  /// noise is the one elsewhere: what a law that fails leaves behind the steps wanders too. distance: of the load
+  /// point, over which the contact adapts. Nothing where there are too few independent values on either side.
+  std::optional<Excess> excess_behind_steps(double distance, const std::vector<Eigen::Index>& free) const {
     std::vector<bool> adapts(times_.size());
     for (std::size_t k = 0; k < begins_.size(); ++k) {
-      const double step = data_.steps[problem_.steps()[k]].displacement;
+      const VelocityStep& step = data_.steps[problem_.steps()[k]];
       for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
-        const double slid = data_.displacement[problem_.value_of(i)] - step;
-        adapts[i] = slid > 0 && slid < distance;
+        const double moved = data_.displacement[problem_.value_of(i)] - step.displacement;
+        adapts[i] = times_[i] > step.time && moved < distance;  // through a hold the load point does not move
       }
     }
-    const WanderingNoise noise = noise_where(free, [&](std::size_t i) { return !adapts[i]; });
+    const WanderingNoise noise = noise_of_rows(free, [&](std::size_t i) { return !adapts[i]; });
+    if (!(noise.white > 0)) return std::nullopt;
     double squares[2] = {0, 0}, values[2] = {0, 0}, independent[2] = {0, 0};
     for (std::size_t k = 0; k < begins_.size(); ++k) {
       for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
@@ -128,9 +131,11 @@ class FitErrors {
         independent[where] += noise.time > 0 ? std::min(1.0, lasts / (2 * noise.time)) : 1;
       }
     }
-    if (independent[0] < kFewestOfExcess || independent[1] < kFewestOfExcess) return {};
+    independent[1] -= static_cast<double>(begins_.size() * static_cast<std::size_t>(problem_.design_of(0).cols()));
+    if (independent[0] < kFewestOfExcess || independent[1] < kFewestOfExcess) return std::nullopt;
     const double ratio = squares[0] / values[0] / (squares[1] / values[1]);
-    return {std::sqrt(ratio), f_p_value(ratio, independent[0], independent[1])};
+    if (!(ratio > 0) || !std::isfinite(ratio)) return std::nullopt;
+    return Excess{std::sqrt(ratio), f_p_value(ratio, independent[0], independent[1])};
   }
 
   Errors errors_of(const Eigen::MatrixXd& rows, const WanderingNoise& noise) const {
@@ -153,15 +158,15 @@ class FitErrors {
   std::size_t end_of(std::size_t k) const { return k + 1 < begins_.size() ? begins_[k + 1] : times_.size(); }
 
   /// Noise of what is left at some of the values.
-  template <class Takes>
-  WanderingNoise noise_where(const std::vector<Eigen::Index>& free, const Takes& takes) const {
+  template <class IsSelected>
+  WanderingNoise noise_of_rows(const std::vector<Eigen::Index>& free, const IsSelected& is_selected) const {
     std::vector<Eigen::Index> rows;
     std::vector<double> times, counts;
     std::vector<std::size_t> begins;
     for (std::size_t k = 0; k < begins_.size(); ++k) {
       begins.push_back(rows.size());
       for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
-        if (!takes(i)) continue;
+        if (!is_selected(i)) continue;
         rows.push_back(static_cast<Eigen::Index>(i));
         times.push_back(times_[i]);
         counts.push_back(counts_[i]);
@@ -308,18 +313,35 @@ void set_own_values(const FitErrors& found, std::size_t steps, const std::vector
   }
 }
 
-/// Says where a law leaves more while the contact adapts than elsewhere.
-void say_excess(const FitErrors& found, std::size_t states, const std::vector<Eigen::Index>& free, RateStateFit& fit) {
-  double distance = 0;
+/// Of the load point, over which the contact adapts to the steps: D_c of the slower state, and what the machine gives
+/// way while friction changes.
+double adapting_distance(const RateStateData& data, std::size_t states, const RateStateFit& fit) {
+  double distance = 0, change = 0;
   for (std::size_t i = 0; i < states; ++i) distance = std::max(distance, fit.parameters[2 + 2 * i].value);
-  const Excess excess = found.excess_behind_steps(kAdapted * distance, free);
-  fit.lacks = excess.p_value < kChanceOfExcess && excess.factor > kMuchLeft;
-  if (!fit.lacks) return;
-  fit.messages.push_back(fmt::format(
-      "what is left is {:.2g} times as large within {:.3g} um behind the steps as elsewhere: this law does not "
-      "describe "
-      "all of them{}",
-      excess.factor, 1e6 * kAdapted * distance, states > 1 ? "" : "; two state variables may (--states 2)"));
+  for (const VelocityStep& step : data.steps) {
+    const double ratio = step.hold > 0 ? kHoldAsRatio : std::abs(std::log(step.after / step.before));
+    change = std::max(change, fit.parameters[0].value * ratio);
+  }
+  return kAdapted * distance + change / fit.parameters.back().value;
+}
+
+/// Says where a law leaves more while the contact adapts than elsewhere; where that cannot be judged, that what is left
+/// wanders by much more than the noise of a sample.
+void say_excess(const FitErrors& found, double distance, const std::vector<Eigen::Index>& free, RateStateFit& fit) {
+  const std::optional<Excess> excess = found.excess_behind_steps(distance, free);
+  if (excess) {
+    fit.lacks = excess->p_value < kChanceOfExcess && excess->factor > kMuchLeft;
+    if (*fit.lacks)
+      fit.messages.push_back(fmt::format(
+          "what is left is {:.2g} times as large over the first {:.3g} um behind the steps as elsewhere: this law does "
+          "not describe the response",
+          excess->factor, 1e6 * distance));
+  } else if (fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white) {
+    fit.messages.push_back(
+        fmt::format("what is left wanders by {:.2g} over {:.2g} s, {:.0f} times the noise of a sample: the measurement "
+                    "drifts, or this law does not describe the response",
+                    fit.noise_slow, fit.noise_time, fit.noise_slow / fit.noise_white));
+  }
 }
 
 }  // namespace
@@ -350,7 +372,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data
   set_stability(states, solution.p, fit.degrees_of_freedom, fit);
   set_correlations(fit);
   set_own_values(found, problem.steps().size(), free, influence, noise, fit);
-  say_excess(found, states, free, fit);
+  say_excess(found, adapting_distance(data, states, fit), free, fit);
   return fit;
 }
 
@@ -361,34 +383,6 @@ double log_likelihood_below(const RateStateProblem& best, const RateStateSolutio
   if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
   return 0.5 * (two.whitened(noise) - one.whitened(noise));
-}
-
-void add_messages(RateStateFit& fit) {
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const FitParameter& p = fit.parameters[k];
-    const std::string& name = p.parameter.name;
-    const double si = p.parameter.si;
-    if (p.at_bound) {
-      const bool upper = p.value / si > 0.5 * (p.parameter.lower + p.parameter.upper);
-      fit.messages.push_back(
-          name == "k" && upper
-              ? fmt::format("k is not resolved: the machine is stiffer than the samples behind the steps can show; "
-                            "sample faster there, or hold k by --bounds")
-              : fmt::format("{} ended at its {} bound, {:.4g} {}", name, upper ? "upper" : "lower", p.value / si,
-                            p.parameter.unit));
-    } else if (!p.determined) {
-      fit.messages.push_back(
-          fmt::format("{} is not known from these data: its 95 % interval reaches from {:.3g} to "
-                      "{:.3g} {}",
-                      name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
-    }
-  }
-  for (const Correlation& c : fit.correlations) {
-    fit.messages.push_back(
-        fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "
-                    "than either",
-                    fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, c.value));
-  }
 }
 
 }  // namespace tribofit::fit

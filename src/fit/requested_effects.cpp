@@ -84,6 +84,31 @@ MotionOptions with_corrections(MotionOptions options, std::span<const Effect> ef
   return options;
 }
 
+IdentifyOptions with_declared_filter(const IdentifyOptions& options, const Motion& motion) {
+  const std::optional<Declared>& declared = options.instruments.force_sensor.bandwidth;
+  const bool slips = !motion.kind || motion.kind == RecordKind::stick_slip || motion.kind == RecordKind::sliding;
+  if (!declared || !slips) return options;
+  const Effect& filter = effect_declared_by(InstrumentValue::force_bandwidth);
+  const std::string key = describe(filter).key;
+  const auto is_filter = [&](const Effect& effect) { return describe(effect).key == key; };
+  if (std::any_of(options.effects.begin(), options.effects.end(), is_filter)) return options;
+  IdentifyOptions out = options;
+  out.motion.undo_bandwidth = false;
+  out.effects.push_back(filter);
+  const FrictionModel model(ExponentialLaw{}, {filter});
+  std::vector<double> p(model.parameters().size());
+  for (std::size_t k = model.base_count(); k < p.size(); ++k) {
+    const auto& slot = model.parameters()[k];
+    p[k] = k == model.base_count() ? declared->value : slot.parameter.start * slot.parameter.si;
+    out.fit.given.push_back({slot.full_name(), p[k], GivenParameter::Bounds{p[k], p[k]}});
+  }
+  double delay = 0;
+  for_each_effect(model, p.data(), [&]<class E>(const E&, const double* q) {
+    if constexpr (requires { E::reading_delay(q); }) delay = E::reading_delay(q);
+  });
+  return delay > motion.step ? out : options;
+}
+
 void require_channels(std::span<const Effect> effects, const Motion& motion, TracePart& part) {
   const Channels needs = FrictionModel(ExponentialLaw{}, {effects.begin(), effects.end()}).needs();
   const auto require = [&](bool needed, bool present, const char* channel) {

@@ -17,6 +17,13 @@ std::vector<Effect> kinematic_effects(std::span<const Effect> effects);
 /// Motion options with the corrections that effects of the motion ask for.
 MotionOptions with_corrections(MotionOptions options, std::span<const Effect> effects);
 
+/// The options with which a record is analysed whose force sensor has a declared bandwidth: the filter stands in every
+/// model, held at what was declared. To move the channel by the delay of the filter, which is else done, leaves what it
+/// does to the jumps of break-away and re-stick, and that passes for a memory of the contact. Nothing changes where
+/// the user has put the filter into the model, where its delay is shorter than a sample, and for records without slips
+/// of their own (points, a load point driven in steps, a pull on a spring).
+IdentifyOptions with_declared_filter(const IdentifyOptions& options, const Motion& motion);
+
 /// Refuses a part of a trace without the channels that the effects need.
 void require_channels(std::span<const Effect> effects, const Motion& motion, TracePart& part);
 

@@ -141,7 +141,7 @@ class Assembler {
                      file());
   }
 
-  /// A joint has no radius: torque and rotational speed are those at a lever of 1 m. A disc has one, stated or not.
+  /// A joint has no radius: torque and rotational speed are those at a lever of 1 m. Over a load that would be no mu.
   void set_lever() {
     const bool unknown = std::none_of(trace_.steps.begin(), trace_.steps.end(),
                                       [](const Step& step) { return step.conditions.radius.known(); });
@@ -150,10 +150,10 @@ class Assembler {
     const bool steady = run_.is_points() || run_.kind == RecordKind::sliding;
     const bool turns = column != nullptr ? column->angular && (steady || column->channel == Channel::v_r)
                                          : steady && run_.has(Channel::speed);
-    if (!unknown || !torque || !turns) return;
-    const Condition lever = {1, "lever of 1 m"};
-    trace_.conditions.radius = lever;
-    for (Step& step : trace_.steps) step.conditions.radius = lever;
+    const bool loaded = run_.has(Channel::load) || trace_.conditions.load.known();
+    if (!unknown || !torque || !turns || (loaded && !steady)) return;
+    trace_.conditions.radius = {1, "lever of 1 m"};
+    for (Step& step : trace_.steps) step.conditions.radius = trace_.conditions.radius;
     trace_.notes.emplace_back(
         "no radius is known: torque and rotational speed are taken at a lever of 1 m, so that N stands for N m, mm/s "
         "for mrad/s and s/mm for s/mrad");

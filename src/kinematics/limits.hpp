@@ -345,8 +345,11 @@ inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
 /// leaves as it entered it, each within a sample, over which so little of the jump is left, and of its range at least.
 inline constexpr std::size_t kWidestSpike = 2, kWidestExcursion = 64;
 inline constexpr double kExcursionQuiet = 0.25, kExcursionBack = 0.5, kExcursionDepth = 0.01;
-/// Part of the usual largest sliding speed above which zeros between two samples are none of rest.
-inline constexpr double kOfUsualSpeed = 0.25;
+/// Part of the usual largest sliding speed from which on a velocity does not come to zero by itself within a sample, and
+/// scatters of friction by which it leaves its level at rest, of so many samples to either side. Smaller: a plug that is
+/// loose in noisy friction passes for rest; larger: a rest under nearly the friction of sliding passes for a loose plug.
+inline constexpr double kOfUsualSpeed = 0.25, kFrictionStays = 2;
+inline constexpr std::size_t kBesideZeros = 50;
 /// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
 /// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the noise floor.
 inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;

@@ -19,12 +19,14 @@ bool are_lost(const LostSamples& lost, std::size_t plateaus) {
 
 double noise_in_motion(std::span<const double> velocity) {
   std::vector<double> off;
+  bool reads_zero = false;
   for (std::size_t i = 1; i + 1 < velocity.size(); ++i) {
-    if (velocity[i - 1] != 0 && velocity[i] != 0 && velocity[i + 1] != 0)
-      off.push_back(std::abs(off_line(velocity, i)));
+    const bool moves = velocity[i - 1] != 0 && velocity[i] != 0 && velocity[i + 1] != 0;
+    if (moves) off.push_back(std::abs(off_line(velocity, i)));
+    reads_zero |= velocity[i] == 0 && velocity[i - 1] == 0;
   }
   constexpr double kOffLine = 1.5;  // variance of what white noise is off the line between its neighbours
-  return off.empty() ? 0 : kSigmaPerMad * median(std::move(off)) / std::sqrt(kOffLine);
+  return off.empty() || !reads_zero ? 0 : kSigmaPerMad * median(std::move(off)) / std::sqrt(kOffLine);
 }
 
 LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise,

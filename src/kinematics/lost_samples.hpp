@@ -18,8 +18,8 @@ struct LostSamples {
 /// Too many for blows on the rig. plateaus: of stick.
 bool are_lost(const LostSamples& lost, std::size_t plateaus);
 
-/// Noise of a velocity that may read exactly zero at rest, as an encoder does: how far samples in motion are off the
-/// line between their neighbours, as a standard deviation [m/s]; 0 where none moves.
+/// Noise of a velocity that reads exactly zero at rest, as an encoder does, and thus shows none there: how far samples
+/// in motion are off the line between their neighbours, as a standard deviation [m/s]; 0 for other velocities.
 double noise_in_motion(std::span<const double> velocity);
 
 /// noise: of the velocity [m/s]; step: sampling interval [s]. Jumps from rest, or to it, are the rig's own where most

@@ -74,7 +74,9 @@ void MotionStages::look_at_recording() {
 }
 
 void MotionStages::correct_declared() {
-  lost_ = kinematics::correct_declared(trace_, instruments_, motion_.step, motion_.notes);
+  Instruments corrected = instruments_;
+  if (!options_.undo_bandwidth) corrected.force_sensor.bandwidth.reset();
+  lost_ = kinematics::correct_declared(trace_, corrected, motion_.step, motion_.notes);
   if (lost_.head + lost_.tail + 2 > trace_.size()) lost_ = {};
 }
 

@@ -101,30 +101,49 @@ bool is_never_still(std::span<const double> x, const std::vector<SampleSpan>& ru
          static_cast<double>(equal)<kFewRepeats * n&& static_cast<double>(turns)> kManyTurns * n;
 }
 
-/// Whether a sliding velocity that reads zero was zero: an encoder repeats it. A plug that was loose gives the speed
-/// back that it took.
-bool is_rest(const ChannelOutline& channel, const SampleSpan& run) {
-  const std::span<const double> x = channel.x;
-  if (x[run.begin] != 0) return false;
-  if (run.begin == 0 || run.end == x.size()) return true;
-  const double before = x[run.begin - 1], after = x[run.end];
-  const double usual = std::max(std::abs(channel.usual.low), std::abs(channel.usual.high));
-  const double less = std::min(std::abs(before), std::abs(after)), more = std::max(std::abs(before), std::abs(after));
-  return before * after <= 0 || less < (1 - kExcursionBack) * more || less < kOfUsualSpeed * usual;
+/// Samples beside a run.
+std::vector<double> beside_of(std::span<const double> x, const SampleSpan& run) {
+  const std::size_t from = run.begin - std::min(run.begin, kBesideZeros),
+                    to = std::min(x.size(), run.end + kBesideZeros);
+  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(from),
+                          x.begin() + static_cast<std::ptrdiff_t>(run.begin));
+  out.insert(out.end(), x.begin() + static_cast<std::ptrdiff_t>(run.end), x.begin() + static_cast<std::ptrdiff_t>(to));
+  return out;
 }
 
-std::vector<SampleSpan> find_frozen(const ChannelOutline& channel, bool is_sliding_velocity) {
+/// Whether a sliding velocity that reads zero was zero: an encoder repeats it. A plug that was loose takes a speed away
+/// within a sample, and perhaps gives it back, while friction stays as it is in sliding; at rest friction leaves that
+/// level, or the velocity comes to zero by itself.
+bool is_rest(const ChannelOutline& velocity, const ChannelOutline& friction, const SampleSpan& run) {
+  const std::span<const double> v = velocity.x, f = friction.x;
+  if (v[run.begin] != 0 || f.size() != v.size()) return false;
+  const double usual = std::max(std::abs(velocity.usual.low), std::abs(velocity.usual.high));
+  const auto slides = [&](std::size_t i) { return std::abs(v[i]) > kOfUsualSpeed * usual; };
+  const bool taken = run.begin > 0 && slides(run.begin - 1), given = run.end < v.size() && slides(run.end);
+  const bool at_end = run.begin == 0 || run.end == v.size();
+  const bool same_way = at_end || v[run.begin - 1] * v[run.end] > 0;
+  if (!(at_end ? taken || given : taken && given) || !same_way) return true;
+  std::vector<double> beside = beside_of(f, run);
+  if (beside.size() < kShortestZero) return true;
+  const double level = median(beside);
+  for (double& value : beside) value = std::abs(value - level);
+  const double scatter = kSigmaPerMad * median(std::move(beside));
+  const auto within = f.subspan(run.begin, run.size());
+  return std::abs(median({within.begin(), within.end()}) - level) > kFrictionStays * scatter;
+}
+
+/// What a loose plug left of a channel. friction: beside a sliding velocity, which reads zero at rest as well.
+std::vector<SampleSpan> find_frozen(const ChannelOutline& channel, const ChannelOutline* friction) {
   const std::span<const double> x = channel.x;
   std::vector<SampleSpan> runs = find_runs(channel, kShortestZero);
-  std::erase_if(runs, [&](const SampleSpan& run) {
-    return (run.size() < kShortestFrozen && x[run.begin] != 0) || (is_sliding_velocity && is_rest(channel, run));
-  });
+  std::erase_if(runs, [&](const SampleSpan& run) { return run.size() < kShortestFrozen && x[run.begin] != 0; });
   if (runs.empty() || !is_never_still(x, runs)) return {};
   // A limit of the range is no frozen channel, however often it is reached.
   const Extremes& range = channel.values.whole;
   std::erase_if(runs, [&](const SampleSpan& run) {
     const double value = x[run.begin];
-    return value != 0 && (value == range.low || value == range.high);
+    return (value != 0 && (value == range.low || value == range.high)) ||
+           (friction != nullptr && is_rest(channel, *friction, run));
   });
   return runs;
 }
@@ -146,7 +165,7 @@ ChannelFaults find_channel_faults(const ChannelOutline& recorded, const ChannelO
     channel = &outline_of_cleaned;
   };
   clean(faults.markers = find_markers(*channel));
-  clean(faults.frozen = find_frozen(*channel, is_sliding_velocity));
+  clean(faults.frozen = find_frozen(*channel, is_sliding_velocity ? &beside : nullptr));
   faults.spikes = find_spikes(*channel, beside);
   return faults;
 }

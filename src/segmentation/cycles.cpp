@@ -151,12 +151,12 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
   const auto break_aways =
       std::count_if(cycles.begin(), cycles.end(), [](const Cycle& c) { return c.stick.size() > 0; });
   if (static_cast<std::size_t>(break_aways) >= segmentation::kFewestCycles) return false;
-  std::size_t sliding = 0;
+  std::size_t sliding = 0, driven = 0;
   for (const RawSlip& slide : segmentation::without_rests(motion, segmentation::find_slides(motion), t.peak)) {
-    if (segmentation::keeps_speed(motion, slide.samples)) return true;
     sliding += slide.samples.size();
+    driven += segmentation::keeps_speed(motion, slide.samples) ? slide.samples.size() : 0;
   }
-  return 2 * sliding > motion.size();
+  return 2 * sliding > motion.size() || 2 * driven > sliding;
 }
 
 /// First samples after a gap in the clock, and both ends of what a fault of the recording spoilt.

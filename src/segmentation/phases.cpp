@@ -185,9 +185,13 @@ std::vector<RawSlip> without_rests(const Motion& motion, const std::vector<RawSl
   for (const RawSlip& slide : slides) {
     std::size_t begin = slide.samples.begin, rest = begin, blocks = 0;
     const auto keep = [&](std::size_t end) {
-      if (end <= begin) return;
+      // What reads exactly zero at an end is rest that is shorter than a mean.
+      std::size_t first = begin;
+      while (first < end && motion.relative_velocity[first] == 0) ++first;
+      while (end > first && motion.relative_velocity[end - 1] == 0) --end;
+      if (end <= first) return;
       moving.push_back(slide);
-      moving.back().samples = {begin, end};
+      moving.back().samples = {first, end};
     };
     for (std::size_t i = begin; i < slide.samples.end; i += kRestOver) {
       const std::size_t count = std::min(kRestOver, slide.samples.end - i);

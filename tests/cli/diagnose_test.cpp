@@ -321,4 +321,20 @@ TEST(Diagnose, OneUnusableRecordDoesNotStopTheOthers) {
   EXPECT_NE(shop.identify("diagnose --radius 15mm --speed 4rpm runs").status, 0);
 }
 
+/// The delay of a slow force sensor alone would leave what it does to jumps, and that passes for a memory.
+TEST(Diagnose, ADeclaredFilterStandsInEveryModel) {
+  const Workshop shop;
+  shop.write("lab.json", R"({"force_sensor": {"bandwidth": "200 Hz"}})");
+  const std::string options = "--radius 15mm --speed 4rpm --load 50N --instruments lab.json trace.csv";
+  shop.write("trace.csv", trace("--speed 4rpm --force-bandwidth 200Hz", 5));
+  EXPECT_EQ(result_of(shop, options)["diagnosis"]["verdict"], "sufficient");
+  ASSERT_EQ(shop.identify("--quiet --law exponential --json i.json " + options).status, 0);
+  const json fit = json::parse(contents(shop / "i.json"))["fits"][0];
+  EXPECT_NEAR(fit["parameters"][2]["value"].get<double>() / 0.05214, 1, 0.01);
+  shop.write("trace.csv", trace("--speed 4rpm --force-bandwidth 200Hz --effect frictional-lag:tau=1ms", 6));
+  const json found = result_of(shop, options)["diagnosis"];
+  EXPECT_EQ(found["verdict"], "effect-found");
+  EXPECT_EQ(found["ladder"].back()["added"], "frictional-lag");
+}
+
 }  // namespace

@@ -130,40 +130,54 @@ TEST(Together, RunsShareARunoutButNotItsStartingAngle) {
   EXPECT_LT(third.final_rmse, 0.6 * third.base_rmse);
 }
 
-/// Runs at three radii whose laws differ, as those of the published disc did: an effect would only follow that.
-TEST(DifferingRuns, NoEffectIsNamedFromLawsThatDifferFromRunToRun) {
-  const auto traces_of = [](const std::vector<double>& factors) {
-    std::vector<diagnosis::PreparedTrace> traces;
-    std::uint64_t seed = 20;
-    for (const double factor : factors) {
-      synthetic::Options options;
-      options.noise = 0.003;
-      options.seed = ++seed;
-      std::vector<double> law = synthetic::table4_15mm(ExponentialLaw{});
-      law[1] *= factor;
-      law[2] /= factor;
-      const synthetic::Record made = synthetic::make(FrictionModel(ExponentialLaw{}), law, options);
-      Identification trace;
-      trace.path = "run";
-      trace.motion = made.motion;
-      trace.segmentation = made.segmentation;
-      trace.analysed = true;
-      traces.push_back({trace, {}, [trace](const MotionOptions&) { return trace; }});
-    }
-    return traces;
-  };
+/// Runs whose law differs by factors of mu_k and 1/alpha, as those of the published disc did at its radii.
+std::vector<diagnosis::PreparedTrace> runs_of(const std::vector<double>& factors, std::vector<Effect> effects,
+                                              const std::vector<double>& values) {
+  std::vector<diagnosis::PreparedTrace> traces;
+  std::uint64_t seed = 20;
+  for (const double factor : factors) {
+    synthetic::Options options;
+    options.noise = 0.003;
+    options.seed = ++seed;
+    std::vector<double> p = synthetic::table4_15mm(ExponentialLaw{});
+    p[1] *= factor;
+    p[2] /= factor;
+    p.insert(p.end(), values.begin(), values.end());
+    const synthetic::Record made = synthetic::make(FrictionModel(ExponentialLaw{}, effects), p, options);
+    Identification trace;
+    trace.path = "run";
+    trace.motion = made.motion;
+    trace.segmentation = made.segmentation;
+    trace.analysed = true;
+    traces.push_back({trace, {}, [trace](const MotionOptions&) { return trace; }});
+  }
+  return traces;
+}
+
+Diagnosis diagnosis_of(std::vector<diagnosis::PreparedTrace> traces) {
   IdentifyOptions options;
   options.laws = {ExponentialLaw{}};
-  const DiagnosedTraces differ = diagnosis::diagnose_traces(traces_of({0.9, 1, 1.2}), options, {});
-  EXPECT_EQ(differ.diagnosis.verdict, Verdict::unexplained);
-  EXPECT_EQ(differ.diagnosis.ladder.size(), 1U);
-  for (const EffectFinding& effect : differ.diagnosis.effects)
-    EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
-  ASSERT_FALSE(differ.diagnosis.messages.empty());
-  EXPECT_NE(differ.diagnosis.messages.front().find("differs from run to run"), std::string::npos)
-      << differ.diagnosis.messages.front();
-  const DiagnosedTraces same = diagnosis::diagnose_traces(traces_of({1, 1, 1}), options, {});
-  EXPECT_EQ(same.diagnosis.verdict, Verdict::sufficient);
+  return diagnosis::diagnose_traces(std::move(traces), options, {}).diagnosis;
+}
+
+TEST(DifferingRuns, NoEffectIsNamedFromLawsThatDifferFromRunToRun) {
+  const Diagnosis differ = diagnosis_of(runs_of({0.9, 1, 1.2}, {}, {}));
+  EXPECT_EQ(differ.verdict, Verdict::unexplained);
+  EXPECT_EQ(differ.ladder.size(), 1U);
+  for (const EffectFinding& effect : differ.effects) EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
+  ASSERT_FALSE(differ.messages.empty());
+  EXPECT_NE(differ.messages.front().find("differs from run to run"), std::string::npos) << differ.messages.front();
+  EXPECT_EQ(diagnosis_of(runs_of({1, 1, 1}, {}, {})).verdict, Verdict::sufficient);
+}
+
+TEST(DifferingRuns, AnEffectOfEveryRunIsSaid) {
+  const Diagnosis differ = diagnosis_of(runs_of({0.9, 1, 1.2}, {make_effect("frictional-lag")}, {2e-3}));
+  ASSERT_FALSE(differ.messages.empty());
+  EXPECT_NE(differ.messages.front().find("with frictional-lag in every one"), std::string::npos)
+      << differ.messages.front();
+  const Diagnosis same = diagnosis_of(runs_of({1, 1, 1}, {make_effect("frictional-lag")}, {2e-3}));
+  EXPECT_EQ(same.verdict, Verdict::effect_found);
+  EXPECT_EQ(same.ladder.back().added, "frictional-lag");
 }
 
 }  // namespace

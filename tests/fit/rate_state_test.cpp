@@ -287,8 +287,31 @@ TEST(RateState, WanderingNoiseIsNotTakenForALawThatFails) {
     EXPECT_EQ(fit.lacks, evolution == StateEvolution::ageing);
     return ::testing::PrintToString(fit.messages);
   };
-  EXPECT_THAT(says(StateEvolution::slip), ::testing::Not(::testing::HasSubstr("does not describe")));
-  EXPECT_THAT(says(StateEvolution::ageing), ::testing::HasSubstr("does not describe"));
+  EXPECT_THAT(says(StateEvolution::slip), ::testing::Not(::testing::HasSubstr("not describe the response")));
+  EXPECT_THAT(says(StateEvolution::ageing), ::testing::HasSubstr("not describe the response"));
+}
+
+TEST(RateState, AShortStepIsFittedAndLeftUnjudged) {
+  const RateStateMachine machine = machine_of(StateEvolution::ageing, 8);
+  std::vector<double> times = {57, 57.5, 58, 58.5, 59, 59.5};
+  for (int i = 0; i < 40; ++i) times.push_back(60 + 0.1 * i);
+  const RateStateAnalysis found =
+      fit_rate_state(motion_from(machine, {{0, 2e-6}, {60, 10e-6}}, times, 1e-5), together());
+  ASSERT_TRUE(found.fitted());
+  EXPECT_FALSE(found.fits[found.best].lacks.has_value());
+}
+
+/// Through a hold the load point does not move, and what a law leaves there is left all the same.
+TEST(RateState, AWrongLawOfAHoldIsSaid) {
+  const RateStateMachine machine = machine_of(StateEvolution::ageing, 8);
+  const std::vector<LoadPointPhase> phases = {{0, 10e-6}, {40, 0}, {140, 10e-6}};
+  const Motion motion = motion_from(machine, phases, times_until(200, 20), 1e-5);
+  for (const StateEvolution evolution : state_evolutions) {
+    RateStateOptions options = together();
+    options.evolutions = {evolution};
+    const std::string said = ::testing::PrintToString(fit_rate_state(motion, options).fits.at(0).messages);
+    EXPECT_EQ(said.find("not describe the response") == std::string::npos, evolution == StateEvolution::ageing) << said;
+  }
 }
 
 }  // namespace tribofit

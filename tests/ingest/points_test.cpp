@@ -89,6 +89,10 @@ TEST_F(Points, ARecordOfAJointNeedsNoRadiusAndOneOfADiscDoes) {
   EXPECT_DOUBLE_EQ(trace.velocity.front(), 0.5);
   EXPECT_THAT(trace.notes, Contains(HasSubstr("lever of 1 m")));
   expect_error(write(disc), {}, "needs the friction radius", "--radius");
+  write(joint);
+  ReadOptions loaded;  // a coefficient needs the radius
+  loaded.conditions.load = {50, "command line"};
+  expect_error(path("trace.csv"), loaded, "needs the friction radius", "--radius");
 }
 
 TEST_F(Points, AJointWithoutARadiusHasALeverOfAMetre) {

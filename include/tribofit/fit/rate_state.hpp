@@ -72,7 +72,8 @@ struct RateStateFit {
   double noise_white = 0;               ///< scatter of a sample in what is left [1]
   double noise_slow = 0;                ///< and of what wanders in it [1], over a time of
   double noise_time = 0;                ///< [s]; 0: nothing wanders
-  bool lacks = false;                   ///< it leaves more behind the steps than elsewhere, and not by chance
+  /// It leaves more behind the steps than elsewhere, and noise alone would not; nothing where that cannot be judged.
+  std::optional<bool> lacks;
   double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  ///< steps that were left out of the fit
   double degrees_of_freedom = 1;
   std::size_t samples = 0;

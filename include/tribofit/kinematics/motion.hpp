@@ -134,6 +134,8 @@ struct MotionOptions {
   bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
   bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
   bool undo_distortions = true;   ///< zero, low-pass and compression of the velocity, clocks that run apart
+  /// Move friction by the delay of a declared bandwidth; false: the model that is fitted holds the filter itself.
+  bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;
   StickRule stick = {};
 };
