@@ -338,9 +338,9 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
           excess->factor, 1e6 * distance));
   } else if (fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white) {
     fit.messages.push_back(
-        fmt::format("what is left wanders by {:.2g} over {:.2g} s, {:.0f} times the noise of a sample: the measurement "
+        fmt::format("what is left wanders by {:.2g} over {:.2g} s, far above the noise of a sample: the measurement "
                     "drifts, or this law does not describe the response",
-                    fit.noise_slow, fit.noise_time, fit.noise_slow / fit.noise_white));
+                    fit.noise_slow, fit.noise_time));
   }
 }
 

@@ -156,7 +156,8 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
     sliding += slide.samples.size();
     driven += segmentation::keeps_speed(motion, slide.samples) ? slide.samples.size() : 0;
   }
-  return 2 * sliding > motion.size() || 2 * driven > sliding;
+  return 2 * sliding > motion.size() ||
+         static_cast<double>(driven) > segmentation::kDrivenPart * static_cast<double>(sliding);
 }
 
 /// First samples after a gap in the clock, and both ends of what a fault of the recording spoilt.

@@ -45,6 +45,9 @@ inline constexpr double kEndsOfStick = 0.1, kMiddleOfStick = 0.3;
 /// sine, 0.07 for a noise of 5 %). Larger: slips of a block on a spring pass for driven; smaller: noisy drives do not.
 inline constexpr std::size_t kShortestSlide = 50;
 inline constexpr double kKeptSpeed = 0.3;
+/// Part of all sliding from which on slides at a kept speed make a record one of sliding, where it has too few
+/// break-aways for cycles: less may be a slip that was clipped.
+inline constexpr double kDrivenPart = 0.25;
 /// Samples of a mean, and such means in a row, that make a rest within sliding.
 inline constexpr std::size_t kRestOver = 16, kFewestRests = 2;
 /// Cycles that carry an analysis of cycles: a spread needs three, fewer leave no degree of freedom beside a mean and
