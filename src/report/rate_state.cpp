@@ -158,19 +158,27 @@ void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
   const RateStateFit &best = analysis.fits[analysis.best], &other = analysis.fits[1 - analysis.best];
   const bool held = std::isfinite(best.held_out_rmse) && std::isfinite(other.held_out_rmse);
   const std::string figures =
-      fmt::format("RMSE {} against {}{}, {}", significant(best.rmse, 4), significant(other.rmse, 4),
+      fmt::format("RMSE {} against {}{}", significant(best.rmse, 4), significant(other.rmse, 4),
                   held ? fmt::format(", on steps held out {} against {}", significant(best.held_out_rmse, 4),
                                      significant(other.held_out_rmse, 4))
-                       : "",
-                  p_value_text(analysis.law_p_value));
+                       : "");
+  const std::string p_value = p_value_text(analysis.law_p_value);
   section.heading("Which law");
+  if (best.lacks.value_or(false)) {
+    section.plain(
+        fmt::format("Neither law describes these steps; the {} law is nearer ({}). Which of them holds can be "
+                    "judged once what is missing is in the model.",
+                    to_string(best.evolution), figures));
+    return;
+  }
   constexpr double kTold = 0.05;
-  section.plain(analysis.law_p_value < kTold
-                    ? fmt::format("The {} law describes these steps better than the {} law ({}).",
-                                  to_string(best.evolution), to_string(other.evolution), figures)
-                    : fmt::format("These data do not distinguish the {} law from the {} law ({}). Steps of a factor of "
-                                  "ten or more, up and down, would.",
-                                  to_string(best.evolution), to_string(other.evolution), figures));
+  section.plain(
+      analysis.law_p_value < kTold
+          ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
+                        to_string(other.evolution), figures, p_value)
+          : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
+                        "of ten or more, up and down, would.",
+                        to_string(best.evolution), to_string(other.evolution), figures, p_value));
 }
 
 }  // namespace
