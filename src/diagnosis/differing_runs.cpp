@@ -113,6 +113,7 @@ void withhold_of_differing_runs(const std::vector<PreparedTrace>& traces, const 
   withdraw_effects(single, diagnosed);
   const std::vector<std::string> shown = shown_by_all(single);
   diagnosis.verdict = Verdict::unexplained;
+  diagnosis.runs_differ = true;
   diagnosis.messages = {fmt::format(
       "the law differs from run to run: each {}by itself is described down to its noise floor{}, all together leave "
       "{:.1f} times theirs; no effect is named from differences between runs that no run shows",

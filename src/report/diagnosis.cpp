@@ -165,7 +165,7 @@ void add_verdict(const DiagnosedTraces& result, TerminalText& text) {
   const Diagnosis& d = result.diagnosis;
   text.heading("Verdict: " + std::string(to_string(d.verdict)));
   text.line(diagnosis_verdict(result));
-  const bool said = d.verdict == Verdict::not_enough_data;  // its first message is the verdict
+  const bool said = d.verdict == Verdict::not_enough_data || d.runs_differ;  // the first message is the verdict
   for (std::size_t k = said ? 1 : 0; k < d.messages.size(); ++k) text.line("note: " + d.messages[k]);
 }
 

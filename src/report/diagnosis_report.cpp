@@ -150,7 +150,7 @@ ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& mot
     section.heading("A closed form of what remains, for --formula");
     section.command(d.formula);
   }
-  for (const std::string& message : d.messages) section.plain(message);
+  for (std::size_t k = d.runs_differ ? 1 : 0; k < d.messages.size(); ++k) section.plain(d.messages[k]);
   if (!d.confirmations.empty()) section.heading("On runs not used in the fit");
   for (const Confirmation& c : d.confirmations) {
     section.item(confirmation_sentence(c, result));

@@ -163,6 +163,7 @@ Diagnosis diagnosis_of(std::vector<diagnosis::PreparedTrace> traces) {
 TEST(DifferingRuns, NoEffectIsNamedFromLawsThatDifferFromRunToRun) {
   const Diagnosis differ = diagnosis_of(runs_of({0.9, 1, 1.2}, {}, {}));
   EXPECT_EQ(differ.verdict, Verdict::unexplained);
+  EXPECT_TRUE(differ.runs_differ);
   EXPECT_EQ(differ.ladder.size(), 1U);
   for (const EffectFinding& effect : differ.effects) EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
   ASSERT_FALSE(differ.messages.empty());

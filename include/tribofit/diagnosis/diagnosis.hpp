@@ -127,6 +127,7 @@ struct Diagnosis {
   std::string next_experiment;  ///< one or two sentences
   std::string formula;          ///< a closed form of what remains, as --formula takes it; empty: none
   std::vector<std::string> messages;
+  bool runs_differ = false;  ///< the law differs from run to run; the first message says how
 };
 
 /// A diagnosis with the fits of its rungs, the base law first.
