@@ -167,7 +167,7 @@ void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
   if (best.lacks.value_or(false)) {
     section.plain(
         fmt::format("Neither law describes these steps; the {} law is nearer ({}). Which of them holds can be "
-                    "judged once what is missing is in the model.",
+                    "judged once the model has what it lacks.",
                     to_string(best.evolution), figures));
     return;
   }
