@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
+#include <utility>
 
 #include "conclusions.hpp"
 #include "fit/assessment.hpp"
@@ -112,13 +112,18 @@ void withhold_of_differing_runs(const std::vector<PreparedTrace>& traces, const 
   if (!described) return;
   withdraw_effects(single, diagnosed);
   const std::vector<std::string> shown = shown_by_all(single);
-  diagnosis.verdict = Verdict::unexplained;
-  diagnosis.runs_differ = true;
-  diagnosis.messages = {fmt::format(
+  std::string differs = fmt::format(
       "the law differs from run to run: each {}by itself is described down to its noise floor{}, all together leave "
       "{:.1f} times theirs; no effect is named from differences between runs that no run shows",
       single.size() < traces.size() ? fmt::format("of the {} longest runs ", single.size()) : "run ",
-      shown.empty() ? "" : " with " + listed(shown) + " in every one", left / diagnosis.floor_rmse)};
+      shown.empty() ? "" : " with " + listed(shown) + " in every one", left / diagnosis.floor_rmse);
+  if (diagnosis.verdict == Verdict::effect_found && diagnosis.ladder.size() > 1) {  // what was found stays found
+    diagnosis.messages.push_back(std::move(differs));
+    return;
+  }
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.runs_differ = true;
+  diagnosis.messages = {std::move(differs)};
   diagnosis.next_experiment =
       "Diagnose each run by itself, and fit the folder as a campaign: its trends show what the parameters depend on.";
 }

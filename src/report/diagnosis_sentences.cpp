@@ -158,7 +158,10 @@ class Sentences {
   }
 
   std::string unexplained() const {
-    if (d_.runs_differ) return capitalised(d_.messages.front()) + ".";
+    if (d_.runs_differ) {
+      const std::string found = found_effects(d_).empty() ? "" : found_sentence(result_) + " ";
+      return found + capitalised(d_.messages.front()) + ".";
+    }
     const std::string rest = where_sentence(d_.remaining.empty() ? d_.where : d_.remaining);
     if (const std::vector<std::string> keys = keys_of(EffectStatus::possible); !keys.empty()) {
       return fmt::format("{} What remains looks like {}, but these data do not prove it: {}.",
