@@ -52,7 +52,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   const bool driven = is_driven_in_steps(out.motion.kind);
   const bool has_spectrum = !driven && !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
   run_tasks(2, options.threads, [&](std::size_t k) {
-    if (k == 0) out.segmentation = find_cycles(out.motion);
+    if (k == 0) out.segmentation = find_cycles(out.motion, options.threads);
     if (k == 1 && has_spectrum) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   });
   stop_point();

@@ -65,7 +65,8 @@ void set_extent(Observations& out) {
 
 std::string condensed_text(const CondensedRun& run) {
   const Observations& o = run.observations;
-  const auto noise = [](const FlickerNoise& f) {
+  const auto flicker = [](const RecordNoise& noise) {
+    const FlickerNoise& f = noise.flicker;
     return Json::array({rounded(f.power, kCondensedDigits), rounded(f.samples, kCondensedDigits)});
   };
   const auto fit = [](const CondensedRun::OfFit& f) {
@@ -73,10 +74,10 @@ std::string condensed_text(const CondensedRun& run) {
                   list_of(f.upper, number));
   };
   return line_of(object("points", run.is_points, "within", rounded(run.within, kCondensedDigits), "flicker",
-                        rounded(o.flicker, kCondensedDigits), "flicker_noise", list_of(o.flicker_noise, noise),
-                        "mean_load_N", rounded(o.mean_load, kCondensedDigits), "slips", list_of(o.slips, slip_json),
-                        "velocity_mm_s", scaled_list(o.velocity, kMillimetre), "friction", scaled_list(o.friction, 1),
-                        "weight", scaled_list(o.weight, 1), "velocity_variance_mm2_s2",
+                        rounded(o.flicker, kCondensedDigits), "flicker_noise", list_of(o.noise, flicker), "mean_load_N",
+                        rounded(o.mean_load, kCondensedDigits), "slips", list_of(o.slips, slip_json), "velocity_mm_s",
+                        scaled_list(o.velocity, kMillimetre), "friction", scaled_list(o.friction, 1), "weight",
+                        scaled_list(o.weight, 1), "velocity_variance_mm2_s2",
                         scaled_list(o.velocity_variance, kMillimetre * kMillimetre), "fits", list_of(run.fits, fit)));
 }
 
@@ -87,7 +88,7 @@ CondensedRun condensed_from(const Json& json) {
   Observations& o = run.observations;
   o.flicker = json.at("flicker").get<double>();
   for (const Json& noise : json.at("flicker_noise"))
-    o.flicker_noise.push_back({noise.at(0).get<double>(), noise.at(1).get<double>()});
+    o.noise.push_back({{}, 0, {noise.at(0).get<double>(), noise.at(1).get<double>()}});
   o.mean_load = json.at("mean_load_N").get<double>();
   for (const Json& slip : json.at("slips")) read_slip(slip, o);
   const std::size_t count = o.slips.empty() ? 0 : o.slips.back().end;

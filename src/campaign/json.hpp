@@ -65,10 +65,13 @@ Json list_of(const Items& items, Make&& make) {
 /// A number with so many digits, so that files stay small.
 inline Json rounded(double value, int digits) {
   if (!std::isfinite(value)) return nullptr;
-  std::array<char, 40> text = {};
-  const auto end = fmt::format_to_n(text.data(), text.size(), "{:.{}g}", value, digits).out;
-  std::from_chars(text.data(), end, value);
-  return value;
+  if (value == 0) return 0.0;
+  // Integers and powers of ten up to 10^22 are exact, and so their quotient is the double nearest to the decimal.
+  constexpr double kExact = 1e22;
+  const double shift = digits - 1 - std::floor(std::log10(std::abs(value)));
+  const double power = std::pow(10.0, std::abs(shift));
+  if (!(power <= kExact)) return std::stod(fmt::format("{:.{}g}", value, digits));
+  return shift < 0 ? std::round(value / power) * power : std::round(value * power) / power;
 }
 inline Json rounded_list(std::span<const double> values, int digits) {
   return list_of(values, [&](double value) { return rounded(value, digits); });

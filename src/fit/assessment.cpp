@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slip_ranges.hpp"
 #include "tribofit/fit/observations.hpp"
 
 namespace tribofit {
@@ -97,7 +98,7 @@ std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t c
 }
 
 std::size_t evidence_of(const Motion& motion, const Segmentation& segmentation) {
-  return observe(motion, segmentation, {}, 1).cycles;
+  return slip_ranges(motion, segmentation).size();
 }
 
 Curve curve_of(const Fit& fit, std::size_t points) {
@@ -122,7 +123,7 @@ Membership membership(const Motion& motion, const Segmentation& segmentation, co
   }
   if (fit == nullptr || fit->cycles == 0) return out;
   // The unit of evidence is a slip, or a piece of one where nothing sticks; stick goes with the slip after it.
-  for (const Observations::SlipObservation& range : observe(motion, segmentation, {}, 1).slips) {
+  for (const Observations::SlipObservation& range : slip_ranges(motion, segmentation)) {
     const std::size_t fold = fit->fold_of(before + range.cycle);
     std::size_t begin = range.samples.begin;
     const std::size_t c = out.cycle[begin];

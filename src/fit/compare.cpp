@@ -36,7 +36,7 @@ namespace {
 
 /// The observations of a record as the fit means them: its parameters refer to its own N0 and T0.
 Observations observed_for(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
-  Observations out = observe_motion(motion, segmentation, fit.model.needs());
+  Observations out = observe_motion(motion, segmentation, sensor_noise(motion, segmentation), fit.model.needs());
   out.mean_load = fit.mean_load;
   out.mean_temperature = fit.mean_temperature;
   return out;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace tribofit {
@@ -53,7 +54,7 @@ void set_squares_of_fold(const FitContext& context, const std::vector<std::size_
   const std::size_t count = std::min(at_q.size(), at_p.size());
   for (std::size_t k = 0; k < count; ++k) change += std::abs(at_q[k] - at_p[k]);
   for (const std::size_t s : held) known += fit.cycle_squares[observations.slips[s].cycle];
-  if (!(change > known)) {
+  if (!(change > known) || context.is_look()) {
     for (std::size_t k = 0; k < count; ++k) fit.cycle_squares[observations.slips[held[k]].cycle] += at_q[k] - at_p[k];
     return;
   }
@@ -63,6 +64,30 @@ void set_squares_of_fold(const FitContext& context, const std::vector<std::size_
     const std::size_t cycle = observations.slips[s].cycle;
     fit.cycle_squares[cycle] = exact[cycle];
   }
+}
+
+/// For a look: where a step from p leads, shortened until it describes the slips kept, or every so many of them, no
+/// worse than p does; p where no part of it does.
+std::vector<double> shortened_step(const FitContext& context, const std::vector<std::size_t>& kept,
+                                   const std::vector<double>& p, const std::vector<bool>& free, Eigen::VectorXd step) {
+  constexpr std::size_t kValues = 8000;
+  constexpr int kHalvings = 4;
+  const std::size_t every = std::max<std::size_t>(1, context.observations.size() / kValues);
+  std::vector<std::size_t> some;
+  for (std::size_t k = 0; k < kept.size(); k += every) some.push_back(kept[k]);
+  const ModelResiduals residuals = context.residuals(some);
+  std::vector<double> left(residuals.count());
+  const auto cost = [&](const std::vector<double>& at) {
+    if (!residuals.evaluate(at.data(), left.data(), nullptr)) return std::numeric_limits<double>::infinity();
+    return std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
+  };
+  const double here = cost(p);
+  for (int k = 0; k <= kHalvings; ++k, step /= 2) {
+    std::vector<double> q = p;
+    take_step(context.bounds, free, step, q);
+    if (cost(q) <= here) return q;
+  }
+  return p;
 }
 
 }  // namespace
@@ -98,7 +123,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
     const Eigen::VectorXd step = step_without(context, solution, equations, free, fit, fold);
     const bool is_long = take_step(context.bounds, free, step, q);
     if (is_long && !context.by_extremes())
-      q = context.solve(kept, p, context.is_look() ? short_search() : quick_search()).p;
+      q = context.is_look() ? shortened_step(context, kept, p, free, step) : context.solve(kept, p, quick_search()).p;
     set_squares_of_fold(context, held, p, q, fit);
   }
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);

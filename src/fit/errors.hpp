@@ -35,25 +35,16 @@ class FullRecord {
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 
-/// Noise of friction about parabolas, whether it was taken in stick, and what friction between two samples is off a
-/// straight line, over the slips, where noise does not show it.
-struct SensorNoise {
-  double rmse = 0;
-  bool in_stick = false;
-  double between = 0;
-  double any() const { return std::max(rmse, between); }
-};
 SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation);
 
-/// Of a record, for its observations: a fit finds it there (Observations::flicker_noise).
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
-/// Writes it to the observations of one record, with what it does to each slip: as much in every e-fold of time, from
-/// the slip to the record.
-void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out);
+/// Writes the noise of a record to its observations, with what its slow part does to each slip: as much in every e-fold
+/// of time, from the slip to the record.
+void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out);
 
-/// observe() without slow noise, which takes most of its time: enough to evaluate a model, not to fit one.
-Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
-                            std::size_t values_per_slip = 80);
+/// observe() without noise but what weighs a break-away: enough to evaluate a model, not to fit one.
+Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const SensorNoise& noise,
+                            const Channels& needs, std::size_t values_per_slip = 80);
 
 /// What a model leaves on every sample.
 struct SampleErrors {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "change_point.hpp"
+#include "limits.hpp"
 #include "reduced.hpp"
 #include "refinement.hpp"
 #include "spectral_lines.hpp"
@@ -15,9 +16,9 @@ namespace tribofit {
 
 namespace {
 
-/// Evenly spread slips with about `values` values: enough to compare starts.
-std::vector<std::size_t> sample_of_slips(const Observations& observations, std::size_t values) {
-  const std::size_t every = std::max<std::size_t>(1, observations.size() / values);
+/// Evenly spread slips with about `values` values; every so many that both directions take part.
+std::vector<std::size_t> some_slips(const Observations& observations, std::size_t values) {
+  const std::size_t every = (observations.size() / values) | 1U;
   std::vector<std::size_t> slips;
   for (std::size_t k = 0; k < observations.slips.size(); k += every) slips.push_back(k);
   return slips;
@@ -77,7 +78,7 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
 /// Where the best of several starts leads, compared on slips with about so many values.
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
                                    std::size_t values, const SolverOptions& search, Fit& fit) {
-  const std::vector<std::size_t> part = sample_of_slips(context.observations, values);
+  const std::vector<std::size_t> part = some_slips(context.observations, values);
   std::vector<SolverResult> tries;
   for (const auto& start : starts) tries.push_back(context.solve(part, start, search));
   std::size_t best = 0;
@@ -89,17 +90,18 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   return tries[best].p;
 }
 
-/// Passes from p, each with the scatter of break-away as the one before it leaves it, until two are alike. Sets the
-/// whitening; where a change point ends is held in `held`.
-void settle(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
+/// Passes over these slips from p, each with the scatter of break-away as the one before it leaves it, until two are
+/// alike; for a look one. Sets the whitening; where a change point ends is held in `held`.
+void settle(FitContext& context, const std::vector<std::size_t>& slips, const std::optional<ChangePoint>& change,
+            Bounds& held, std::vector<double>& p) {
   const bool look = context.is_look();
   const SolverOptions search = look ? short_search() : quick_search();
   const std::vector<std::size_t> all = all_slips(context.observations);
   // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
   // is most of what a law leaves, three passes still hold something of the start.
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  constexpr int kFewestPasses = 3, kMostPasses = 20;
-  const int most = look ? kFewestPasses : kMostPasses;
+  constexpr int kFewestPasses = 3, kMostPasses = 20, kPassesOfLook = 2;
+  const int most = look ? kPassesOfLook : kMostPasses;
   bool is_settled = false;
   for (int pass = 0; pass < most && !is_settled; ++pass) {
     context.whitening = plain.whitening_at(p.data());
@@ -108,15 +110,15 @@ void settle(FitContext& context, const std::optional<ChangePoint>& change, Bound
       held.lower[change->time] = held.upper[change->time] = p[change->time];
     }
     if (pass + 1 == most) break;
-    std::vector<double> next = context.solve(all, p, search, held).p;
+    std::vector<double> next = context.solve(slips, p, search, held).p;
     is_settled = pass + 2 >= kFewestPasses && are_alike(p, next);
     p = std::move(next);
   }
   if (is_settled) context.whitening = plain.whitening_at(p.data());
 }
 
-/// The search on fewer values: where passes from the best of several starts end.
-std::vector<double> search_on(const Observations& few, const FitContext& context,
+/// The search on fewer values, or on some of the slips: where passes from the best of several starts end.
+std::vector<double> search_on(const Observations& few, const std::vector<std::size_t>& slips, const FitContext& context,
                               const std::vector<std::vector<double>>& starts, const std::optional<ChangePoint>& change,
                               Fit& fit) {
   FitContext coarse{context.model, context.records, few, context.instruments, context.options};
@@ -126,15 +128,16 @@ std::vector<double> search_on(const Observations& few, const FitContext& context
   const SolverOptions search = context.is_look() ? short_search() : quick_search();
   constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
   std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
-  p = coarse.solve(all_slips(few), p, search).p;
+  p = coarse.solve(slips, p, search).p;
   Bounds held = coarse.bounds;
-  settle(coarse, change, held, p);
+  settle(coarse, slips, change, held, p);
   return p;
 }
 
 /// Best of several starts; then all slips, first by plain least squares to see the scatter of break-away, then with
-/// that scatter taken out. The search runs on fewer values where there are many, and what it finds is taken to where
-/// all of them lead.
+/// that scatter taken out. Where there are many values the search runs on means of them, or on some of the slips where
+/// every value counts, and what it finds is taken to where all of them lead. A look stays there where it cannot be:
+/// along a flat valley.
 Solution joint_estimate(FitContext& context, Fit& fit) {
   Solution out;
   const bool look = context.is_look();
@@ -143,22 +146,28 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   out.start = starts[0];
   const std::optional<ChangePoint> change = change_point_of(context.model);
   const std::vector<std::size_t> all = all_slips(context.observations);
+  const std::optional<Observations> means =
+      reduced_for_search(context.model, context.observations, look ? kValuesOfLook : kValuesOfSearch);
+  const Observations& few = means ? *means : context.observations;
+  const std::vector<std::size_t> slips = means ? all : some_slips(few, look ? kWholeSlipsOfLook : kWholeSlips);
   Bounds held = context.bounds;
-  std::vector<double> p;
-  if (const auto few = reduced_for_search(context.model, context.observations)) {
-    p = search_on(*few, context, starts, change, fit);
-    if (refine(context, change, held, p)) {
-      out.result.p = std::move(p);
-      out.result.converged = true;
+  if (!means && slips.size() == all.size()) {
+    constexpr std::size_t kValuesToCompare = 4000;
+    out.result.p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, search, fit), search).p;
+  } else {
+    out.result.p = search_on(few, slips, context, starts, change, fit);
+    out.result.converged = true;
+    if (change && look) held.lower[change->time] = held.upper[change->time] = out.result.p[change->time];
+    if (refine(context, look ? std::nullopt : change, held, out.result.p)) return out;
+    if (look) {
+      const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
+      context.whitening = plain.whitening_at(out.result.p.data());
       return out;
     }
     held = context.bounds;
-  } else {
-    constexpr std::size_t kValuesToCompare = 4000;
-    p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, search, fit), search).p;
   }
-  settle(context, change, held, p);
-  out.result = context.solve(all, p, look ? search : careful_search(), held);
+  settle(context, all, change, held, out.result.p);
+  out.result = context.solve(all, out.result.p, look ? search : careful_search(), held);
   return out;
 }
 

@@ -26,14 +26,14 @@ namespace tribofit {
 namespace {
 
 /// Means over the records, in squares.
-Floor mean_floor(std::span<const Record> records) {
-  Floor floor = estimate_floor(*records[0].motion, *records[0].segmentation);
+Floor mean_floor(const std::vector<RecordNoise>& records) {
+  Floor floor = floor_of(records[0]);
   if (records.size() == 1) return floor;
   const auto count = static_cast<double>(records.size());
   double noise = floor.noise * floor.noise, scatter = floor.scatter * floor.scatter;
   double sampling = floor.sampling * floor.sampling;
   for (std::size_t r = 1; r < records.size(); ++r) {
-    const Floor next = estimate_floor(*records[r].motion, *records[r].segmentation);
+    const Floor next = floor_of(records[r]);
     noise += next.noise * next.noise;
     scatter += next.scatter * next.scatter;
     sampling += next.sampling * next.sampling;
@@ -53,7 +53,7 @@ FitContext context_of(const FrictionModel& model, std::span<const Record> record
   context.evaluation.threads = options.threads;
   if (options.loss != Loss::squares) {
     context.evaluation.loss = options.loss;
-    context.evaluation.loss_width = options.loss_scale * mean_floor(records).noise;
+    context.evaluation.loss_width = options.loss_scale * mean_floor(observations.noise).noise;
   }
   return context;
 }
@@ -107,7 +107,7 @@ void fill_errors(const SampleErrors& errors, Fit& fit) {
 double slow_sensor_noise(std::span<const Record> records, const Observations& observations, double left) {
   double variance = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const FlickerNoise& flicker = observations.flicker_noise[r];
+    const FlickerNoise& flicker = observations.noise[r].flicker;
     if (!(flicker.power > 0)) continue;
     const double times = static_cast<double>(records[r].motion->size()) / (kPartBesideParabola * flicker.samples);
     variance += 2 * flicker.power * std::log(std::max(1.0, times)) / static_cast<double>(records.size());
@@ -123,7 +123,7 @@ double noise_beside(const Fit& fit, std::size_t parameters) {
 }
 
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
-  Floor floor = mean_floor(context.records);
+  Floor floor = mean_floor(context.observations.noise);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
   const ModelResiduals::Whitening whitening =
       context.whitening.any() ? context.whitening

@@ -61,15 +61,31 @@ std::size_t values_per_slip(const FrictionModel& model) {
   return model.effects().empty() && !describe(model.law()).steep_at_rest ? kBare : kFull;
 }
 
+/// What of a record a model looks at: models that look at the same share it.
+struct View {
+  explicit View(const FrictionModel& model)
+      : needs(model.needs()), values(values_per_slip(model)), stick(model.acts_in_stick()) {}
+
+  Observations of(const Record& record, const RecordNoise& noise) const {
+    Observations out = observe(*record.motion, *record.segmentation, noise, needs, values);
+    if (stick) add_stick_evidence(*record.motion, *record.segmentation, floor_of(noise).noise, out);
+    return out;
+  }
+
+  bool operator==(const View&) const = default;
+
+  Channels needs;
+  std::size_t values;
+  bool stick;
+};
+
 }  // namespace
 
 Observations observations_for(const FrictionModel& model, std::span<const Record> records) {
   std::vector<Observations> parts;
   for (const Record& record : records) {
-    parts.push_back(observe(*record.motion, *record.segmentation, model.needs(), values_per_slip(model)));
-    if (!model.acts_in_stick()) continue;
-    const double noise = estimate_floor(*record.motion, *record.segmentation).noise;
-    add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
+    const RecordNoise noise = noise_of(*record.motion, *record.segmentation);
+    parts.push_back(View(model).of(record, noise));
   }
   return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
 }
@@ -83,11 +99,20 @@ void fit_laws(const IdentifyOptions& options, const Motion& motion, TracePart& p
   const Record record = {&motion, &part.segmentation};
   auto fits = planned_fits(options, effects, !motion.is_points());
   part.fits.resize(fits.size());
+  std::vector<View> views;
+  std::vector<std::size_t> view_of;  // each fit
+  for (const auto& [model, fit] : fits) {
+    const auto known = std::find(views.begin(), views.end(), View(model));
+    view_of.push_back(static_cast<std::size_t>(known - views.begin()));
+    if (known == views.end()) views.emplace_back(model);
+  }
+  if (!part.noise) part.noise = noise_of(motion, part.segmentation, options.threads);
+  std::vector<Observations> seen(views.size());
+  run_tasks(views.size(), options.threads, [&](std::size_t v) { seen[v] = views[v].of(record, *part.noise); });
   run_tasks(fits.size(), options.threads, [&](std::size_t k) {
     auto& [model, fit] = fits[k];
     fit.threads = options.threads;  // one of them may take most of the time
-    const Observations observations = observations_for(model, {&record, 1});
-    part.fits[k] = fit_model(model, motion, part.segmentation, observations, options.instruments, fit);
+    part.fits[k] = fit_model(model, motion, part.segmentation, seen[view_of[k]], options.instruments, fit);
   });
   part.best = best_of(part.fits);
   share_floor(part.fits, part.best);

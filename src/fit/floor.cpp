@@ -11,6 +11,7 @@
 #include "points.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/slow_noise.hpp"
@@ -189,9 +190,9 @@ FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentatio
   return {flicker_power(stretches), static_cast<double>(length)};
 }
 
-void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Observations& out) {
-  out.flicker_noise = {motion.is_points() ? FlickerNoise{} : flicker_noise(motion, segmentation)};
-  const double power = out.flicker_noise.front().power;
+void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out) {
+  out.noise = {noise};
+  const double power = noise.flicker.power;
   if (!(power > 0)) return;
   for (auto& slip : out.slips) {
     const auto times = static_cast<double>(motion.size()) / static_cast<double>(slip.samples.size());
@@ -206,27 +207,48 @@ void add_slow_noise(const Motion& motion, const Segmentation& segmentation, Obse
 }
 
 SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation) {
+  if (motion.is_points()) return noise_of_points(motion, segmentation);
   std::vector<Remainder> parts = about_parabolas(motion, stick_stretches(motion, segmentation));
   const bool in_stick = parts.size() >= 3;
   if (!in_stick) parts = about_parabolas(motion, slip_stretches(motion, segmentation));
-  return {pooled_noise(parts), in_stick, sampling_error(motion, segmentation)};
+  return {pooled_noise(parts), sampling_error(motion, segmentation), in_stick ? "stick" : "slip"};
+}
+
+RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int threads) {
+  RecordNoise noise;
+  const bool points = motion.is_points();
+  run_tasks(points ? 1 : 2, threads, [&](std::size_t k) {
+    if (k == 0) {
+      noise.sensor = sensor_noise(motion, segmentation);
+      stop_point();
+      if (!points) noise.scatter = break_away_scatter(motion, segmentation);
+    } else {
+      noise.flicker = flicker_noise(motion, segmentation);
+    }
+    stop_point();
+  });
+  return noise;
+}
+
+Floor floor_of(const RecordNoise& noise) {
+  Floor floor;
+  floor.source = noise.sensor.source;
+  floor.noise = noise.sensor.rmse;
+  floor.scatter = noise.scatter;
+  if (noise.sensor.between > noise.sensor.rmse) {
+    floor.noise = floor.sampling = noise.sensor.between;
+    floor.source = "sampling";
+  }
+  floor.rmse = floor.noise;
+  return floor;
 }
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
-  if (motion.is_points()) return noise_of_points(motion, segmentation);
-  Floor floor;
-  const SensorNoise noise = sensor_noise(motion, segmentation);
-  floor.source = noise.in_stick ? "stick" : "slip";
-  floor.noise = noise.rmse;
-  if (noise.between > noise.rmse) {
-    floor.noise = floor.sampling = noise.between;
-    floor.source = "sampling";
-  }
+  RecordNoise noise{sensor_noise(motion, segmentation), 0, {}};
   stop_point();
-  floor.scatter = break_away_scatter(motion, segmentation);
+  if (!motion.is_points()) noise.scatter = break_away_scatter(motion, segmentation);
   stop_point();
-  floor.rmse = floor.noise;
-  return floor;
+  return floor_of(noise);
 }
 
 }  // namespace tribofit

@@ -70,10 +70,13 @@ inline constexpr double kLoudest = 3;
 /// few Gauss-Newton steps (up to 20 standard errors for a memory of a thirtieth of a slip). Fewer: a start may be led
 /// into another valley.
 inline constexpr double kValuesOfSearch = 100;
+inline constexpr double kValuesOfLook = 50;
+/// Values of the slips on which it runs where every value counts.
+inline constexpr std::size_t kWholeSlips = 12000, kWholeSlipsOfLook = 8000;
 /// Part of a standard error by which the last step over all values may move a parameter: what is left then is a tenth
 /// of it, and no printed digit moves. Steps that are taken at the most, and by how much each must at least be shorter
 /// than the one before it.
-inline constexpr double kLastStep = 1e-3, kShortening = 0.7;
+inline constexpr double kLastStep = 1e-3, kLastStepOfLook = 0.05, kShortening = 0.7;
 inline constexpr int kMostRefiningSteps = 12;
 
 // ---- slips
@@ -174,9 +177,9 @@ inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
 /// D_c behind a step within which a contact adapts: e^-5 of the change is left. What is left there over what is left
-/// elsewhere, as a root of mean squares, from which on a law lacks something, the chance that noise makes it so (none of
-/// 60 simulated records with wandering noise was said to lack anything), and independent values without which it cannot
-/// be judged. Smaller: drift of the measurement is blamed on the law; larger: a law that fails a little passes.
+/// elsewhere, as a root of mean squares, from which on a law lacks something, the chance that noise makes it so (none
+/// of 60 simulated records with wandering noise was said to lack anything), and independent values without which it
+/// cannot be judged. Smaller: drift of the measurement is blamed on the law; larger: a law that fails a little passes.
 inline constexpr double kAdapted = 5, kMuchLeft = 1.15, kChanceOfExcess = 1e-3, kFewestOfExcess = 5;
 /// What wanders over the noise of a sample from which on it is said where that cannot be judged.
 inline constexpr double kMuchWander = 4;

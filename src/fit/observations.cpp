@@ -264,7 +264,7 @@ Observations join(std::vector<Observations> records) {
     }
     out.cycles += next.cycles;
     out.sticks.insert(out.sticks.end(), next.sticks.begin(), next.sticks.end());
-    out.flicker_noise.insert(out.flicker_noise.end(), next.flicker_noise.begin(), next.flicker_noise.end());
+    out.noise.insert(out.noise.end(), next.noise.begin(), next.noise.end());
     out.stick_noise.insert(out.stick_noise.end(), next.stick_noise.begin(), next.stick_noise.end());
     // Channels missing on one side cannot be used by an effect of all.
     const auto append = [&](std::vector<double>& to, const std::vector<double>& from) {
@@ -295,10 +295,10 @@ Observations join(std::vector<Observations> records) {
   return out;
 }
 
-Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
-                            std::size_t values_per_slip) {
+Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const SensorNoise& noise,
+                            const Channels& needs, std::size_t values_per_slip) {
   Observations out;
-  out.slips = slip_ranges(motion, segmentation);
+  out.slips = slip_ranges(motion, segmentation, noise);
   out.cycles = out.slips.size();
   if (values_per_slip > 0)
     out.samples_per_value = std::max<std::size_t>(1, (median_size(out.slips) + values_per_slip / 2) / values_per_slip);
@@ -333,8 +333,13 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
 
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs,
                      std::size_t values_per_slip) {
-  Observations out = observe_motion(motion, segmentation, needs, values_per_slip);
-  add_slow_noise(motion, segmentation, out);
+  return observe(motion, segmentation, noise_of(motion, segmentation), needs, values_per_slip);
+}
+
+Observations observe(const Motion& motion, const Segmentation& segmentation, const RecordNoise& noise,
+                     const Channels& needs, std::size_t values_per_slip) {
+  Observations out = observe_motion(motion, segmentation, noise.sensor, needs, values_per_slip);
+  add_noise(motion, noise, out);
   return out;
 }
 

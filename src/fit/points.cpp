@@ -43,14 +43,11 @@ class NeighbourDifferences {
 
 }  // namespace
 
-Floor noise_of_points(const Motion& motion, const Segmentation& segmentation) {
-  Floor floor;
+SensorNoise noise_of_points(const Motion& motion, const Segmentation& segmentation) {
   if (!motion.friction_std_error.empty()) {
     double sum = 0;
     for (const double error : motion.friction_std_error) sum += 1 / (error * error);
-    floor.noise = floor.rmse = std::sqrt(static_cast<double>(motion.size()) / sum);
-    floor.source = "standard errors";
-    return floor;
+    return {std::sqrt(static_cast<double>(motion.size()) / sum), 0, "standard errors"};
   }
   const std::vector<double>&v = motion.relative_velocity, &mu = motion.friction;
   NeighbourDifferences over_speed, over_order;
@@ -61,9 +58,7 @@ Floor noise_of_points(const Motion& motion, const Segmentation& segmentation) {
       over_order.add(mu[i - 1], mu[i], mu[i + 1], 0.5);
     }
   }
-  floor.noise = floor.rmse = std::sqrt(std::min(over_speed.variance(), over_order.variance()));
-  floor.source = "neighbours";
-  return floor;
+  return {std::sqrt(std::min(over_speed.variance(), over_order.variance())), 0, "neighbours"};
 }
 
 namespace {

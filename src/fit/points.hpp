@@ -20,7 +20,7 @@ void weigh_points(const Motion& motion, Observations& observations);
 /// neighbours in speed differ by beyond a straight line (T. Gasser, L. Sroka, C. Jennen-Steinmetz, Biometrika 73 (1986)
 /// 625, doi:10.1093/biomet/73.3.625), over speed or over the order of speeds, whichever is straighter. 0 for fewer than
 /// three points in a direction.
-Floor noise_of_points(const Motion& motion, const Segmentation& segmentation);
+SensorNoise noise_of_points(const Motion& motion, const Segmentation& segmentation);
 
 /// Errors of the parameters from the scatter between points. Their variance may differ from point to point: HC2, which
 /// divides each squared residual by one less its leverage (J. G. MacKinnon, H. White, J. Econometrics 29 (1985) 305,

@@ -96,7 +96,8 @@ Observations reduced(const Observations& observations, std::size_t per_value) {
   return out;
 }
 
-std::optional<Observations> reduced_for_search(const FrictionModel& model, const Observations& observations) {
+std::optional<Observations> reduced_for_search(const FrictionModel& model, const Observations& observations,
+                                               double values_per_slip) {
   for (const Effect& effect : model.effects()) {
     const EffectInfo info = describe(effect);
     if (info.needs_full_resolution || (info.group == EffectGroup::user && info.needs.time)) return std::nullopt;
@@ -104,7 +105,7 @@ std::optional<Observations> reduced_for_search(const FrictionModel& model, const
   std::vector<double> sizes;
   for (const auto& slip : observations.slips) sizes.push_back(static_cast<double>(slip.end - slip.begin));
   if (sizes.empty()) return std::nullopt;
-  const auto per_value = static_cast<std::size_t>(median(std::move(sizes)) / kValuesOfSearch + 0.5);
+  const auto per_value = static_cast<std::size_t>(median(std::move(sizes)) / values_per_slip + 0.5);
   if (per_value < 2) return std::nullopt;
   return reduced(observations, per_value);
 }

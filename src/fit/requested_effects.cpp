@@ -38,7 +38,7 @@ std::vector<double> term_of(const Formula& formula, std::span<const double> p, c
 /// Why a formula cannot be fitted to a trace, as a sentence. Empty where it can.
 std::string trouble_with(const Formula& formula, const Motion& motion, const TracePart& part) {
   const FrictionModel model(CoulombLaw{}, {formula});
-  const Observations observations = observe_motion(motion, part.segmentation, model.needs());
+  const Observations observations = observe_motion(motion, part.segmentation, {}, model.needs());
   const std::string key = formula.info().key;
   bool acts = observations.slips.empty();
   const std::vector<std::vector<double>> corners = corners_of(model);

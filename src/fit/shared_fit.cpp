@@ -46,7 +46,7 @@ Observations part_of(const Observations& all, const std::vector<std::size_t>& sl
   out.slowest = all.slowest;
   out.largest_friction = all.largest_friction;
   out.friction_scale = all.friction_scale;
-  out.flicker_noise = all.flicker_noise;
+  out.noise = all.noise;
   return out;
 }
 

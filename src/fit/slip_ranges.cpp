@@ -153,13 +153,13 @@ std::vector<Observations::SlipObservation> each_point(const Motion& motion, cons
 
 }  // namespace
 
-std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, const Segmentation& segmentation) {
+std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, const Segmentation& segmentation,
+                                                       const SensorNoise& noise) {
   if (motion.is_points()) return each_point(motion, segmentation);
   std::vector<Observations::SlipObservation> ranges;
   std::vector<bool> is_selected;
   std::size_t slipping = 0;
   for (const Cycle& cycle : segmentation.cycles) slipping += cycle.slip.size();
-  const SensorNoise noise = sensor_noise(motion, segmentation);
   const bool pieces = segmentation.kind == MotionKind::always_slipping;
   const std::size_t piece = std::max<std::size_t>(kShortestSlip, slipping / kPiecesWithoutStick + 1);
   for (const Cycle& cycle : segmentation.cycles) {

@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "points.hpp"
+#include "statistics/reductions.hpp"
 #include "stress.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -275,8 +276,9 @@ class Assembler {
 
   void warn_of_large_coefficient() {
     if (trace_.friction_kind != FrictionKind::coefficient) return;
-    double largest = 0;
-    for (const double mu : trace_.friction) largest = std::max(largest, std::abs(mu));
+    if (trace_.friction.empty()) return;
+    const Extremes friction = extremes(trace_.friction);
+    const double largest = std::max(-friction.low, friction.high);
     if (largest <= kLargestCoefficient) return;
     trace_.warnings.push_back(fmt::format("friction reaches {:.4g}: is the column really a coefficient?", largest));
   }

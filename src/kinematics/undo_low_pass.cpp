@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "limits.hpp"
@@ -82,10 +83,10 @@ std::vector<Tail> tails_of(std::span<const double> friction, const std::vector<d
   return tails;
 }
 
-double squares_left(const std::vector<Tail>& tails, double tau) {
-  double squares = 0;
-  for (const Tail& tail : tails) squares += fit_decay(tail, tau).squares;
-  return squares;
+double squares_left(const std::vector<Tail>& tails, double tau, int threads = 1) {
+  std::vector<double> squares(tails.size());
+  run_tasks(tails.size(), threads, [&](std::size_t k) { squares[k] = fit_decay(tails[k], tau).squares; });
+  return std::accumulate(squares.begin(), squares.end(), 0.0);
 }
 
 /// What decays at a time constant: where it begins before re-stick [samples]; whether the reading goes on from where it
@@ -172,7 +173,7 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   const auto refined = [&](const auto& squares) {
     return golden_section(squares, best / kKinkNext, best * kKinkNext, kCuts).at;
   };
-  const double tau = refined([&](double t) { return squares_left(tails, t); });
+  const double tau = refined([&](double t) { return squares_left(tails, t, threads); });
   const Evidence evidence = evidence_of(tails, tau);
   if (best == kTailFirst || !evidence.is_first_order) return {{}, 0, fall_at_restick(tails) * step};
   std::vector<double> taus(tails.size());

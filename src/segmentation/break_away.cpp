@@ -3,11 +3,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "growth_fit.hpp"
 #include "limits.hpp"
 #include "phases.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -191,16 +193,16 @@ double time_of(const Motion& m, const Window& w, double t0) {
 }
 
 /// A block that friction held with more force leaves faster. Whether the break-aways differ in it.
-bool set_excess(const Motion& m, const std::vector<Rise>& rises, std::vector<Window>& windows) {
+bool set_excess(const Motion& m, const std::vector<Rise>& rises, int threads, std::vector<Window>& windows) {
   if (m.friction.empty()) return false;
-  std::vector<double> levels, known;
-  for (std::size_t k = 0; k < windows.size(); ++k) {
+  std::vector<double> levels(windows.size()), known;
+  run_tasks(windows.size(), threads, [&](std::size_t k) {
     const Onset& onset = rises[k].onset;
     const StickFriction at_break =
         friction_at(m, {onset.stick_begin, onset.slip}, time_of(m, windows[k], windows[k].t0), onset.direction);
-    levels.push_back(std::isfinite(at_break.std_error) ? at_break.value : std::nan(""));
-    if (std::isfinite(levels.back())) known.push_back(levels.back());
-  }
+    levels[k] = std::isfinite(at_break.std_error) ? at_break.value : std::nan("");
+  });
+  std::copy_if(levels.begin(), levels.end(), std::back_inserter(known), [](double level) { return level == level; });
   if (known.size() < kFewestLevels) return false;
   const double usual = median(std::move(known));
   if (!(usual > 0)) return false;
@@ -248,7 +250,8 @@ Located settle_break_away(const Window& w, const CommonGrowth& common, bool cree
 
 }  // namespace
 
-std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vector<Onset>& onsets, double peak) {
+std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vector<Onset>& onsets, double peak,
+                                          int threads) {
   std::vector<BreakAway> result;
   if (onsets.empty()) return result;
   const double noise = motion.velocity_noise;
@@ -260,7 +263,7 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   std::vector<Window> windows = windows_of(motion, rises, level, growth);
   CommonGrowth common = fit_common_growth(windows, level, growth);
   locate_each(windows, common);
-  if (set_excess(motion, rises, windows)) {
+  if (set_excess(motion, rises, threads, windows)) {
     common = fit_common_growth(windows, level, growth);
     locate_each(windows, common);
   }

@@ -33,7 +33,8 @@ struct BreakAway {
 /// before the curvature of the law is felt. Where the contact creeps into the slip over a good part of the slip's own
 /// duration, there is no such onset: the time is then where v leaves the level of the stick by a few per cent of the
 /// peak. Cost: linear in the samples near break-away.
-std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vector<Onset>& onsets, double peak);
+std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vector<Onset>& onsets, double peak,
+                                          int threads);
 
 /// Time at which the velocity reaches the plateau again: a line through the last samples of the slip.
 /// `slip` ends with the first sample below the stick threshold; `next` is where the following slip begins.

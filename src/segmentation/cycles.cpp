@@ -14,6 +14,7 @@
 #include "phases.hpp"
 #include "spoilt_stretches.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -49,8 +50,8 @@ Cycle blank_cycle(const RawSlip& slip) {
 /// The cycles of a record as they are found: slips in order, each with the stick before it, then the break-aways.
 class PhaseFinder {
  public:
-  PhaseFinder(const Motion& motion, const std::vector<RawSlip>& slips, const Thresholds& thresholds)
-      : motion_(motion), slips_(slips), thresholds_(thresholds) {}
+  PhaseFinder(const Motion& motion, const std::vector<RawSlip>& slips, const Thresholds& thresholds, int threads)
+      : motion_(motion), slips_(slips), thresholds_(thresholds), threads_(threads) {}
 
   std::vector<Cycle> find() {
     for (std::size_t k = 0; k < slips_.size(); ++k) {
@@ -101,7 +102,7 @@ class PhaseFinder {
   }
 
   void set_break_aways() {
-    const std::vector<BreakAway> found = segmentation::locate_break_aways(motion_, onsets_, thresholds_.peak);
+    const std::vector<BreakAway> found = segmentation::locate_break_aways(motion_, onsets_, thresholds_.peak, threads_);
     for (std::size_t k = 0; k < found.size(); ++k) {
       Cycle& c = cycles_[with_stick_[k]];
       const std::size_t first = std::max(c.stick.begin, first_after(motion_.time, found[k].time, c.stick.end));
@@ -126,6 +127,7 @@ class PhaseFinder {
   const Motion& motion_;
   const std::vector<RawSlip>& slips_;
   const Thresholds& thresholds_;
+  int threads_;
   std::vector<Cycle> cycles_;
   std::vector<Onset> onsets_;
   std::vector<std::size_t> with_stick_;  ///< the cycles of these onsets
@@ -201,41 +203,44 @@ bool ends_spoilt(const Motion& motion, const SampleRange& stick) {
   return motion.has_fault(stick.end - 1, SampleFault::friction);
 }
 
-void measure(const Motion& motion, std::vector<Cycle>& cycles) {
-  const std::vector<std::size_t> gaps = gaps_of(motion);
+/// What the samples of a cycle say of it; the times of its neighbours are known.
+void measure_cycle(const Motion& motion, const std::vector<std::size_t>& gaps, std::size_t k,
+                   std::vector<Cycle>& cycles) {
   const auto torn = [&](std::size_t begin, std::size_t end) {
     return std::any_of(gaps.begin(), gaps.end(), [&](std::size_t gap) { return begin < gap && gap <= end; });
   };
-
   const std::span<const double> friction(motion.friction), velocity(motion.relative_velocity);
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    Cycle& c = cycles[k];
-    const bool has_stick = c.stick.size() > 0 && c.break_away_time == c.break_away_time;
-    if (has_stick) {
-      const auto [low, high] = extremes(friction.subspan(c.stick.begin, c.stick.size()));
-      c.stick_maximum = ends_spoilt(motion, c.stick) ? unknown : c.direction > 0 ? high : -low;
-      const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
-      c.plateau_velocity = mean_of(stick);
-      const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
-      c.break_away_friction = at_break.value;
-      c.break_away_friction_std_error = std::hypot(at_break.std_error, at_break.slope * c.break_away_time_std_error);
-      c.stick_slope = at_break.slope;
-      if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
-        c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
-      }
-    }
-    const auto [weakest, strongest] = extremes(friction.subspan(c.slip.begin, c.slip.size()));
-    const auto [slowest, fastest] = extremes(velocity.subspan(c.slip.begin, c.slip.size()));
-    c.slip_minimum = c.direction > 0 ? weakest : -strongest;
-    c.peak_velocity = c.direction > 0 ? fastest : -slowest;
-    c.branch_difference = segmentation::branch_difference(velocity.subspan(c.slip.begin, c.slip.size()),
-                                                          friction.subspan(c.slip.begin, c.slip.size()), c.direction);
-    if (c.slip_complete) c.slip_time = c.restick_time - c.break_away_time;
-    const bool follows = k + 1 < cycles.size() && !torn(c.slip.begin, cycles[k + 1].slip.begin);
-    if (follows && cycles[k + 1].direction == c.direction) {
-      c.period = cycles[k + 1].break_away_time - c.break_away_time;
+  Cycle& c = cycles[k];
+  const bool has_stick = c.stick.size() > 0 && c.break_away_time == c.break_away_time;
+  if (has_stick) {
+    const auto [low, high] = extremes(friction.subspan(c.stick.begin, c.stick.size()));
+    c.stick_maximum = ends_spoilt(motion, c.stick) ? unknown : c.direction > 0 ? high : -low;
+    const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
+    c.plateau_velocity = mean_of(stick);
+    const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
+    c.break_away_friction = at_break.value;
+    c.break_away_friction_std_error = std::hypot(at_break.std_error, at_break.slope * c.break_away_time_std_error);
+    c.stick_slope = at_break.slope;
+    if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
+      c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
     }
   }
+  const auto [weakest, strongest] = extremes(friction.subspan(c.slip.begin, c.slip.size()));
+  const auto [slowest, fastest] = extremes(velocity.subspan(c.slip.begin, c.slip.size()));
+  c.slip_minimum = c.direction > 0 ? weakest : -strongest;
+  c.peak_velocity = c.direction > 0 ? fastest : -slowest;
+  c.branch_difference = segmentation::branch_difference(velocity.subspan(c.slip.begin, c.slip.size()),
+                                                        friction.subspan(c.slip.begin, c.slip.size()), c.direction);
+  if (c.slip_complete) c.slip_time = c.restick_time - c.break_away_time;
+  const bool follows = k + 1 < cycles.size() && !torn(c.slip.begin, cycles[k + 1].slip.begin);
+  if (follows && cycles[k + 1].direction == c.direction) {
+    c.period = cycles[k + 1].break_away_time - c.break_away_time;
+  }
+}
+
+void measure(const Motion& motion, int threads, std::vector<Cycle>& cycles) {
+  const std::vector<std::size_t> gaps = gaps_of(motion);
+  run_tasks(cycles.size(), threads, [&](std::size_t k) { measure_cycle(motion, gaps, k, cycles); });
 }
 
 std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawSlip>& slips) {
@@ -337,7 +342,7 @@ Segmentation slips_of_points(const Motion& motion) {
   for (const RawSlip& slip : {back, forth}) {
     if (slip.samples.size() > 0) result.cycles.push_back(blank_cycle(slip));
   }
-  measure(motion, result.cycles);
+  measure(motion, 1, result.cycles);
   summarise(result);
   return result;
 }
@@ -363,7 +368,7 @@ RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation
   return segmentation.kind == MotionKind::always_slipping ? RecordKind::sliding : RecordKind::stick_slip;
 }
 
-Segmentation find_cycles(const Motion& motion) {
+Segmentation find_cycles(const Motion& motion, int threads) {
   if (motion.is_points()) return slips_of_points(motion);
   Segmentation result;
   if (motion.kind == RecordKind::force_only || is_driven_in_steps(motion.kind)) {
@@ -375,7 +380,7 @@ Segmentation find_cycles(const Motion& motion) {
   result.stick_threshold = t.stick;
   result.rms_velocity = rms_block_velocity(motion);
   const std::vector<RawSlip> slips = segmentation::find_slips(motion, t);
-  result.cycles = PhaseFinder(motion, slips, t).find();
+  result.cycles = PhaseFinder(motion, slips, t, threads).find();
   cut_at_gaps(motion, result.cycles);
   const bool sticks = any_stick(motion, result.cycles, t);
   result.kind = sticks ? MotionKind::stick_slip : MotionKind::always_slipping;
@@ -384,7 +389,7 @@ Segmentation find_cycles(const Motion& motion) {
       sticks && motion.stick.below == 0 && !motion.stick.always && mostly_slides(motion, result.cycles, t);
   if (rests_only) result.kind = MotionKind::always_slipping;
   if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
-  measure(motion, result.cycles);
+  measure(motion, threads, result.cycles);
   result.left_out = segmentation::spoilt_stretches(motion);
   summarise(result);
   add_notes(result);

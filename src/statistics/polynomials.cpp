@@ -85,11 +85,16 @@ Parabola fit_parabola(std::span<const double> samples) {
 }
 
 Remainder remainder_about(const Parabola& parabola, std::span<const double> samples) {
-  Remainder out;
+  // As add() would, in registers.
+  double squares = 0, products = 0, last = 0;
+  const double centre = parabola.centre();
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    out.add(samples[i] - parabola.at(static_cast<double>(i) - parabola.centre()));
+    const double residual = samples[i] - parabola.at(static_cast<double>(i) - centre);
+    squares += residual * residual;
+    products += residual * last;
+    last = residual;
   }
-  return out;
+  return {squares, products, static_cast<double>(samples.size()), last};
 }
 
 double peak_between(double before, double middle, double after) {

@@ -16,31 +16,37 @@ bool same_part(const Selection& a, const Selection& b) {
 
 Prepared::Prepared(Identification prepared) : drawn_(std::move(prepared)), whole_(drawn_) {}
 
-TracePart Prepared::part(const Selection& selection) const {
+TracePart Prepared::part(const Selection& selection, int threads) {
   TracePart out = whole_;
   exclude(selection, drawn_.motion, out.segmentation);
   const auto said = out.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(whole_.segmentation.notes.size());
   out.notes.insert(out.notes.end(), said, out.segmentation.notes.end());
+  const std::lock_guard lock(looking_);
+  std::optional<RecordNoise>& noise = seen(selection).noise;
+  if (!noise) noise = noise_of(drawn_.motion, out.segmentation, threads);
+  out.noise = noise;
   return out;
 }
 
 Report Prepared::draw(TracePart part, const Selection& selection, ReportOptions options,
                       std::shared_ptr<const ReportSection>& cycles) {
-  const std::lock_guard lock(drawing_);
+  const std::lock_guard lock(looking_);
   static_cast<TracePart&>(drawn_) = std::move(part);
-  cycles = cycles_of(selection);
+  std::shared_ptr<const ReportSection>& known = seen(selection).cycles;
+  if (!known) known = std::make_shared<const ReportSection>(cycles_section(drawn_));
+  cycles = known;
   options.leave_out_cycles = true;
   return report_of(drawn_, options);
 }
 
-std::shared_ptr<const ReportSection> Prepared::cycles_of(const Selection& selection) {
+Prepared::Seen& Prepared::seen(const Selection& selection) {
   constexpr std::size_t kMostKept = 4;  // pages look at a few parts of a record
-  for (const Drawn& known : kept_) {
-    if (same_part(known.selection, selection)) return known.cycles;
-  }
+  const auto known =
+      std::find_if(kept_.begin(), kept_.end(), [&](const Seen& s) { return same_part(s.selection, selection); });
+  if (known != kept_.end()) return *known;
   if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
-  kept_.push_back({selection, std::make_shared<const ReportSection>(cycles_section(drawn_))});
-  return kept_.back().cycles;
+  kept_.push_back({selection, {}, {}});
+  return kept_.back();
 }
 
 }  // namespace tribofit::workbench

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "tribofit/fit/identification.hpp"
@@ -20,25 +21,27 @@ class Prepared {
 
   const Motion& motion() const { return drawn_.motion; }
 
-  /// The part that is selected, as before any fit.
-  TracePart part(const Selection& selection) const;
+  /// The part that is selected, as before any fit, with its noise.
+  TracePart part(const Selection& selection, int threads);
 
   /// The report of a part, but for its section of the cycles, which stands beside it.
   Report draw(TracePart part, const Selection& selection, ReportOptions options,
               std::shared_ptr<const ReportSection>& cycles);
 
  private:
-  struct Drawn {
+  /// What no model changes of a part that was looked at.
+  struct Seen {
     Selection selection;
+    std::optional<RecordNoise> noise;
     std::shared_ptr<const ReportSection> cycles;
   };
 
-  std::shared_ptr<const ReportSection> cycles_of(const Selection& selection);
+  Seen& seen(const Selection& selection);
 
   Identification drawn_;  ///< its part is the one that was drawn last
   const TracePart whole_;
-  std::vector<Drawn> kept_;
-  std::mutex drawing_;
+  std::vector<Seen> kept_;
+  std::mutex looking_;  ///< guards drawn_ and kept_
 };
 
 }  // namespace tribofit::workbench

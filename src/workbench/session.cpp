@@ -236,7 +236,7 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
   const IdentifyOptions identify = s.identify_options(choice, detail);
   const std::optional<WorkbenchRung> known = s.visited_rung(choice);
   const std::shared_ptr<Prepared> prepared = s.prepared(identify);
-  TracePart part = prepared->part(choice.selection);
+  TracePart part = prepared->part(choice.selection, identify.threads);
   WorkbenchPicture picture;
   if (known && (known->detail == FitDetail::full || detail == FitDetail::quick)) {
     picture.rung = *known;

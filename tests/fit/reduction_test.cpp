@@ -52,7 +52,7 @@ TEST_P(Reduction, MovesNoParameterByAHundredthOfItsStandardError) {
   options.seed = 11;
   const synthetic::Record record = synthetic::make(model, truth, options);
   const Observations all = observe(record.motion, record.segmentation, model.needs(), 0);
-  ASSERT_TRUE(reduced_for_search(model, all).has_value());
+  ASSERT_TRUE(reduced_for_search(model, all, 100).has_value());
   const Fit fit = fit_model(model, record.motion, record.segmentation, all);
   ASSERT_TRUE(fit.converged);
   const std::vector<double> p = of_all_values(model, all, truth);
@@ -63,10 +63,9 @@ TEST_P(Reduction, MovesNoParameterByAHundredthOfItsStandardError) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, Reduction,
-    testing::Values(
-        Case{"lag", Law(ExponentialLaw{}), {make_effect("frictional-lag")}, {2e-3}},
-        Case{"rate_state", Law(ExponentialLaw{}), {make_effect("rate-state")}, {60e-6, 0.004}},
-        Case{"bandwidth", Law(ExponentialLaw{}), {make_effect("force-bandwidth")}, {150, 0.7}}),
+    testing::Values(Case{"lag", Law(ExponentialLaw{}), {make_effect("frictional-lag")}, {2e-3}},
+                    Case{"rate_state", Law(ExponentialLaw{}), {make_effect("rate-state")}, {60e-6, 0.004}},
+                    Case{"bandwidth", Law(ExponentialLaw{}), {make_effect("force-bandwidth")}, {150, 0.7}}),
     [](const auto& c) { return std::string(c.param.name); });
 
 /// Means of the channels, the spread of v_r within them, and which values belong to which slip.

@@ -159,8 +159,8 @@ Fit fit_model(const FrictionModel& model, const Motion& motion, const Segmentati
 Fit fit_model(const FrictionModel& model, std::span<const Record> records, const Observations& observations,
               const Instruments& instruments = {}, const FitOptions& options = {});
 
-/// Sensor noise and break-away scatter. Noise is taken about a smooth ramp in stick (or about local fits in slip where
-/// nothing sticks), from the spread itself and not from differences, so that coloured noise is not underestimated.
+/// Sensor noise and break-away scatter.
+Floor floor_of(const RecordNoise& noise);
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation);
 
 /// Sets the noise floor of a fit and the share of the error above it that the model explains.

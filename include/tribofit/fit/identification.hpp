@@ -44,9 +44,10 @@ struct TraceInput {
 /// A part of a trace, and what was fitted to it. Several parts may share one motion.
 struct TracePart {
   Segmentation segmentation;
-  std::vector<Fit> fits;           ///< joint fits first, in the order of options.laws, then the per-cycle extremes
-  std::size_t best = 0;            ///< the fit that predicts held-out cycles best
-  std::vector<std::string> notes;  ///< how the input was read
+  std::vector<Fit> fits;             ///< joint fits first, in the order of options.laws, then the per-cycle extremes
+  std::size_t best = 0;              ///< the fit that predicts held-out cycles best
+  std::optional<RecordNoise> noise;  ///< of this part, once a fit has asked for it
+  std::vector<std::string> notes;    ///< how the input was read
   std::vector<std::string> warnings;
   bool analysed = true;  ///< false: the data were read but cannot carry the analysis, warnings say why
 

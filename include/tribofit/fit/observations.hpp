@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tribofit/friction/effect.hpp"
@@ -33,6 +34,26 @@ struct FlickerNoise {
   double power = 0;    ///< a of the spectrum a/f: half the variance in every e-fold of time; 0: none shows
   double samples = 0;  ///< length of the stretches that it was taken over
 };
+
+/// Noise of a sample of friction about parabolas, in stick where there is enough of it, else in slip; of points what
+/// their standard errors or neighbours say. From the spread itself and not from differences, so that coloured noise is
+/// not underestimated.
+struct SensorNoise {
+  double rmse = 0;     ///< standard deviation [1 or N]
+  double between = 0;  ///< what friction between two samples is off a straight line, over the slips [1 or N]
+  std::string source;  ///< how rmse was found: "stick", "slip", "standard errors" or "neighbours"
+  double any() const { return between > rmse ? between : rmse; }
+};
+
+/// The noise of a record, as it shows without any model: a property of the data that all models share.
+struct RecordNoise {
+  SensorNoise sensor;
+  double scatter = 0;  ///< standard deviation of the break-away level from cycle to cycle [1 or N]
+  FlickerNoise flicker;
+};
+
+/// Cost: linear in samples, and as much as that of a fit: found once for all models.
+RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int threads = 1);
 
 /// The samples over which an error is taken: those of every slip, and one break-away per cycle.
 ///
@@ -80,11 +101,11 @@ struct Observations {
   std::vector<double> earlier_strokes;           ///< that the slips remember [m], where there is a reversal_distance
   std::vector<double> lead_time, lead_velocity;  ///< the last samples of each stick; empty when not needed
   std::vector<SlipObservation> slips;
-  std::vector<StickCreep> sticks;           ///< creep as evidence; empty unless add_stick_evidence() filled it
-  std::vector<StickNoise> stick_noise;      ///< of each record
-  std::vector<FlickerNoise> flicker_noise;  ///< of each record
-  double stick_unit = 0;   ///< residual that stands for one standard deviation of v_r in stick [1 or N]
-  std::size_t cycles = 0;  ///< units of evidence
+  std::vector<StickCreep> sticks;       ///< creep as evidence; empty unless add_stick_evidence() filled it
+  std::vector<StickNoise> stick_noise;  ///< of each record
+  std::vector<RecordNoise> noise;       ///< of each record
+  double stick_unit = 0;                ///< residual that stands for one standard deviation of v_r in stick [1 or N]
+  std::size_t cycles = 0;               ///< units of evidence
   std::size_t samples_per_value = 1;
   double mean_load = 1;         ///< N0 [N]
   double mean_temperature = 0;  ///< T0 [degC]
@@ -105,6 +126,9 @@ struct Observations {
 /// values_per_slip: means are taken so that the median slip has about this many; 0 keeps every sample.
 Observations observe(const Motion& motion, const Segmentation& segmentation, const Channels& needs = {},
                      std::size_t values_per_slip = 80);
+/// The same with the noise of the record, which is known: noise_of().
+Observations observe(const Motion& motion, const Segmentation& segmentation, const RecordNoise& noise,
+                     const Channels& needs, std::size_t values_per_slip);
 
 /// Adds how the block moves in stick to the observations of one record, as evidence for what lets it creep there.
 ///

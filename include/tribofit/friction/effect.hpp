@@ -88,6 +88,8 @@ struct Channels {
   /// What came before, or when: points have none of it. describe() sets it where the sketch shows the effect over
   /// anything else than speed, direction, load and temperature.
   bool time = false;
+
+  bool operator==(const Channels&) const = default;
 };
 
 /// What must happen in a record before it can show an effect, beyond that the channels it needs vary.

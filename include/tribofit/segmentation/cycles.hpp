@@ -117,6 +117,6 @@ std::size_t samples_in_slip(const Segmentation& segmentation);
 /// Break-away is placed between samples by fitting the growth of v_r after it (v_r ~ exp(lambda t) - 1 - lambda t, the
 /// solution of m v_r' = k (omega r) t + |dmu/dv| N v_r near v_r = 0); re-stick by a line through v_r before it.
 /// Friction effects with creep before break-away (v_r small but not zero) stay in the stick.
-Segmentation find_cycles(const Motion& motion);
+Segmentation find_cycles(const Motion& motion, int threads = 1);
 
 }  // namespace tribofit

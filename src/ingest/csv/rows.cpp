@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
@@ -26,7 +27,9 @@ namespace {
 
 // A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
 // Chunks end where lines do and depend on the file only, not on the number of threads.
-constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 18;
+constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 17;
+// Chunks that wait for one before them: as many as are read while memory is made present for the rows to come.
+constexpr std::size_t most_waiting = 16;
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
@@ -72,13 +75,13 @@ class RowReader {
     const std::uint64_t bytes = dialect.data_end - dialect.data_begin;
     chunks_ = static_cast<std::size_t>((bytes + chunk_bytes - 1) / chunk_bytes);
     // Memory that is reserved and not used costs nothing, growing a vector twice its size does.
-    const auto estimate =
-        static_cast<std::size_t>(1.2 * static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes)) + 64;
-    refuse_beyond_memory(static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes), wanted.size(), file.path());
+    const auto estimate = static_cast<std::size_t>(1.2 * rows_in(bytes)) + 64;
+    refuse_beyond_memory(rows_in(bytes), wanted.size(), file.path());
+    rows_expected_ = static_cast<std::size_t>(rows_in(bytes));
     rows_.values.resize(wanted.size());
     for (auto& values : rows_.values) {
       values.reserve(estimate);
-      prefer_huge_pages(values);
+      prefer_huge_pages(values, rows_expected_);
     }
   }
 
@@ -95,26 +98,61 @@ class RowReader {
 
  private:
   void work() {
-    Chunk chunk;  // reused, as the text is: their memory is touched once
     std::vector<char> text;
     for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
-      chunk.clear();
+      std::unique_ptr<Chunk> chunk = place_for(i);
+      if (!chunk) return;
       try {
-        parse(i, text, chunk);
+        make_present_ahead(i);
+        parse(i, text, *chunk);
       } catch (...) {
-        chunk.failure = std::current_exception();
+        chunk->failure = std::current_exception();
       }
-      std::unique_lock lock(mutex_);
-      turn_changed_.wait(lock, [&] { return turn_ == i || failure_; });
-      if (failure_) return;
+      if (!hand_over(i, std::move(chunk))) return;
+    }
+  }
+
+  /// Somewhere to read a chunk into, once few enough wait; null after a failure.
+  std::unique_ptr<Chunk> place_for(std::size_t i) {
+    std::unique_lock lock(mutex_);
+    turn_changed_.wait(lock, [&] { return i < turn_ + most_waiting || failure_; });
+    if (failure_) return nullptr;
+    if (spare_.empty()) return std::make_unique<Chunk>();
+    std::unique_ptr<Chunk> chunk = std::move(spare_.back());  // its memory has been touched
+    spare_.pop_back();
+    return chunk;
+  }
+
+  /// Appends what has its turn: this chunk and those that wait for it, or neither. False after a failure.
+  bool hand_over(std::size_t i, std::unique_ptr<Chunk> chunk) {
+    const std::lock_guard lock(mutex_);
+    waiting_[i % most_waiting] = std::move(chunk);
+    while (!failure_ && waiting_[turn_ % most_waiting]) {
+      std::unique_ptr<Chunk> next = std::move(waiting_[turn_ % most_waiting]);
       try {
-        append(chunk);
+        append(*next);
       } catch (...) {
         failure_ = std::current_exception();
       }
+      next->clear();
+      spare_.push_back(std::move(next));
       ++turn_;
-      turn_changed_.notify_all();
-      if (failure_) return;
+    }
+    turn_changed_.notify_all();
+    return !failure_;
+  }
+
+  double rows_in(std::uint64_t bytes) const { return static_cast<double>(bytes) / std::max(2.0, dialect_.row_bytes); }
+
+  /// Memory for the rows up to some chunks ahead: whoever appends would wait for it, and all others for him.
+  void make_present_ahead(std::size_t chunk) {
+    constexpr std::size_t kAhead = 8, kRowsAtOnce = std::size_t{1} << 15;
+    const std::size_t rows =
+        std::min(rows_expected_, static_cast<std::size_t>(rows_in((chunk + kAhead) * chunk_bytes)));
+    for (std::size_t from = present_; from < rows; from = present_) {
+      if (!present_.compare_exchange_strong(from, from + kRowsAtOnce)) continue;
+      const std::size_t to = std::min(from + kRowsAtOnce, rows_expected_);
+      for (auto& values : rows_.values) make_present(values, from, to);
     }
   }
 
@@ -253,7 +291,11 @@ class RowReader {
   std::atomic<std::size_t> next_chunk_ = 0;
   std::mutex mutex_;
   std::condition_variable turn_changed_;
-  std::size_t turn_ = 0;  // the chunk whose turn it is to be appended
+  std::atomic<std::size_t> present_ = 0;  // rows for which there is memory
+  std::size_t rows_expected_ = 0;
+  std::size_t turn_ = 0;                                      // the chunk whose turn it is to be appended
+  std::array<std::unique_ptr<Chunk>, most_waiting> waiting_;  // read, at their number modulo the size
+  std::vector<std::unique_ptr<Chunk>> spare_;
   std::exception_ptr failure_;
   std::size_t next_line_;
   Rows rows_;

@@ -200,7 +200,7 @@ class Walk {
 
   void read_numbers(const Tag& tag, std::uint64_t count, std::vector<double>& out) {
     out.reserve(count);
-    prefer_huge_pages(out);
+    prefer_huge_pages(out, out.capacity());
     out.resize(count);
     const bool as_here = tag.type == 9 && big_endian_ == (std::endian::native == std::endian::big);
     if (as_here && !tag.is_small) {

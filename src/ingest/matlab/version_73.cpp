@@ -1,9 +1,11 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <matio.h>
 
 #include <bit>
 #include <cstring>
 #include <mutex>
+#include <type_traits>
 #include <utility>
 
 #include "apart.hpp"
@@ -17,7 +19,54 @@
 namespace tribofit {
 namespace {
 
-using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+/// The functions of libmatio, which is loaded for the first file of version 7.3: it brings HDF5 and all that HDF5 may
+/// need, and every start would pay for what hardly a file needs.
+struct Matio {
+  decltype(&::Mat_LogInitFunc) init_log = nullptr;
+  decltype(&::Mat_Open) open = nullptr;
+  decltype(&::Mat_Close) close = nullptr;
+  decltype(&::Mat_VarReadNextInfo) next_variable = nullptr;
+  decltype(&::Mat_VarReadInfo) find_variable = nullptr;
+  decltype(&::Mat_VarReadDataAll) read_data = nullptr;
+  decltype(&::Mat_VarFree) free_variable = nullptr;
+  decltype(&::Mat_VarGetNumberOfFields) number_of_fields = nullptr;
+  decltype(&::Mat_VarGetStructFieldnames) names_of_fields = nullptr;
+  decltype(&::Mat_VarGetStructFieldByIndex) field_at = nullptr;
+  decltype(&::Mat_VarGetStructFieldByName) field_named = nullptr;
+  decltype(&::Mat_SizeOfClass) size_of_class = nullptr;
+  std::string trouble;  ///< why there is none; empty: there is
+
+  Matio() {
+    void* const library = ::dlopen(TRIBOFIT_MATIO_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    const auto find = [&](auto& function, const char* name) {
+      if (library != nullptr)
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(::dlsym(library, name));
+      if (function == nullptr && trouble.empty()) trouble = ::dlerror();
+    };
+    find(init_log, "Mat_LogInitFunc");
+    find(open, "Mat_Open");
+    find(close, "Mat_Close");
+    find(next_variable, "Mat_VarReadNextInfo");
+    find(find_variable, "Mat_VarReadInfo");
+    find(read_data, "Mat_VarReadDataAll");
+    find(free_variable, "Mat_VarFree");
+    find(number_of_fields, "Mat_VarGetNumberOfFields");
+    find(names_of_fields, "Mat_VarGetStructFieldnames");
+    find(field_at, "Mat_VarGetStructFieldByIndex");
+    find(field_named, "Mat_VarGetStructFieldByName");
+    find(size_of_class, "Mat_SizeOfClass");
+  }
+};
+
+const Matio& matio() {
+  static const Matio loaded;
+  return loaded;
+}
+
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { matio().free_variable(variable); }
+};
+using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 /// One child at a time, so that none inherits the pipe of another.
 std::mutex& matio_mutex() {
@@ -82,9 +131,9 @@ void convert(const matvar_t& v, std::vector<double>& out) {
 /// The file in the hands of libmatio.
 class Opened {
  public:
-  explicit Opened(const InputFile& file) : mat_(nullptr, &Mat_Close) {
-    Mat_LogInitFunc("", ignore_message);
-    mat_.reset(Mat_Open(file.path().c_str(), MAT_ACC_RDONLY));
+  explicit Opened(const InputFile& file) : mat_(nullptr, matio().close) {
+    matio().init_log("", ignore_message);
+    mat_.reset(matio().open(file.path().c_str(), MAT_ACC_RDONLY));
     if (mat_) return;
     throw InputError("is a MATLAB file of version 7.3 that cannot be opened: it is cut off or damaged",
                      "copy it again, or save it again with save(..., '-v7')", {file.path(), 0, ""});
@@ -92,7 +141,7 @@ class Opened {
   mat_t* get() const { return mat_.get(); }
 
  private:
-  std::unique_ptr<mat_t, decltype(&Mat_Close)> mat_;
+  std::unique_ptr<mat_t, decltype(&::Mat_Close)> mat_;
 };
 
 void put(const MatArray& array, ByteWriter& out) {
@@ -145,7 +194,12 @@ MatValues take_values(ByteCursor& in) {
 
 class Version73 : public MatContents {
  public:
-  explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) { refuse_cut_off(); }
+  explicit Version73(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {
+    refuse_cut_off();
+    if (matio().trouble.empty()) return;
+    throw InputError("is a MATLAB file of version 7.3, and libmatio cannot be loaded: " + matio().trouble,
+                     "install it, or save the file again with save(..., '-v7')", {file_->path(), 0, ""});
+  }
 
   void describe(const std::function<void(MatArray&&)>& see) override {
     const std::lock_guard lock(matio_mutex());
@@ -176,7 +230,7 @@ class Version73 : public MatContents {
     const Opened mat(*file_);
     bytes_ = 0;
     for (std::size_t count = 0; count < kMostMatArrays; ++count) {
-      const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
+      const Variable variable(matio().next_variable(mat.get()));
       if (!variable) return;
       if (variable->name != nullptr) describe(mat, *variable, variable->name, 0, see);
     }
@@ -232,10 +286,10 @@ class Version73 : public MatContents {
     array.name = name;
     for (int k = 0; k < v.rank; ++k) array.sizes.push_back(v.dims[k]);
     if (v.class_type == MAT_C_STRUCT && array.elements() == 1 && depth < kDeepestMatStructure) {
-      const unsigned count = Mat_VarGetNumberOfFields(&v);
-      char* const* names = Mat_VarGetStructFieldnames(&v);
+      const unsigned count = matio().number_of_fields(&v);
+      char* const* names = matio().names_of_fields(&v);
       for (unsigned k = 0; k < count; ++k) {
-        matvar_t* field = Mat_VarGetStructFieldByIndex(&v, k, 0);
+        matvar_t* field = matio().field_at(&v, k, 0);
         if (field != nullptr) describe(mat, *field, name + "." + names[k], depth + 1, see);
       }
       return;
@@ -254,10 +308,10 @@ class Version73 : public MatContents {
   }
 
   static void take_fact(const Opened& mat, matvar_t& v, MatArray& array) {
-    if (v.data == nullptr) Mat_VarReadDataAll(mat.get(), &v);
+    if (v.data == nullptr) matio().read_data(mat.get(), &v);
     if (v.data == nullptr) return;
     if (!array.is_text) {
-      if (v.nbytes < Mat_SizeOfClass(v.class_type)) return;
+      if (v.nbytes < matio().size_of_class(v.class_type)) return;
       array.scalar.resize(1);
       convert(v, array.scalar);
     } else if (v.data_size == 1) {
@@ -283,16 +337,16 @@ class Version73 : public MatContents {
 
   std::vector<double> read(const Opened& mat, const std::string& name) const {
     const std::vector<std::string> path = split(name, '.');
-    const Variable variable(Mat_VarReadInfo(mat.get(), path.front().c_str()), &Mat_VarFree);
+    const Variable variable(matio().find_variable(mat.get(), path.front().c_str()));
     matvar_t* v = variable.get();
     for (std::size_t k = 1; k < path.size() && v != nullptr; ++k) {
-      v = v->class_type == MAT_C_STRUCT ? Mat_VarGetStructFieldByName(v, path[k].c_str(), 0) : nullptr;
+      v = v->class_type == MAT_C_STRUCT ? matio().field_named(v, path[k].c_str(), 0) : nullptr;
     }
-    if (v != nullptr && v->data == nullptr) Mat_VarReadDataAll(mat.get(), v);
+    if (v != nullptr && v->data == nullptr) matio().read_data(mat.get(), v);
     if (v == nullptr || v->data == nullptr || !is_numeric(*v)) {
       throw InputError("the values cannot be read", "the file is damaged; save it again", {file_->path(), 0, name});
     }
-    std::vector<double> values(v->nbytes / Mat_SizeOfClass(v->class_type));
+    std::vector<double> values(v->nbytes / matio().size_of_class(v->class_type));
     convert(*v, values);
     return values;
   }
