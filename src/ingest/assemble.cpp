@@ -275,8 +275,7 @@ class Assembler {
   }
 
   void warn_of_large_coefficient() {
-    if (trace_.friction_kind != FrictionKind::coefficient) return;
-    if (trace_.friction.empty()) return;
+    if (trace_.friction_kind != FrictionKind::coefficient || trace_.friction.empty()) return;
     const Extremes friction = extremes(trace_.friction);
     const double largest = std::max(-friction.low, friction.high);
     if (largest <= kLargestCoefficient) return;
@@ -374,10 +373,9 @@ class Assembler {
 
   /// An angle that stays within one turn and jumps back wraps; others count on.
   static void unwrap(std::vector<double>& angle) {
-    if (angle.size() < 2) return;
-    const auto [low, high] = std::minmax_element(angle.begin(), angle.end());
     constexpr double turn = 2 * std::numbers::pi;
-    if (*high - *low > kOneTurn * turn) return;
+    const auto [low, high] = angle.empty() ? Extremes{} : extremes(angle);
+    if (angle.empty() || high - low > kOneTurn * turn) return;
     double turns = 0, last = angle.front();
     for (double& value : angle) {
       if (value - last > turn / 2) turns -= turn;
