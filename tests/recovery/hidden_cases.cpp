@@ -137,8 +137,10 @@ std::pair<double, double> duration_and_rate(Setting setting) {
   return {40, 5000};
 }
 
-/// Record number `number` of a case, from its own random numbers.
-SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number) {
+/// Record number `number` of a case, from its own random numbers. reference_load: N0 of the case, which is the mean of
+/// its first record: parameters refer to it in all. 0: this is the first.
+SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, std::size_t number,
+                           double reference_load) {
   Random random((c.seed ^ 0x5bd1e995u) + number);
   const bool slides = c.programme != Programme::stick_slip;
   SimulationOptions options;
@@ -147,7 +149,13 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
   if (run.duration > 0) options.duration = run.duration;
   if (run.rate > 0) options.rate = run.rate;
   options.duration *= c.length;
-  const Drive drive = drive_of(c, run, options.duration, random);
+  Drive drive = drive_of(c, run, options.duration, random);
+  const double own_load = drive.mean_load;
+  const bool is_constant = !drive.load;
+  if (reference_load > 0 && own_load != reference_load) {
+    if (is_constant) drive.load = [=](double) { return own_load; };
+    drive.mean_load = reference_load;
+  }
   Rig rig = c.rig;
   rig.stiffness *= run.stiffness;
   rig.damping *= std::sqrt(run.stiffness);
@@ -162,7 +170,10 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
   sensors.velocity_noise = c.noise * 0.02e-3;
   sensors.noise_colour = c.colour;
   sensors.seed = (c.seed + number) ^ 0x2545f4914f6cdd1du;
-  return simulate_recording(truth.model, truth.p, rig, drive, options, sensors);
+  SimulatedRecording made = simulate_recording(truth.model, truth.p, rig, drive, options, sensors);
+  made.recording.trace.conditions.load.value = own_load;
+  if (is_constant) made.recording.trace.load.clear();
+  return made;
 }
 
 }  // namespace
@@ -344,10 +355,11 @@ Simulated simulate_case(const Case& c, const Experiment& more) {
     }
   }
   runs.insert(runs.end(), more.runs.begin(), more.runs.end());
-  double squares = 0;
+  double squares = 0, reference_load = 0;
   Simulated out{truth.model, truth.p, {}, 0, measured_by_hand(c, more.measured)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    SimulatedRecording hidden = hide_in(at_home, runs[i], simulated, i);
+    SimulatedRecording hidden = hide_in(at_home, runs[i], simulated, i, reference_load);
+    if (i == 0) reference_load = hidden.motion.mean_load;
     finish(c, hidden.motion, hidden.recording.trace, (c.seed + i) ^ 0x94d049bb133111ebu);
     squares += hidden.floor_rmse * hidden.floor_rmse / static_cast<double>(runs.size());
     hidden.recording.trace.path = fmt::format("{}{}", c.name, runs.size() > 1 ? fmt::format("/{}", i) : "");

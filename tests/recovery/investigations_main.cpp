@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -40,6 +42,7 @@ std::string line(const Investigation& one) {
 int main(int argc, char** argv) {
   InvestigationOptions options;
   std::string only;
+  double minutes = std::numeric_limits<double>::infinity();
   CLI::App app("Simulated investigations: plan, run, diagnose, again");
   app.add_option("--count", options.count, "Investigations that are open after the first record");
   app.add_option("--tried", options.most_tried, "First records that are diagnosed to find them");
@@ -48,7 +51,9 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "");
   app.add_option("--threads", options.threads, "Investigations at a time");
   app.add_option("--only", only, "Cases whose name holds this");
+  app.add_option("--minutes", minutes, "After which no further investigation is begun");
   CLI11_PARSE(app, argc, argv);
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<Case> cases = investigated_cases(options.most_tried, options.seed);
   std::erase_if(cases, [&](const Case& c) { return c.name.find(only) == std::string::npos; });
   std::vector<Investigation> done;
@@ -58,7 +63,8 @@ int main(int argc, char** argv) {
   tribofit::run_tasks(cases.size(), options.threads, [&](std::size_t k) {
     {
       const std::lock_guard lock(mutex);
-      if (open >= options.count) return;
+      const std::chrono::duration<double, std::ratio<60>> spent = std::chrono::steady_clock::now() - begin;
+      if (open >= options.count || spent.count() > minutes) return;
     }
     Investigation one = investigate(cases[k], options);
     const std::lock_guard lock(mutex);
