@@ -128,7 +128,7 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
   const SolverOptions search = context.is_look() ? short_search() : quick_search();
   constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
   std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
-  p = coarse.solve(slips, p, search).p;
+  if (!context.is_look()) p = coarse.solve(slips, p, search).p;
   Bounds held = coarse.bounds;
   settle(coarse, slips, change, held, p);
   return p;

@@ -77,7 +77,7 @@ inline constexpr std::size_t kWholeSlips = 12000, kWholeSlipsOfLook = 8000;
 /// of it, and no printed digit moves. Steps that are taken at the most, and by how much each must at least be shorter
 /// than the one before it.
 inline constexpr double kLastStep = 1e-3, kLastStepOfLook = 0.05, kShortening = 0.7;
-inline constexpr int kMostRefiningSteps = 12;
+inline constexpr int kMostRefiningSteps = 12, kRefiningStepsOfLook = 2;
 
 // ---- slips
 

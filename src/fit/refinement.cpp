@@ -73,7 +73,7 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
   const std::vector<double> begin = p;
-  const double last_step = context.is_look() ? kLastStepOfLook : kLastStep;
+  const bool look = context.is_look();
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
     context.whitening = plain.whitening_at(p.data());
@@ -84,8 +84,9 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
     const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), p);
-    if (length <= last_step) return true;
+    if (length <= (look ? kLastStepOfLook : kLastStep)) return true;
     if (!(length < kShortening * last)) break;
+    if (look && step + 1 == kRefiningStepsOfLook) return true;
     last = length;
   }
   p = begin;
