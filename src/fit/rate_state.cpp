@@ -148,9 +148,9 @@ class Analysis {
       run_tasks(all_.size(), options_.threads, [&](std::size_t s) {
         std::vector<std::size_t> others = all_;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(s));
-        const RateStateProblem rest(data_, laws_[i].evolution, options_.states, out_.detrend, others);
+        const RateStateProblem rest(data_, laws_[i].evolution, options_.states, out_.detrend, others, all_.front());
         const RateStateSolution found = refine(rest, laws_[i].solution.p, unknowns_);
-        const RateStateProblem held(data_, laws_[i].evolution, options_.states, out_.detrend, {s});
+        const RateStateProblem held(data_, laws_[i].evolution, options_.states, out_.detrend, {s}, all_.front());
         std::vector<double> residual(held.count());
         const bool valid = found.found && held.evaluate(found.p.data(), residual.data(), nullptr);
         squares[s] = valid ? std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0) : std::nan("");

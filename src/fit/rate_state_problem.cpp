@@ -31,7 +31,7 @@ RateStateParameters<double> parameters_from(const double* p, std::size_t states)
 }
 
 RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evolution, std::size_t states,
-                                   Detrend detrend, std::vector<std::size_t> steps)
+                                   Detrend detrend, std::vector<std::size_t> steps, std::optional<std::size_t> first)
     : data_(data), evolution_(evolution), states_(states), detrend_(detrend), steps_(std::move(steps)) {
   for (const std::size_t s : steps_) {
     first_rows_.push_back(values_.size());
@@ -43,8 +43,8 @@ RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evo
     times_.push_back(data.time[i]);
     root_count_.push_back(std::sqrt(data.count[i]));
   }
-  const std::size_t first = data.before[steps_.front()];
-  phases_.assign(data.phases.begin() + static_cast<std::ptrdiff_t>(first), data.phases.end());
+  const std::size_t before = data.before[first.value_or(steps_.front())];
+  phases_.assign(data.phases.begin() + static_cast<std::ptrdiff_t>(before), data.phases.end());
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     Eigen::MatrixXd basis = design_of(k);
     for (Eigen::Index i = 0; i < basis.rows(); ++i)

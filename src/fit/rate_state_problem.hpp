@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "rate_state_data.hpp"
@@ -15,9 +16,10 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// line of each step projected out. Unknowns: a, b, ln D_c (, b_2, ln D_c2), ln k.
 class RateStateProblem : public Residuals {
  public:
-  /// steps: in order of time. They begin in steady sliding before the first of them.
+  /// steps: in order of time. The record slides steadily before `first`, the first of them where none is given, and
+  /// what it went through from there on is simulated, be its steps among them or not.
   RateStateProblem(const RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
-                   std::vector<std::size_t> steps);
+                   std::vector<std::size_t> steps, std::optional<std::size_t> first = std::nullopt);
 
   std::size_t count() const override { return rows_; }
   std::size_t parameter_count() const override { return 2 + 2 * states_; }

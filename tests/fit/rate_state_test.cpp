@@ -143,6 +143,7 @@ TEST(RateState, SwingsAreFollowedStepByStep) {
       fit_rate_state(motion_from(machine, phases, times_until(280, 10), 2e-4, 2e-6), options);
   ASSERT_TRUE(analysis.fitted()) << analysis.reason;
   expect_recovered(analysis.fits[0], machine, 0.03, 0.05);
+  EXPECT_LT(analysis.fits[0].held_out_rmse, 2.3e-4);  // of a step that is held out, too: it swings from those before it
 }
 
 TEST(RateState, FrictionThatRisesWithSpeedIsStableOnAnyMachine) {
