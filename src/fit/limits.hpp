@@ -76,8 +76,11 @@ inline constexpr std::size_t kWholeSlips = 12000, kWholeSlipsOfLook = 8000;
 /// Part of a standard error by which the last step over all values may move a parameter: what is left then is a tenth
 /// of it, and no printed digit moves. Steps that are taken at the most, and by how much each must at least be shorter
 /// than the one before it.
-inline constexpr double kLastStep = 1e-3, kLastStepOfLook = 0.05, kShortening = 0.7;
-inline constexpr int kMostRefiningSteps = 12, kRefiningStepsOfLook = 2;
+inline constexpr double kLastStep = 1e-3, kShortening = 0.7;
+inline constexpr int kMostRefiningSteps = 12;
+/// The same for a look: the last of its steps may be so long [std errors], and what is left rise by such a factor.
+inline constexpr int kRefiningStepsOfLook = 2;
+inline constexpr double kLongestStepOfLook = 0.5, kRiseOfLook = 1.01;
 
 // ---- slips
 

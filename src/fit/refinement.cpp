@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
@@ -69,6 +70,16 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
 
 }  // namespace
 
+namespace {
+
+double plain_squares(const ModelResiduals& plain, const std::vector<double>& p) {
+  std::vector<double> left(plain.count());
+  if (!plain.evaluate(p.data(), left.data(), nullptr)) return std::numeric_limits<double>::infinity();
+  return std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
+}
+
+}  // namespace
+
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
@@ -84,9 +95,14 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
     const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), p);
-    if (length <= (look ? kLastStepOfLook : kLastStep)) return true;
+    if (length <= kLastStep) return true;
     if (!(length < kShortening * last)) break;
-    if (look && step + 1 == kRefiningStepsOfLook) return true;
+    if (look && step + 1 == kRefiningStepsOfLook) {
+      // Where the data hardly know a parameter its standard error says nothing.
+      if (length <= kLongestStepOfLook && plain_squares(plain, p) <= kRiseOfLook * plain_squares(plain, begin))
+        return true;
+      break;
+    }
     last = length;
   }
   p = begin;

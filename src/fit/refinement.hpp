@@ -10,7 +10,7 @@ namespace tribofit {
 
 /// Takes p, where a search on fewer values ended, to where all values of the context lead: Gauss-Newton steps within
 /// the bounds, each with the scatter of break-away seen anew, until one moves no parameter by more than kLastStep of
-/// its standard error (of a look, kLastStepOfLook), as independent noise would make it. So the parameters are those of
+/// its standard error, as independent noise would make it; for a look two steps. So the parameters are those of
 /// all values, whatever the search saw. Sets the whitening of the context; the time of a change is held in `held`.
 ///
 /// false: the steps do not get shorter, or the model is not finite; p is as it was. Cost: two evaluations a step.

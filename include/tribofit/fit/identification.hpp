@@ -72,8 +72,9 @@ struct Identification : TracePart {
   Estimate load_coupling = {};  ///< found in the load channel by a diagnosis and removed from it; 0: none
 };
 
-/// How thoroughly a model is fitted, always to the same values. quick: from the start of the data alone, without what a
-/// look at a model does not need (FitOptions::starts == 0).
+/// How thoroughly a model is fitted. quick: a look (FitOptions::starts == 0), from the start of the data alone,
+/// searched on fewer values and taken to all of them in two steps; where the data hardly determine a parameter it stays
+/// where the search ended.
 enum class FitDetail { full, quick };
 
 /// The rig behind one trace.

@@ -86,7 +86,7 @@ struct WorkbenchOptions {
 /// and servers. Every function may be called from any thread; fits go on side by side and share the motion.
 ///
 /// A fit is that of identify() for the same choice: from the data and not from what was shown before, so that coming
-/// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0) at the same values;
+/// back to a rung gives the same numbers. FitDetail::quick is a look (FitOptions::starts == 0);
 /// FitDetail::full is what the command line does, to the last bit.
 class WorkbenchSession {
  public:

@@ -30,6 +30,7 @@ namespace {
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 17;
 // Chunks that wait for one before them: as many as are read while memory is made present for the rows to come.
 constexpr std::size_t most_waiting = 16;
+constexpr std::size_t chunks_ahead = 2 * most_waiting;
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
@@ -82,12 +83,15 @@ class RowReader {
     for (auto& values : rows_.values) {
       values.reserve(estimate);
       prefer_huge_pages(values, rows_expected_);
+      reserved_.push_back(values.data());
     }
   }
 
   Rows read(int threads) {
     const std::size_t available = static_cast<std::size_t>(threads > 0 ? threads : available_threads());
     const std::size_t helpers = std::min(available, chunks_) - (chunks_ > 0 ? 1 : 0);
+    for (std::size_t k = 0; k < most_waiting + helpers + 1; ++k) spare_.push_back(std::make_unique<Chunk>());
+    wanted_rows_ = static_cast<std::size_t>(rows_in(chunks_ahead * chunk_bytes));
     {
       const HelperThreads others(helpers, [this] { work(); });
       work();
@@ -103,7 +107,7 @@ class RowReader {
       std::unique_ptr<Chunk> chunk = place_for(i);
       if (!chunk) return;
       try {
-        make_present_ahead(i);
+        make_present_ahead();
         parse(i, text, *chunk);
       } catch (...) {
         chunk->failure = std::current_exception();
@@ -117,7 +121,6 @@ class RowReader {
     std::unique_lock lock(mutex_);
     turn_changed_.wait(lock, [&] { return i < turn_ + most_waiting || failure_; });
     if (failure_) return nullptr;
-    if (spare_.empty()) return std::make_unique<Chunk>();
     std::unique_ptr<Chunk> chunk = std::move(spare_.back());  // its memory has been touched
     spare_.pop_back();
     return chunk;
@@ -134,6 +137,7 @@ class RowReader {
       } catch (...) {
         failure_ = std::current_exception();
       }
+      wanted_rows_ = rows_.size() + chunks_ahead * next->rows;
       next->clear();
       spare_.push_back(std::move(next));
       ++turn_;
@@ -144,15 +148,14 @@ class RowReader {
 
   double rows_in(std::uint64_t bytes) const { return static_cast<double>(bytes) / std::max(2.0, dialect_.row_bytes); }
 
-  /// Memory for the rows up to some chunks ahead: whoever appends would wait for it, and all others for him.
-  void make_present_ahead(std::size_t chunk) {
-    constexpr std::size_t kAhead = 8, kRowsAtOnce = std::size_t{1} << 15;
-    const std::size_t rows =
-        std::min(rows_expected_, static_cast<std::size_t>(rows_in((chunk + kAhead) * chunk_bytes)));
+  /// Memory for the rows of the chunks to come: whoever appends would wait for it, and all others for him.
+  void make_present_ahead() {
+    constexpr std::size_t kRowsAtOnce = std::size_t{1} << 15;
+    const std::size_t rows = std::min<std::size_t>(rows_expected_, wanted_rows_);
     for (std::size_t from = present_; from < rows; from = present_) {
       if (!present_.compare_exchange_strong(from, from + kRowsAtOnce)) continue;
       const std::size_t to = std::min(from + kRowsAtOnce, rows_expected_);
-      for (auto& values : rows_.values) make_present(values, from, to);
+      for (double* values : reserved_) make_present(values, from, to);
     }
   }
 
@@ -291,8 +294,9 @@ class RowReader {
   std::atomic<std::size_t> next_chunk_ = 0;
   std::mutex mutex_;
   std::condition_variable turn_changed_;
-  std::atomic<std::size_t> present_ = 0;  // rows for which there is memory
+  std::atomic<std::size_t> present_ = 0, wanted_rows_ = 0;  // rows for which there is memory, and will be needed soon
   std::size_t rows_expected_ = 0;
+  std::vector<double*> reserved_;                             // where the memory of each column begins, at first
   std::size_t turn_ = 0;                                      // the chunk whose turn it is to be appended
   std::array<std::unique_ptr<Chunk>, most_waiting> waiting_;  // read, at their number modulo the size
   std::vector<std::unique_ptr<Chunk>> spare_;
