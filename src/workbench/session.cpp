@@ -30,6 +30,8 @@ namespace {
 constexpr std::size_t kMostRungs = 200;
 /// Fits at the same time: more would only take memory from each other.
 constexpr int kMostFits = 16;
+/// Motions with corrections that are kept: who compares a few effects goes to and fro between them.
+constexpr std::size_t kMostCorrected = 3;
 
 Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions identify) {
   identify.selection = {};
@@ -95,10 +97,9 @@ class FitPlace {
 struct WorkbenchSession::State {
   WorkbenchOptions options;
   std::shared_ptr<Prepared> uncorrected;  ///< the whole trace; set once, so that it needs no lock
-  /// With corrections of its motion, the last that were asked for.
-  std::shared_ptr<Prepared> corrected;
-  std::vector<std::string> corrections;
-  std::mutex correcting;  ///< guards both
+  /// With corrections of its motion: those that were asked for last, the very last at the end.
+  std::vector<std::pair<std::vector<std::string>, std::shared_ptr<Prepared>>> corrected;
+  std::mutex correcting;  ///< guards them
   std::atomic<int> fits_under_way{0};
   WorkbenchRecord record;
   std::vector<WorkbenchRung> rungs;
@@ -121,12 +122,15 @@ struct WorkbenchSession::State {
     std::vector<std::string> asked = corrections_of(identify.effects);
     if (asked.empty()) return uncorrected;
     const std::unique_lock lock = turn_in(correcting);
-    if (!corrected || corrections != asked) {
-      corrected.reset();
-      corrected = std::make_shared<Prepared>(whole_trace(options, identify));
-      corrections = std::move(asked);
+    const auto known =
+        std::find_if(corrected.begin(), corrected.end(), [&](const auto& one) { return one.first == asked; });
+    if (known != corrected.end()) {
+      std::rotate(known, known + 1, corrected.end());
+    } else {
+      if (corrected.size() >= kMostCorrected) corrected.erase(corrected.begin());
+      corrected.emplace_back(std::move(asked), std::make_shared<Prepared>(whole_trace(options, identify)));
     }
-    return corrected;
+    return corrected.back().second;
   }
 
   std::optional<WorkbenchRung> visited_rung(const WorkbenchChoice& choice) const {
