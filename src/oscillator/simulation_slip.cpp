@@ -67,16 +67,19 @@ bool Simulation::try_step(double h) {
   return accepted;
 }
 
-/// The step, at most h, that ends at v_r = 0: Newton on the end of the step, guarded by bisection.
+/// The step, at most h, that ends at v_r = 0: Newton on the end of the step, guarded by bisection. A contact that
+/// creeps in stick trembles about it, hardly faster than rounding: what is nothing beside the disc is zero.
 double Simulation::land_on_zero_speed(double h) {
+  const double nothing = 1e-13 * std::max(std::abs(setup_.disc_velocity(time_)), peak_speed_);
   double low = 0, high = h;
   for (int i = 0; i < 60; ++i) {
     const double speed = flow_.slip_speed(time_ + h, next_state_);
+    if (std::abs(speed) <= nothing) break;
     const double slope = flow_.direction() * (setup_.disc_acceleration(time_ + h) - next_derivative_[1]);
     (speed < 0 ? high : low) = h;
     double next = h - speed / slope;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - h) <= 1e-16 * std::abs(time_) + 1e-14 * h || speed == 0) break;
+    if (std::abs(next - h) <= 1e-16 * std::abs(time_) + 1e-14 * h) break;
     h = next;
     BlockState error;
     stepper_->method.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
@@ -86,13 +89,18 @@ double Simulation::land_on_zero_speed(double h) {
 
 void Simulation::slip(double until) {
   flow_(state_, derivative_, time_);
-  bool fresh = flow_.slip_speed(time_, state_) == 0;
+  bool fresh = flow_.slip_speed(time_, state_) == 0, turned = false;
   while (time_ < until && !sticking_) {
     double h = std::min(step_, until - time_);
     if (!try_step(h)) continue;
-    const bool crosses = flow_.slip_speed(time_ + h, next_state_) < 0;
-    if (crosses && fresh) {  // friction after break-away is above that before it: it does not slip yet
+    bool crosses = flow_.slip_speed(time_ + h, next_state_) < 0;
+    const bool rests = crosses && turned;  // it moves against either direction: by rounding alone
+    if (rests) {
+      next_state_[1] = setup_.disc_velocity(time_ + h);
+      crosses = false;
+    } else if (crosses && fresh) {  // friction after break-away is above that before it: it does not slip yet
       end_slip();
+      turned = friction_.acts_in_stick();
       fresh = flow_.slip_speed(time_, state_) == 0 && !fresh;
       continue;
     }
@@ -103,7 +111,8 @@ void Simulation::slip(double until) {
     time_ = until - time_ - h <= 0 ? until : time_ + h;
     state_ = next_state_;
     derivative_ = next_derivative_;
-    fresh = crosses;
+    fresh = crosses || rests;
+    turned = false;
     if (!std::isnan(slow_again_)) end_creeping_slip(slow_again_);
     if (crosses) {
       state_[1] = setup_.disc_velocity(time_);

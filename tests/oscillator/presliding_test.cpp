@@ -126,6 +126,18 @@ TEST(Presliding, BristleSlipsAreFoundAndScatter) {
   EXPECT_LT(product / offsets, 1);
 }
 
+// Where the disc stands still the bristles hold the block, and friction the spring: what is left of the motion dies out
+// to rounding, in which the block moves against either direction.
+TEST(Presliding, BristleRestsWithADiscThatStandsStill) {
+  Case c = with_effect("bristle", {7e4, 10});
+  c.drive.speed = stepped_speed({0}, {4 * 2 * std::numbers::pi / 60}, {{1, 60}});
+  const SimulatedMotion motion = simulate(c, {.duration = 60, .rate = 100});
+  ASSERT_EQ(motion.size(), 6000U);
+  const std::size_t end = motion.size() - 1;
+  EXPECT_LT(std::abs(motion.relative_velocity[end]), 1e-9);
+  EXPECT_NEAR(motion.friction[end], c.rig.stiffness * motion.displacement[end] / c.drive.mean_load, 1e-6);
+}
+
 // A stiff contact is a rigid one.
 TEST(Presliding, StiffBristleApproachesRigidStick) {
   const SimulationOptions options{.duration = 4, .rate = 0, .settle = 3, .tolerance = 1e-8};
