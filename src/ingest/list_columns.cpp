@@ -13,6 +13,7 @@
 #include "reader.hpp"
 #include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {
@@ -195,7 +196,8 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
   recognise(table, options, listing);
   suggest(table, listing);
   load_what_can_be(table, listing, options.threads);
-  for (std::size_t i = 0; i < table.columns.size(); ++i) take_numbers(table.columns[i], listing.columns[i]);
+  run_tasks(table.columns.size(), options.threads,
+            [&](std::size_t i) { take_numbers(table.columns[i], listing.columns[i]); });
   for (const RawRows& rows : table.rows) {
     if (rows.interval) listing.intervals.push_back(*rows.interval);
   }
