@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -70,7 +69,7 @@ inline Json rounded(double value, int digits) {
   constexpr double kExact = 1e22;
   const double shift = digits - 1 - std::floor(std::log10(std::abs(value)));
   const double power = std::pow(10.0, std::abs(shift));
-  if (!(power <= kExact)) return std::stod(fmt::format("{:.{}g}", value, digits));
+  if (!(power <= kExact)) return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
   return shift < 0 ? std::round(value / power) * power : std::round(value * power) / power;
 }
 inline Json rounded_list(std::span<const double> values, int digits) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "limits.hpp"
+
 namespace tribofit {
 
 namespace {
@@ -70,9 +72,8 @@ void set_squares_of_fold(const FitContext& context, const std::vector<std::size_
 /// worse than p does; p where no part of it does.
 std::vector<double> shortened_step(const FitContext& context, const std::vector<std::size_t>& kept,
                                    const std::vector<double>& p, const std::vector<bool>& free, Eigen::VectorXd step) {
-  constexpr std::size_t kValues = 8000;
   constexpr int kHalvings = 4;
-  const std::size_t every = std::max<std::size_t>(1, context.observations.size() / kValues);
+  const std::size_t every = (context.observations.size() / kWholeSlipsOfLook) | 1U;  // both directions
   std::vector<std::size_t> some;
   for (std::size_t k = 0; k < kept.size(); k += every) some.push_back(kept[k]);
   const ModelResiduals residuals = context.residuals(some);

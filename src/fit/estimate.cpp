@@ -128,11 +128,14 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
   const SolverOptions search = context.is_look() ? short_search() : quick_search();
   constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
   std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
-  SolverOptions longer = search;
-  longer.max_iterations *= 2;
-  if (!context.is_look() || !change) p = coarse.solve(slips, p, context.is_look() ? longer : search).p;
+  if (context.is_look() && !change) {  // the scatter is taken out by the steps over all values
+    SolverOptions longer = search;
+    longer.max_iterations *= 2;
+    return coarse.solve(slips, p, longer).p;
+  }
+  if (!context.is_look()) p = coarse.solve(slips, p, search).p;
   Bounds held = coarse.bounds;
-  if (!context.is_look() || change) settle(coarse, slips, change, held, p);  // else the steps over all values know it
+  settle(coarse, slips, change, held, p);
   return p;
 }
 
