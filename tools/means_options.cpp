@@ -110,6 +110,8 @@ void add_means_options(const Command& app, MeansOptions& m) {
   add("--mass-below", m.mass_below, "Mass that can be added below the force sensor, 100g");
   app.add_flag("--reversing", m.reversing, "The disc can turn forth and back").group(section::kMeans);
   app.add_flag("--tap", m.tap, "The block can be tapped, and both channels recorded").group(section::kMeans);
+  app.add_flag("--lift", m.lift, "The block can be lifted off the disc, and the force sensor read")
+      .group(section::kMeans);
   app.add_flag("--accelerometer", m.accelerometer, "There is an accelerometer for the block").group(section::kMeans);
 }
 
@@ -131,6 +133,7 @@ Means means_from(const MeansOptions& m, const std::string& radius) {
   }
   means.reversing = m.reversing;
   means.tap = m.tap;
+  means.lift = m.lift;
   means.accelerometer = m.accelerometer;
   return means;
 }

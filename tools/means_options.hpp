@@ -8,7 +8,7 @@
 /// What can be done at the rig, as typed.
 struct MeansOptions {
   std::string speeds, radii, loads, springs, rates, minutes, pauses, mass_below;
-  bool reversing = false, tap = false, accelerometer = false;
+  bool reversing = false, tap = false, lift = false, accelerometer = false;
 };
 
 void add_means_options(const Command& app, MeansOptions& options);

@@ -262,11 +262,11 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   ProgressReporter progress(options);
   progress.say("reading slips", 0.02);
   const Channels channels = all_channels(records);
-  const Floor floor = floor_of(records);
-  const Observations fine = observe_all(records, channels, fine_values(cycles), floor.noise);
-  // Means over a good part of a slip are off by more than what sampling leaves.
-  const std::size_t coarse_count = floor.sampling > 0 ? fine_values(cycles) : coarse_values(records, cycles);
-  const Observations coarse = observe_all(records, channels, coarse_count, floor.noise);
+  const std::vector<RecordNoise> noises = noises_of(records, options.threads);
+  const Floor floor = floor_of(records, noises);
+  const Observations fine = observe_all(records, noises, channels, fine_values(cycles), floor.noise);
+  const Observations coarse =
+      observe_all(records, noises, channels, coarse_values(records, cycles, floor), floor.noise);
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
   context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
                    left_by_corrections(records, fine, floor.noise) / context.noise_squares();

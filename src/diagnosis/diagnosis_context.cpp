@@ -34,7 +34,7 @@ const Level* DiagnosisContext::finest() const {
       return static_cast<double>(more) >= limits::kLeastFiner * static_cast<double>(fewer);
     };
     if (!is_finer(most, fine_values(cycles))) return;
-    finest_->observations = observe_all(records, all_channels(records), most, noise);
+    finest_->observations = observe_all(records, fine.observations.noise, all_channels(records), most, noise);
     if (!is_finer(finest_->observations->size(), fine.observations.size())) return;
     finest_->level.emplace(*finest_->observations);
     finest_->level->known = fine.known;

@@ -22,12 +22,19 @@ Channels all_channels(std::span<const Record> records) {
   return all;
 }
 
-Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip,
-                         double noise) {
+std::vector<RecordNoise> noises_of(std::span<const Record> records, int threads) {
+  std::vector<RecordNoise> noises;
+  for (const Record& record : records) noises.push_back(noise_of(*record.motion, *record.segmentation, threads));
+  return noises;
+}
+
+Observations observe_all(std::span<const Record> records, std::span<const RecordNoise> noises, const Channels& channels,
+                         std::size_t values_per_slip, double stick_unit) {
   std::vector<Observations> parts;
-  for (const Record& record : records) {
-    parts.push_back(observe(*record.motion, *record.segmentation, channels, values_per_slip));
-    add_stick_evidence(*record.motion, *record.segmentation, noise, parts.back());
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    parts.push_back(observe(*record.motion, *record.segmentation, noises[r], channels, values_per_slip));
+    add_stick_evidence(*record.motion, *record.segmentation, stick_unit, parts.back());
   }
   return parts.size() == 1 ? std::move(parts[0]) : join(std::move(parts));
 }
@@ -48,10 +55,11 @@ std::size_t count_cycles(std::span<const Record> records) {
   return cycles;
 }
 
-Floor floor_of(std::span<const Record> records) {
+Floor floor_of(std::span<const Record> records, std::span<const RecordNoise> noises) {
   double noise = 0, scatter = 0, sampling = 0;
-  for (const Record& record : records) {
-    const Floor floor = estimate_floor(*record.motion, *record.segmentation);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    const Floor floor = tribofit::floor_of(noises[r]);
     const bool has_line = !record.motion->is_points() && floor.sampling == 0;
     const double own = has_line ? noise_without_line(record, floor.noise) : floor.noise;
     noise += std::pow(own, 2) / static_cast<double>(records.size());
@@ -73,7 +81,9 @@ std::size_t finest_values(std::size_t cycles) {
   return std::clamp(limits::kFinestValues / cycles, fine_values(cycles), limits::kMostFine);
 }
 
-std::size_t coarse_values(std::span<const Record> records, std::size_t cycles) {
+std::size_t coarse_values(std::span<const Record> records, std::size_t cycles, const Floor& floor) {
+  // Means over a good part of a slip are off by more than what sampling leaves.
+  if (floor.sampling > 0) return fine_values(cycles);
   const bool filtered = std::any_of(records.begin(), records.end(),
                                     [](const Record& record) { return record.motion->friction_low_pass.any(); });
   if (filtered) return limits::kFewestFine;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "tribofit/fit/fit.hpp"
 
@@ -12,15 +13,19 @@ namespace tribofit::diagnosis {
 /// Everything these data offer to an effect.
 Channels all_channels(std::span<const Record> records);
 
-/// The observations of all records as one. noise: of a sample of friction [1 or N]; it sets what a stick counts for.
-Observations observe_all(std::span<const Record> records, const Channels& channels, std::size_t values_per_slip,
-                         double noise);
+/// The noise of each record.
+std::vector<RecordNoise> noises_of(std::span<const Record> records, int threads = 1);
+
+/// The observations of all records as one. stick_unit: noise of a sample of friction [1 or N]; it sets what a stick
+/// counts for.
+Observations observe_all(std::span<const Record> records, std::span<const RecordNoise> noises, const Channels& channels,
+                         std::size_t values_per_slip, double stick_unit);
 
 /// Units of evidence: cycles, points, or stretches of a record in which nothing sticks.
 std::size_t count_cycles(std::span<const Record> records);
 
 /// Sensor noise of all records, without a line that runs through it, and scatter of break-away.
-Floor floor_of(std::span<const Record> records);
+Floor floor_of(std::span<const Record> records, std::span<const RecordNoise> noises);
 
 /// Values of a slip in which candidates are fitted.
 std::size_t fine_values(std::size_t cycles);
@@ -29,6 +34,6 @@ std::size_t fine_values(std::size_t cycles);
 std::size_t finest_values(std::size_t cycles);
 
 /// And in which they are screened. A filter is not seen in means over more than its time.
-std::size_t coarse_values(std::span<const Record> records, std::size_t cycles);
+std::size_t coarse_values(std::span<const Record> records, std::size_t cycles, const Floor& floor);
 
 }  // namespace tribofit::diagnosis

@@ -31,6 +31,15 @@ Trial fit_beside(const DiagnosisContext& context, const Law& law, const std::vec
   return top;
 }
 
+/// The trial with one effect more, searched for as a diagnosis does: among means over more samples where that shows it.
+Searched search_effect(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                       const Candidate& effect) {
+  if (effect.info.needs_full_resolution) return try_with(context, context.fine, top, effect);
+  Searched searched = try_with(context, context.coarse, coarse_top, effect);
+  searched.trial = try_model(context, context.fine, searched.trial.model, searched.trial.p);
+  return searched;
+}
+
 }  // namespace
 
 Ruling rule_between(std::span<const Record> records, const Law& law, const std::vector<Effect>& beside,
@@ -39,20 +48,25 @@ Ruling rule_between(std::span<const Record> records, const Law& law, const std::
   for (const Effect& effect : effects) out.effects.push_back({.spelled = describe(effect).spelled()});
   const std::size_t cycles = count_cycles(records);
   if (cycles < limits::kFewestCycles) return out;
-  const Floor floor = floor_of(records);
+  const std::vector<RecordNoise> noises = noises_of(records);
+  const Floor floor = floor_of(records, noises);
   // As finely as a diagnosis decides: means over a few milliseconds favour a filter over a lag of half of one.
-  const Observations seen = observe_all(records, all_channels(records), fine_values(cycles), floor.noise);
-  const DiagnosisContext context(records, seen, seen, floor.noise, floor.scatter);
+  const Channels channels = all_channels(records);
+  const Observations seen = observe_all(records, noises, channels, fine_values(cycles), floor.noise);
+  const Observations coarse =
+      observe_all(records, noises, channels, coarse_values(records, cycles, floor), floor.noise);
+  const DiagnosisContext context(records, seen, coarse, floor.noise, floor.scatter);
   const std::vector<Candidate> all = candidates(records, seen, {}, instruments);
   const Trial top = fit_beside(context, law, beside, all);
   if (!top.usable) return out;
+  const Trial coarse_top = try_model(context, context.coarse, top.model, top.p);
 
   std::vector<CandidateResult> judged;
   std::vector<std::size_t> asked;  // which effect each is
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const std::size_t k = candidate_of(all, out.effects[e].spelled);
     if (k == all.size() || !all[k].untestable.empty() || !top.model.acts_with(all[k].effect)) continue;
-    Searched searched = try_with(context, context.fine, top, all[k]);
+    Searched searched = search_effect(context, top, coarse_top, all[k]);
     const double tests = searched.places * static_cast<double>(all.size());
     judged.push_back(compare(context, context.fine, top, std::move(searched.trial), all[k], tests, Limits{}));
     judged.back().candidate = k;

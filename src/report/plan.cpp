@@ -36,10 +36,11 @@ Json prediction_json(const Prediction& prediction) {
 
 Json experiment_json(const PlannedExperiment& one, const RunConditions& own) {
   return object("text", experiment_text(one.experiment, own), "runs", list_of(one.experiment.runs, run_json), "tap_hz",
-                positive_or_null(one.experiment.tap), "accelerometer", one.experiment.accelerometer, "minutes",
-                one.minutes(), "probability", one.probability, "expected", one.expected, "probability_by_model",
-                list_of(one.of_models, number), "simulated", one.simulated, "named", one.named, "wrong", one.wrong,
-                "predictions", list_of(one.predictions, prediction_json), "reason", text_or_null(one.reason));
+                positive_or_null(one.experiment.tap), "lift", one.experiment.lift, "accelerometer",
+                one.experiment.accelerometer, "minutes", one.minutes(), "probability", one.probability, "expected",
+                one.expected, "probability_by_model", list_of(one.of_models, number), "simulated", one.simulated,
+                "named", one.named, "wrong", one.wrong, "predictions", list_of(one.predictions, prediction_json),
+                "reason", text_or_null(one.reason));
 }
 
 Json planned_json(const DiagnosedTraces& diagnosed, const RunPlan& plan, const JsonOptions& options) {

@@ -77,6 +77,7 @@ std::string catalogue_experiment(const RunPlan& plan) {
 
 std::string experiment_text(const Experiment& experiment, const RunConditions& own) {
   if (experiment.tap > 0) return "tap the block";
+  if (experiment.lift) return "lift the block off the disc and read the force sensor";
   if (experiment.accelerometer) return "an accelerometer beside the vibrometer";
   std::vector<std::string> runs;
   for (const RunConditions& run : experiment.runs) runs.push_back(run_text(run, own));
@@ -165,8 +166,8 @@ std::vector<std::string> plan_notes(const RunPlan& plan) {
   if (plan.usual_means && plan.kind != QuestionKind::nothing && plan.reason.empty()) {
     notes.emplace_back(
         "No means were stated: planned with a quarter to four times the disc speed, at the same radius, and with a "
-        "longer record. --speeds, --radii, --loads, --springs, --pauses, --reversing, --tap and --rates say what can "
-        "be done.");
+        "longer record. --speeds, --radii, --loads, --springs, --pauses, --reversing, --tap, --lift and --rates say "
+        "what can be done.");
   }
   if (!plan.experiments.empty() && plan.experiments.front().experiment.tap > 0) {
     notes.push_back(
@@ -191,6 +192,7 @@ Suggestion next_after_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan
   if (best.experiment.accelerometer) {
     return {"once the gain that it shows stands in lab.json (vibrometer.gain)", with_lab()};
   }
+  if (best.experiment.lift) return {"once its zero stands in lab.json (force_sensor.zero)", with_lab()};
   if (best.experiment.tap > 0) {
     return {
         "once the shift that the tap shows stands in lab.json (vibrometer.delay), and what a sharp edge allows "

@@ -182,6 +182,7 @@ std::vector<Experiment> experiments_for(const OpenQuestion& question, const Iden
   const ExperimentMaker maker(question, trace, means);
   std::vector<Experiment> out;
   if (means.tap) out.push_back({.runs = {}, .tap = maker.own().rate});
+  if (means.lift) out.push_back({.runs = {}, .lift = true});
   add_speeds(maker, means, out);
   add_radii(maker, means, out);
   // What is recorded as a force, or without a load, is not known to follow the load.

@@ -92,6 +92,9 @@ inline constexpr std::size_t kFewestLevels = 10;
 /// effects that come near each other over as many. Of runs that take more samples than this a part of them.
 inline constexpr double kSamplesOfSlip = 400, kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
 
+/// Of these simulations: a thousandth of the noise of the best vibrometers, in a quarter of the steps of the usual one.
+inline constexpr double kPlannedTolerance = 1e-7;
+
 /// By which the evidence between two models is weakened before it counts as odds, since none is exact: of 113 simulated
 /// records that leave a group open the mean logarithm of the probability of the truth is -0.70 with 1.4, -0.71 with 1
 /// and 2, and -0.78 with 0.7 and 4. And the difference from which a model is out of the question.
@@ -140,9 +143,16 @@ inline constexpr double kWeightOfExpected = 1;
 /// Cycles, old and new, that are diagnosed in full for an experiment; a core diagnoses some hundred a second.
 inline constexpr double kMostDiagnosedCycles = 750;
 
+/// A draw with so many times the cycles that are expected is not diagnosed.
+inline constexpr double kTimesTheCycles = 2;
+
 /// Uncertainties of what a hand reads off a tap: where edges of two channels lie [s], beside a part of a sample, and
 /// how slow an edge is, in parts of its time. Smaller: a tap is thought to distinguish what nobody reads off it.
 inline constexpr double kReadingOfEdge = 0.02e-3, kPartOfSample = 0.3, kReadingOfSlope = 0.25;
+
+/// Of the zero of a force sensor, in parts of the median friction: as zeros wander while the block is lifted; and in
+/// parts of the noise of a sample, as of the mean of a hundred.
+inline constexpr double kReadingOfZero = 2e-3, kNoiseOfZero = 0.1;
 
 /// Draws of each model for the ranges of what is seen, and experiments of which that is said.
 inline constexpr std::size_t kDrawsToSee = 6, kExperimentsToSee = 4;

@@ -14,6 +14,7 @@
 #include "experiments.hpp"
 #include "limits.hpp"
 #include "open_question.hpp"
+#include "seen_in_runs.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 #include "weighing.hpp"
@@ -145,7 +146,7 @@ void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, cons
 void lengthen(const DiagnosedTraces& diagnosed, const OpenQuestion& question, double longest, Weighed& one) {
   PlannedExperiment& planned = one.planned;
   const std::vector<RunConditions>& runs = planned.experiment.runs;
-  if (runs.empty() || !planned.reason.empty() || !runs.front().pauses.empty()) return;
+  if (planned.experiment.is_by_hand() || !planned.reason.empty() || !runs.front().pauses.empty()) return;
   const double before = cycles_with(diagnosed, question, {}),
                all = cycles_with(diagnosed, question, planned.experiment);
   PlannedExperiment best = planned;
@@ -180,7 +181,7 @@ void draw_best_again(const DiagnosedTraces& diagnosed, const OpenQuestion& quest
 
 /// An experiment of which a full diagnosis of simulated records says more than its draws.
 bool is_only_expected(const Weighed& one) {
-  return !one.planned.experiment.runs.empty() && one.planned.reason.empty() && one.planned.simulated == 0;
+  return !one.planned.experiment.is_by_hand() && one.planned.reason.empty() && one.planned.simulated == 0;
 }
 
 /// Full diagnoses beside what was expected of them.
@@ -210,8 +211,9 @@ void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& ques
   };
   PlannedExperiment& one = weighed.planned;
   const std::vector<std::size_t> likely = likely_models(question);
-  const double records = kMostDiagnosedCycles / cycles_with(diagnosed, question, one.experiment);
-  const auto worth_it = static_cast<std::size_t>(options.effort * records / static_cast<double>(likely.size()));
+  const double cycles = cycles_with(diagnosed, question, one.experiment);
+  const double records = options.effort * kMostDiagnosedCycles / cycles;
+  const auto worth_it = static_cast<std::size_t>(records / static_cast<double>(likely.size()));
   const std::size_t least = at_least_one ? 1U : 0U, draws = std::clamp(worth_it, least, kMostDrawsInFull);
   std::vector<Task> tasks;
   for (std::size_t draw = 0; draw < draws; ++draw) {
@@ -220,7 +222,8 @@ void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& ques
   std::atomic<std::size_t> done{0};
   run_tasks(tasks.size(), options.threads, [&](std::size_t t) {
     if (is_late(options)) return;
-    tasks[t].answer = diagnose_simulated(diagnosed, question, one.experiment, tasks[t].model, tasks[t].draw, options);
+    tasks[t].answer = diagnose_simulated(diagnosed, question, one.experiment, tasks[t].model, tasks[t].draw,
+                                         kTimesTheCycles * cycles, options);
     say(static_cast<double>(++done) / static_cast<double>(tasks.size()));
   });
   weighed.looked_at = true;
@@ -348,9 +351,10 @@ RunPlan plan_runs(const DiagnosedTraces& diagnosed, const PlanOptions& options) 
   for (std::size_t e = 0; e < std::min(kExperimentsToSee, out.experiments.size()); ++e) {
     if (e > 0 && is_late(options)) break;
     progress.say("what is to be seen", 0.9 + 0.02 * static_cast<double>(e));
-    out.experiments[e].predictions = predict_seen(question, out.experiments[e].experiment, options);
+    Seen seen = predict_seen(question, out.experiments[e].experiment, e == 0, options);
+    out.experiments[e].predictions = std::move(seen.predictions);
+    if (e == 0) out.curves = std::move(seen.curves);
   }
-  if (!out.experiments.empty()) out.curves = predict_curves(question, out.experiments.front().experiment, options);
   out.models = std::move(question.models);
   progress.say("done", 1);
   return out;

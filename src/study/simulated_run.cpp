@@ -120,6 +120,7 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   options.rate = std::min(run.rate, enough);
   options.scatter = record.scatter;
   options.seed = seed;
+  options.tolerance = kPlannedTolerance;
   if (!(run.reversing > 0)) options.settle = settling_time(machine.rig, drive, machine.parameters);
   Sensors sensors = record.noise;  // of a sample at any rate; neighbours correlate over the same time
   sensors.noise_colour = std::pow(sensors.noise_colour, record.rate / run.rate);

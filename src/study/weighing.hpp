@@ -1,12 +1,17 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 #include "open_question.hpp"
 #include "tribofit/study/plan.hpp"
 
 namespace tribofit {
+
+/// The runs of an experiment with one machine drawn of the truth; empty where they cannot be simulated. truth: index of
+/// the model; draw: which one of its posterior.
+std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment& experiment, std::size_t truth,
+                                  std::uint64_t draw, const PlanOptions& options);
 
 /// What the rule of evidence says of the records with a simulated run of one draw of the truth.
 struct Evidence {
@@ -19,7 +24,6 @@ struct Evidence {
   std::vector<double> ahead = {};
   double least_by_size = 0;  ///< see Ruling
 };
-/// truth: index of the model; draw: which one of its posterior.
 Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
                     std::size_t truth, std::uint64_t draw, const PlanOptions& options);
 
@@ -36,15 +40,11 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
 /// Chance that a value so many of its standard uncertainties from nothing is beyond three of them when it is measured.
 double chance_beyond(double sigmas);
 
-/// What a full diagnosis of the records with a simulated one of the experiment comes to.
+/// What a full diagnosis of the records with a simulated one of the experiment comes to. Nothing where they have more
+/// than `most_cycles`: a draw whose friction falls far slips many times as often, and takes as many times as long.
 enum class Answer { named, open, wrong };
-Answer diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
-                          std::size_t truth, std::uint64_t draw, const PlanOptions& options);
-
-/// What each model predicts to be seen in an experiment, and over which variables.
-std::vector<Prediction> predict_seen(const OpenQuestion& question, const Experiment& experiment,
-                                     const PlanOptions& options);
-std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const Experiment& experiment,
-                                            const PlanOptions& options);
+std::optional<Answer> diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question,
+                                         const Experiment& experiment, std::size_t truth, std::uint64_t draw,
+                                         double most_cycles, const PlanOptions& options);
 
 }  // namespace tribofit

@@ -31,7 +31,7 @@ Means usual_lab(const Case& c) {
   means.springs = {4 * c.rig.stiffness};
   means.longest_pause = 6;
   means.reversing = true;
-  means.tap = true;
+  means.tap = means.lift = true;
   means.longest = 120;
   return means;
 }
@@ -66,29 +66,44 @@ double corner_of_tap(double rate) {
   return rate / 4;
 }
 
-/// What a tap shows of the truth: nothing, a shift of the edges that can be declared, or a filter, which it names.
-enum class Tapped { nothing, delay, filter };
+/// What a measurement by hand shows of the truth: nothing, a value that is declared and corrected, or a filter, which
+/// it names.
+enum class ByHand { nothing, correction, filter };
 
-/// With delay and least bandwidth for the instruments file.
-Tapped tap(const Case& c, double rate, Instruments& instruments) {
-  const Ingredient& what = c.hidden.front();
-  const EffectInfo effect = describe(make_effect(what.key));
+/// What is read by hand of an instrument.
+Instruments read_by_hand(const Case& c, InstrumentValue value) {
   std::vector<std::string> keys;
   for (const Effect& other : effect_catalogue()) {
     const EffectInfo info = describe(other);
-    if (info.declared_by == InstrumentValue::vibrometer_delay) keys.push_back(info.key);
+    if (info.declared_by == value) keys.push_back(info.key);
   }
-  const Instruments read = measured_by_hand(c, keys);
+  return measured_by_hand(c, keys);
+}
+
+/// With the zero of the force sensor for the instruments file.
+ByHand lift(const Case& c, Instruments& instruments) {
+  const Ingredient& what = c.hidden.front();
+  const Declared zero = read_by_hand(c, InstrumentValue::force_zero).force_sensor.zero.value();
+  instruments.force_sensor.zero = zero;
+  const bool is_zero = describe(make_effect(what.key)).declared_by == InstrumentValue::force_zero;
+  return is_zero && std::abs(what.values[0]) > 3 * zero.uncertainty ? ByHand::correction : ByHand::nothing;
+}
+
+/// With delay and least bandwidth for the instruments file.
+ByHand tap(const Case& c, double rate, Instruments& instruments) {
+  const Ingredient& what = c.hidden.front();
+  const EffectInfo effect = describe(make_effect(what.key));
+  const Instruments read = read_by_hand(c, InstrumentValue::vibrometer_delay);
   if (read.vibrometer.delay) {
     instruments.vibrometer.delay = read.vibrometer.delay;
     instruments.vibrometer.delay->uncertainty = std::hypot(0.02e-3, 0.3 / rate);
   }
   const bool is_filter = effect.declared_by == InstrumentValue::force_bandwidth;
-  if (is_filter && what.values[0] < corner_of_tap(rate)) return Tapped::filter;
+  if (is_filter && what.values[0] < corner_of_tap(rate)) return ByHand::filter;
   instruments.force_sensor.bandwidth_at_least = Declared{corner_of_tap(rate), 0};
   const bool is_delay = effect.declared_by == InstrumentValue::vibrometer_delay &&
                         std::abs(what.values[0]) * 1e-3 > 3 * instruments.vibrometer.delay->uncertainty;
-  return is_delay ? Tapped::delay : Tapped::nothing;
+  return is_delay ? ByHand::correction : ByHand::nothing;
 }
 
 /// An investigation as it goes on.
@@ -96,7 +111,7 @@ struct Bench {
   const Case& c;
   recovery::Experiment made;  ///< so far
   Instruments instruments;
-  Tapped tapped = Tapped::nothing;
+  ByHand shown = ByHand::nothing;
 
   DiagnosedTraces diagnose() const {
     Simulated simulated = simulate_case(c, made);
@@ -105,7 +120,8 @@ struct Bench {
   }
 
   void make(const tribofit::Experiment& experiment, const RunConditions& own) {
-    if (experiment.tap > 0) tapped = tap(c, experiment.tap, instruments);
+    if (experiment.tap > 0) shown = std::max(shown, tap(c, experiment.tap, instruments));
+    if (experiment.lift) shown = std::max(shown, lift(c, instruments));
     for (const RunConditions& run : experiment.runs) {
       made.runs.push_back({.setting = Setting::fast,
                            .speed = run.speed / c.speed,
@@ -125,6 +141,7 @@ struct Bench {
 
 std::string what_of(const tribofit::Experiment& experiment, const RunConditions& own) {
   if (experiment.tap > 0) return "tap";
+  if (experiment.lift) return "lift";
   std::string text;
   for (const RunConditions& run : experiment.runs) {
     text += fmt::format("{}{:.3g} rpm", text.empty() ? "" : " + ", run.speed / kRpm);
@@ -148,8 +165,8 @@ FurtherRun further_run(Bench& bench, const PlannedExperiment& one, const RunCond
   const bool rivals_left =
       std::any_of(names.begin(), names.end(), [&](const Name& n) { return n.added != key_of(bench.c); });
   out.alone =
-      bench.tapped == Tapped::filter || is_alone(bench.c, names) || (bench.tapped == Tapped::delay && !rivals_left);
-  out.wrong = bench.tapped != Tapped::filter && rivals_left && is_wrong(bench.c, names);
+      bench.shown == ByHand::filter || is_alone(bench.c, names) || (bench.shown == ByHand::correction && !rivals_left);
+  out.wrong = bench.shown != ByHand::filter && rivals_left && is_wrong(bench.c, names);
   out.names = text_of(names);
   return out;
 }
@@ -164,7 +181,8 @@ RunPlan plan_for(const Bench& bench, const DiagnosedTraces& diagnosed, const Inv
                  std::uint64_t seed) {
   tribofit::PlanOptions plan;
   plan.means = usual_lab(bench.c);
-  if (bench.made.measured.empty() && bench.instruments.vibrometer.delay) plan.means.tap = false;
+  if (bench.instruments.vibrometer.delay) plan.means.tap = false;
+  if (bench.instruments.force_sensor.zero) plan.means.lift = false;
   plan.threads = 1;
   plan.seed = seed;
   plan.effort = options.effort;

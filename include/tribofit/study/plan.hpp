@@ -26,12 +26,13 @@ struct Means {
   double longest_pause = 0;          ///< for which the disc can be stopped between slides [s]; 0: it cannot
   bool reversing = false;            ///< the disc can turn forth and back
   bool tap = false;                  ///< the block can be tapped
+  bool lift = false;                 ///< the block can be lifted off the disc
   bool accelerometer = false;        ///< there is one for the block
 
   /// Nothing was said but how long a run may take.
   bool empty() const {
     return speeds.empty() && radii.empty() && loads.empty() && springs.empty() && rates.empty() && !(mass_below > 0) &&
-           !(longest_pause > 0) && !reversing && !tap && !accelerometer;
+           !(longest_pause > 0) && !reversing && !tap && !lift && !accelerometer;
   }
 };
 inline constexpr double kUsualLongest = 600;  ///< of an experiment where nobody says [s]
@@ -54,8 +55,11 @@ struct Experiment {
   /// Rate at which both channels are recorded while the block is tapped; what that shows of them is declared [Hz]. 0:
   /// it is not tapped.
   double tap = 0;
+  bool lift = false;           ///< the force sensor is read without contact; its zero is declared
   bool accelerometer = false;  ///< it shows the gain of the vibrometer, which is declared
-  double duration() const;     ///< of all runs [s]
+
+  bool is_by_hand() const { return runs.empty(); }
+  double duration() const;  ///< of all runs [s]
 };
 
 /// What the data leave open.
