@@ -69,4 +69,26 @@ TEST(PlanCommand, NamesTheExperimentAndTheCommandThatComesAfterIt) {
   EXPECT_THAT(contents(shop / "plan.html"), HasSubstr("What to run next"));
 }
 
+TEST(PlanCommand, AZeroIsReadWithTheBlockLiftedAndDeclared) {
+  const Workshop shop;
+  ASSERT_EQ(
+      shop.identify("simulate --radius 15mm --duration 12s --rate 4kHz --speed-steps 0s:4rpm,6s:-4rpm --effect "
+                    "sensor-offset:b=0.02 --noise-mu 0.006 --noise-v 0.02mm/s --scatter 0.008 --quiet --out z.csv")
+          .status,
+      0);
+  const Outcome o = shop.identify("plan --radius 15mm --load 50N --lift --minutes 0.1 --json plan.json z.csv");
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("Best: lift the block off the disc"));
+  EXPECT_THAT(o.out, HasSubstr("force_sensor.zero"));
+  const auto plan = nlohmann::json::parse(contents(shop / "plan.json")).at("plan");
+  EXPECT_TRUE(plan.at("experiments").at(0).at("lift"));
+  // Declared as it would be read, it is corrected, and nothing is left to name.
+  std::ofstream(shop / "lab.json") << R"({"force_sensor": {"zero": ["0.02", "0.0005"]}})";
+  const Outcome after =
+      shop.identify("diagnose --instruments lab.json --radius 15mm --load 50N --json after.json z.csv");
+  ASSERT_EQ(after.status, 0) << after.err;
+  const auto ladder = nlohmann::json::parse(contents(shop / "after.json")).at("diagnosis").at("ladder");
+  EXPECT_EQ(ladder.size(), 1U);
+}
+
 }  // namespace

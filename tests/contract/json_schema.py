@@ -128,7 +128,7 @@ def written(identify, repository):
         result("hidden", "diagnose --radius 15mm --load 50N hidden.csv --confirm held.csv")
         run(f"simulate --radius 15mm --duration 6s --seed 1 --effect frictional-lag:tau=0.5 --noise-mu 0.006 "
             "--noise-v 0.02mm/s --scatter 0.008 --rate 4kHz --quiet --out open.csv")
-        result("plan", "plan --radius 15mm --load 50N --tap --rates 50kHz --pauses 1s --minutes 0.1 open.csv")
+        result("plan", "plan --radius 15mm --load 50N --tap --lift --rates 50kHz --pauses 1s --minutes 0.1 open.csv")
         result("both", "diagnose --radius 15mm --load 50N hidden.csv again.csv")
         for radius in (9, 12, 15):
             for repeat in (1, 2):

@@ -93,6 +93,35 @@ TEST(RateState, TwoStatesAgreeToo) {
   for (std::size_t i = 0; i < t.size(); ++i) ASSERT_NEAR(motion.friction[i], truth[i], 2e-6) << t[i];
 }
 
+TEST(RateState, SimulationAgreesWithThePublishedOneOfMarone) {
+  // Values of C. Marone's program, published with rsfmodel (J. R. Leeman, R. May, C. Marone, D. Saffer, SciPy 2016;
+  // cjm_model_comparison): a = 0.005, b = 0.01, D_c = 10 um, k = 0.001/um, ageing law, from steady sliding at 1 um/s.
+  const RateStateMachine machine = machine_of(StateEvolution::ageing, 2, 0.005, 0.01);
+  struct Point {
+    double time, friction;
+  };
+  const auto expect = [&](double speed, const std::vector<Point>& points) {
+    std::vector<double> times = {0};
+    for (const Point& point : points) times.push_back(10 + point.time);
+    const RateStateMotion motion =
+        simulate_velocity_steps(machine, std::vector<LoadPointPhase>{{0, 1e-6}, {10, speed}}, times);
+    ASSERT_EQ(motion.failure, "");
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_NEAR(motion.friction[i + 1], points[i].friction, 5e-7) << speed << " " << points[i].time;
+  };
+  expect(10e-6, {{0.1, 0.600890435},
+                 {0.5, 0.604189345},
+                 {1, 0.607204852},
+                 {1.29, 0.607843561},
+                 {2, 0.601866372},
+                 {2.5, 0.590147958},
+                 {3, 0.584009097},
+                 {3.22, 0.583623493},
+                 {4, 0.585630964},
+                 {6, 0.589981860}});
+  expect(0, {{0.1, 0.599900993}, {1, 0.599093520}, {10, 0.595464603}, {30, 0.593967139}, {60, 0.593514773}});
+}
+
 TEST(RateState, SoftMachinesRunAway) {
   const RateStateMotion motion =
       simulate_velocity_steps(machine_of(StateEvolution::slip, 0.3), kSteps, times_until(230, 10));

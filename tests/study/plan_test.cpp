@@ -17,7 +17,9 @@ namespace tribofit {
 namespace {
 
 /// A record of the 15 mm test of [D] with an effect hidden in it, as short and noisy as it takes to leave it open.
-TraceInput open_record(const std::string& effect, double value, double duration, double rate, double noise) {
+/// turns: the disc turns back after half of it.
+TraceInput open_record(const std::string& effect, double value, double duration, double rate, double noise,
+                       bool turns = false) {
   const PublishedTest test = published_test(0.015, ExponentialLaw{});
   const FrictionModel model(ExponentialLaw{}, {make_effect(effect)});
   std::vector<double> p = test.friction;
@@ -25,7 +27,9 @@ TraceInput open_record(const std::string& effect, double value, double duration,
     const Parameter& q = model.parameters()[k].parameter;
     p.push_back((k == test.friction.size() ? value : q.start) * q.si);
   }
-  Drive drive{.speed = constant_speed(test.speed), .radius = test.radius, .mean_load = test.load};
+  const SpeedProfile speed =
+      turns ? stepped_speed({0, 0.5 * duration}, {test.speed, -test.speed}) : constant_speed(test.speed);
+  Drive drive{.speed = speed, .radius = test.radius, .mean_load = test.load};
   SimulationOptions options;
   options.duration = duration;
   options.rate = rate;
@@ -71,6 +75,26 @@ TEST(Plan, ATapSettlesALagOrADelayThatNoSpeedDoes) {
   double sum = 0;
   for (const ModelInQuestion& model : plan.models) sum += model.probability;
   EXPECT_NEAR(sum, 1, 1e-12);
+}
+
+TEST(Plan, LiftingTheBlockShowsTheZeroOfTheForceSensor) {
+  const Means means{.longest = 6, .lift = true};
+  const RunPlan plan = plan_of(diagnose({open_record("sensor-offset", 0.02, 12, 4000, 0.006, true)}), means);
+  ASSERT_TRUE(plan.answered()) << plan.reason;
+  ASSERT_THAT(names_of(plan), testing::Contains("sensor-offset"));
+  const PlannedExperiment& best = plan.experiments.front();
+  EXPECT_TRUE(best.experiment.lift);
+  EXPECT_GT(best.probability, 0.9);
+  ASSERT_FALSE(best.predictions.empty());
+  for (std::size_t m = 0; m < plan.models.size(); ++m) {  // a zero shows whatever else is in question
+    const double zero = plan.models[m].name == "sensor-offset" ? 0.02 : 0;
+    EXPECT_LE(best.predictions[0].models[m].lower95, zero);
+    EXPECT_GE(best.predictions[0].models[m].upper95, zero);
+  }
+  const RunPlan lag = plan_of(open_lag(), means);  // neither has a zero
+  for (const PlannedExperiment& one : lag.experiments) {
+    EXPECT_TRUE(!one.experiment.lift || one.probability == 0);
+  }
 }
 
 TEST(Plan, SpeedsAloneAreHopelessForALagOrADelay) {
