@@ -52,9 +52,10 @@ ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& ob
   const std::vector<double> p = fit.values();
   const double bins_per_velocity = static_cast<double>(kBins) / fastest;
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
+  FullRecord::Made made;
   std::vector<double> model;  // of one slip at a time: a channel of the whole record would cost its pages
   for (const Observations::SlipObservation& range : observations.slips) {
-    const Slip slip = record.slip(range);
+    const Slip slip = record.slip(range, made);
     model.resize(slip.size());
     evaluate<double>(fit.model, p.data(), slip, slip.velocity, model);
     const std::span<const double> measured = record.friction(range);

@@ -133,8 +133,9 @@ std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmenta
   const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
   const FullRecord samples(std::span(&one, 1), observations, fit.model.needs());
+  FullRecord::Made made;
   for (const auto& range : observations.slips) {
-    Slip slip = samples.slip(range);
+    Slip slip = samples.slip(range, made);
     slip.record = record;
     evaluate<double>(fit.model, p.data(), slip, slip.velocity,
                      std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));

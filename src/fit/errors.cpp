@@ -8,6 +8,7 @@
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/segmentation/strokes.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -33,7 +34,7 @@ double FullRecord::weight(const Observations::SlipObservation& range, std::size_
   return records_[range.record].motion->is_points() ? observations_.weight[range.begin + i] : 1;
 }
 
-Slip FullRecord::slip(const Observations::SlipObservation& range) const {
+Slip FullRecord::slip(const Observations::SlipObservation& range, Made& made) const {
   const auto part = [&](const std::vector<double>& channel) {
     return part_of(channel, range.samples.begin, range.samples.end);
   };
@@ -45,8 +46,8 @@ Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   slip.velocity_variance = {};
   slip.acceleration = {};
   if (needs_.acceleration) {
-    acceleration_ = slip_acceleration(motion, range.samples);
-    slip.acceleration = acceleration_;
+    made.acceleration = slip_acceleration(motion, range.samples);
+    slip.acceleration = made.acceleration;
   }
   // What the observations lack the model was fitted without, though this record may have it.
   const auto as_fitted = [&](const std::vector<double>& fitted, const std::vector<double>& recorded) {
@@ -57,8 +58,8 @@ Slip FullRecord::slip(const Observations::SlipObservation& range) const {
   slip.reversal_distance = as_fitted(observations_.reversal_distance, channel.reversal_distance);
   slip.load = as_fitted(observations_.load, motion.load);
   if (motion.load.empty() && !observations_.load.empty()) {
-    load_.assign(range.samples.size(), observations_.load[range.begin]);
-    slip.load = load_;
+    made.load.assign(range.samples.size(), observations_.load[range.begin]);
+    slip.load = made.load;
   }
   slip.temperature = as_fitted(observations_.temperature, motion.temperature);
   return slip;
@@ -68,15 +69,22 @@ std::size_t noise_stretch(std::size_t samples) {
   return std::clamp(samples / 4, kShortestNoiseStretch, kLongestNoiseStretch);
 }
 
-SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
-                           const Observations& observations) {
-  SampleErrors out;
-  out.squares.assign(observations.cycles, 0.0);
-  out.counts.assign(observations.cycles, 0.0);
-  double relative = 0, relative_count = 0, sum = 0, sum_squares = 0, samples = 0;
+namespace {
+
+/// What a model leaves on the samples of some slips; the sums of each slip apart, as several may be of one cycle.
+struct ErrorsOfSlips {
+  std::vector<double> squares, counts;
+  double relative = 0, relative_count = 0, max_relative = 0, sum = 0, sum_squares = 0, samples = 0;
+};
+
+ErrorsOfSlips errors_of(std::span<const Observations::SlipObservation> slips, const FrictionModel& shared,
+                        const std::vector<double>& p, const FullRecord& record) {
+  ErrorsOfSlips out;
+  const FrictionModel model(shared);  // its formulas must not be shared between threads
   std::vector<double> mu;
-  for (const auto& range : observations.slips) {
-    const Slip slip = record.slip(range);
+  FullRecord::Made made;
+  for (const auto& range : slips) {
+    const Slip slip = record.slip(range, made);
     mu.resize(slip.size());
     evaluate<double>(model, p.data(), slip, slip.velocity, mu);
     const std::span<const double> measured = record.friction(range);
@@ -88,15 +96,15 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
       const double weight = record.weight(range, i);
       squares += weight * r * r;
       const double level = measured[i] * range.direction;
-      sum += weight * level;
-      sum_squares += weight * level * level;
+      out.sum += weight * level;
+      out.sum_squares += weight * level * level;
       if (const double e = relative_error(measured[i], mu[i]); std::isfinite(e)) {
-        relative += e;
-        relative_count += 1;
-        out.figures.max_relative = std::max(out.figures.max_relative, e);
+        out.relative += e;
+        out.relative_count += 1;
+        out.max_relative = std::max(out.max_relative, e);
       }
     }
-    samples += good;
+    out.samples += good;
     double count = good;
     if (range.from_stick) {
       const double r = range.break_away_friction - break_away_level(model, p.data(), slip);
@@ -104,8 +112,37 @@ SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>
       squares += weight * r * r;
       count += weight;
     }
-    out.squares[range.cycle] += squares;
-    out.counts[range.cycle] += count;
+    out.squares.push_back(squares);
+    out.counts.push_back(count);
+  }
+  return out;
+}
+
+}  // namespace
+
+SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
+                           const Observations& observations, int threads) {
+  constexpr std::size_t kSlipsOfPart = 32;
+  const std::span<const Observations::SlipObservation> slips(observations.slips);
+  std::vector<ErrorsOfSlips> parts((slips.size() + kSlipsOfPart - 1) / kSlipsOfPart);
+  run_tasks(parts.size(), threads, [&](std::size_t k) {
+    const std::size_t first = k * kSlipsOfPart;
+    parts[k] = errors_of(slips.subspan(first, std::min(kSlipsOfPart, slips.size() - first)), model, p, record);
+  });
+  SampleErrors out;
+  out.squares.assign(observations.cycles, 0.0);
+  out.counts.assign(observations.cycles, 0.0);
+  double relative = 0, relative_count = 0, sum = 0, sum_squares = 0, samples = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const ErrorsOfSlips& part = parts[k];
+    relative += part.relative, relative_count += part.relative_count;
+    sum += part.sum, sum_squares += part.sum_squares, samples += part.samples;
+    out.figures.max_relative = std::max(out.figures.max_relative, part.max_relative);
+    for (std::size_t s = 0; s < part.squares.size(); ++s) {
+      const std::size_t cycle = slips[k * kSlipsOfPart + s].cycle;
+      out.squares[cycle] += part.squares[s];
+      out.counts[cycle] += part.counts[s];
+    }
   }
   double total = 0, count = 0;
   for (std::size_t c = 0; c < out.squares.size(); ++c) {

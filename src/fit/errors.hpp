@@ -12,8 +12,12 @@ namespace tribofit {
 class FullRecord {
  public:
   FullRecord(std::span<const Record> records, const Observations& observations, const Channels& needs);
-  /// Valid until the next call.
-  Slip slip(const Observations::SlipObservation& range) const;
+  /// What of a slip stands in no record.
+  struct Made {
+    std::vector<double> acceleration, load;
+  };
+  /// Valid until `made` is given to the next call.
+  Slip slip(const Observations::SlipObservation& range, Made& made) const;
   /// Measured friction of a slip, signed.
   std::span<const double> friction(const Observations::SlipObservation& range) const;
   /// Whether a fault of the recording spoilt sample i of a slip.
@@ -28,8 +32,7 @@ class FullRecord {
   std::span<const Record> records_;
   const Observations& observations_;
   Channels needs_;
-  std::vector<Channel> channels_;                    // of each record
-  mutable std::vector<double> acceleration_, load_;  // of the slip asked for last
+  std::vector<Channel> channels_;  // of each record
 };
 
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
@@ -54,6 +57,6 @@ struct SampleErrors {
   double constant_rmse = 0;     ///< what a constant |friction| would leave
 };
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
-                           const Observations& observations);
+                           const Observations& observations, int threads = 1);
 
 }  // namespace tribofit

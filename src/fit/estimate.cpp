@@ -196,7 +196,11 @@ Solution estimate_by_extremes(FitContext& context, Fit& fit) {
     if (given.name != static_level_name && given.name != kinetic_level_name) continue;
     fit.messages.push_back(given.name + " is set by the per-cycle extremes; the value given for it is not used");
   }
-  out.result = context.solve(all_slips(context.observations), out.start, SolverOptions());
+  const std::vector<std::size_t> all = all_slips(context.observations),
+                                 some = some_slips(context.observations, kWholeSlips);
+  const bool is_long = some.size() < all.size();  // the search leaves a step or two over all slips
+  const std::vector<double> p = is_long ? context.solve(some, out.start, quick_search()).p : out.start;
+  out.result = context.solve(all, p, is_long ? quick_search() : SolverOptions());
   return out;
 }
 

@@ -247,7 +247,8 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
   const Freedom freedom = freedom_of(context, p, equations);
   fill_parameters(context, solution, equations, freedom, fit);
 
-  const SampleErrors errors = sample_errors(model, p, FullRecord(records, observations, model.needs()), observations);
+  const SampleErrors errors =
+      sample_errors(model, p, FullRecord(records, observations, model.needs()), observations, options.threads);
   fill_errors(errors, fit);
   fill_floor(context, p, errors, fit);
   cross_validate(context, solution, equations, freedom.inside, errors, fit);

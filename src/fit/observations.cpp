@@ -46,6 +46,14 @@ class Reducer {
   std::vector<double> means(const std::vector<double>& channel) const {
     std::vector<double> out;
     if (channel.empty()) return out;
+    std::size_t samples = 0;
+    for (const auto& slip : slips_) samples += slip.samples.size();
+    out.reserve(samples / per_value_ + slips_.size());
+    if (per_value_ == 1) {
+      const auto at = [&](std::size_t i) { return channel.begin() + static_cast<std::ptrdiff_t>(i); };
+      for (const auto& slip : slips_) out.insert(out.end(), at(slip.samples.begin), at(slip.samples.end));
+      return out;
+    }
     each([&](std::size_t begin, std::size_t end) {
       double sum = 0, good = 0, count = 0;
       for (std::size_t i = begin; i < end; ++i) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "column_names.hpp"
 #include "limits.hpp"
@@ -32,7 +33,7 @@ class Clock {
     double shift = -time_.front(), last = time_.front();
     double step_start = last;
     time_.front() = 0;
-    for (std::size_t i = 1; i < time_.size(); ++i) {
+    for (std::size_t i = shift_plain_rows(shift, last); i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
       const bool step_changes = begins_step(i);
       if (interval > 0 && (interval <= kGapInterval * interval_ || any_rate_) && !step_changes) [[likely]] {
@@ -60,6 +61,29 @@ class Clock {
   }
 
  private:
+  /// Takes the start of the clock off the first rows, block by block, as long as there is nothing else to say of them.
+  /// Returns the first row that is left; last: the clock of the row before it, as read. Most files are plain to their
+  /// end, and this takes a third of the time that it takes row by row.
+  std::size_t shift_plain_rows(double shift, double& last) {
+    if (!step_.empty() || !recording_.stated_steps.empty()) return 1;
+    const double longest = any_rate_ ? std::numeric_limits<double>::infinity() : kGapInterval * interval_;
+    constexpr std::size_t kBlock = 4096;
+    for (std::size_t begin = 1; begin < time_.size(); begin += kBlock) {
+      const std::size_t end = std::min(time_.size(), begin + kBlock);
+      double before = last;
+      std::size_t plain = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const double now = time_[i], interval = now - before;
+        plain += interval > 0 && interval <= longest && now + shift > before + shift ? 1U : 0U;
+        before = now;
+      }
+      if (plain < end - begin) return begin;
+      last = before;
+      for (std::size_t i = begin; i < end; ++i) time_[i] += shift;
+    }
+    return time_.size();
+  }
+
   /// Whether the file says that a step begins here.
   bool begins_step(std::size_t row) {
     const auto& stated = recording_.stated_steps;
@@ -255,9 +279,16 @@ double Trace::interval() const {
   const double longest = kGapInterval * typical_interval(time);
   double gaps = 0;
   std::size_t count = 0;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    const double d = time[i] - time[i - 1];
-    if (d > longest) gaps += d, ++count;
+  constexpr std::size_t kBlock = 4096;  // most have none, which is seen faster than added up
+  for (std::size_t begin = 1; begin < time.size(); begin += kBlock) {
+    const std::size_t end = std::min(time.size(), begin + kBlock);
+    std::size_t longer = 0;
+    for (std::size_t i = begin; i < end; ++i) longer += time[i] - time[i - 1] > longest ? 1U : 0U;
+    if (longer == 0) continue;
+    count += longer;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (const double d = time[i] - time[i - 1]; d > longest) gaps += d;
+    }
   }
   if (count + 1 >= time.size()) return duration() / static_cast<double>(time.size() - 1);
   return (duration() - gaps) / static_cast<double>(time.size() - 1 - count);

@@ -20,6 +20,7 @@
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {
@@ -104,13 +105,14 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
 }
 
 /// Of the values of each channel in SI: a record is the same in whatever format it was written.
-std::uint64_t checksum_of(const FileRecord& run) {
-  std::uint64_t hash = 0;
-  for (const auto& values : run.channels) {
+std::uint64_t checksum_of(const FileRecord& run, int threads) {
+  std::vector<std::uint64_t> of_channels(run.channels.size(), 0);
+  run_tasks(of_channels.size(), threads, [&](std::size_t k) {
+    const std::vector<double>& values = run.channels[k];
     if (!values.empty())
-      hash = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, hash);
-  }
-  return hash;
+      of_channels[k] = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, k);
+  });
+  return xxh64({reinterpret_cast<const char*>(of_channels.data()), of_channels.size() * sizeof(std::uint64_t)}, 0);
 }
 
 void refuse_unusable(const RawTable& table, const Column& column, std::size_t rows) {
@@ -284,7 +286,7 @@ FileRecord read_recording(const std::string& path, const ReadOptions& options, s
   run.notes.insert(run.notes.begin(), file.notes.begin(), file.notes.end());
   run.warnings.insert(run.warnings.begin(), file.warnings.begin(), file.warnings.end());
   for (std::size_t i = 1; i < parts.size(); ++i) join_on_one_clock(run, std::move(parts[i]));
-  run.checksum = checksum_of(run);
+  run.checksum = checksum_of(run, options.threads);
   return run;
 }
 

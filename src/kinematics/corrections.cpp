@@ -133,27 +133,35 @@ void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, doubl
   notes.push_back(fmt::format("friction: inertia of the declared {:.4g} kg below the sensor added", mass));
 }
 
+namespace {
+
+/// At rest the spring pulls the more the further the block is carried: where friction rises there its sign is right.
+bool rises_at_rest(const Motion& motion, double scale) {
+  double rise = 0;
+  std::size_t rests = 0;  // samples before this one
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    if (rests > kShortestStretch)  // beyond the jump at re-stick
+      rise += motion.disc_velocity_at(i) * (motion.friction[i] - motion.friction[i - 1]);
+    rests = std::abs(motion.relative_velocity[i]) < 0.05 * scale ? rests + 1 : 0;
+  }
+  return rise > 0;
+}
+
+}  // namespace
+
 void settle_friction_sign(Motion& motion, double scale) {
   if (scale == 0) return;
-  double agreement = 0, total = 0;
+  double agreement = 0, total = 0, fast = 0;
   const std::size_t stride = std::max<std::size_t>(1, motion.size() / 65536);
   for (std::size_t i = 0; i < motion.size(); i += stride) {
     const double v = motion.relative_velocity[i];
     if (std::abs(v) < 0.1 * scale) continue;
-    agreement += v > 0 ? motion.friction[i] : -motion.friction[i];
-    total += std::abs(motion.friction[i]);
+    const double along = v > 0 ? motion.friction[i] : -motion.friction[i];
+    agreement += along;
+    total += std::abs(along);
+    if (std::abs(v) > 0.5 * scale) fast += along;
   }
-  // At rest the spring pulls the more the further the block is carried: where friction rises there the sign is right.
-  double rise = 0, fast = 0;
-  std::size_t rests = 0;  // samples before this one
-  for (std::size_t i = 0; i < motion.size(); ++i) {
-    const double v = motion.relative_velocity[i];
-    if (std::abs(v) > 0.5 * scale) fast += v > 0 ? motion.friction[i] : -motion.friction[i];
-    if (rests > kShortestStretch)  // beyond the jump at re-stick
-      rise += motion.disc_velocity_at(i) * (motion.friction[i] - motion.friction[i - 1]);
-    rests = std::abs(v) < 0.05 * scale ? rests + 1 : 0;
-  }
-  motion.friction_drives = motion.sticks && rise > 0 && fast < 0;
+  motion.friction_drives = motion.sticks && fast < 0 && rises_at_rest(motion, scale);
   if (agreement >= -0.5 * total || total == 0 || motion.friction_drives) return;
   for (double& mu : motion.friction) mu = -mu;
   motion.notes.push_back("friction: sign reversed so that it is positive where v_r is");

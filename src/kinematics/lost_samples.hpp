@@ -25,6 +25,6 @@ double noise_in_motion(std::span<const double> velocity);
 /// noise: of the velocity [m/s]; step: sampling interval [s]. Jumps from rest, or to it, are the rig's own where most
 /// sticks have one. Cost: one pass.
 LostSamples find_lost_samples(const Trace& trace, const PlateauSearch& search, const Disc& disc, double noise,
-                              double step);
+                              double step, int threads = 1);
 
 }  // namespace tribofit::kinematics

@@ -27,7 +27,7 @@ void MotionStages::undo_distortions() {
   if (search_.sticks && !steps_.velocity_repeats) {
     const double moving = is_block() ? 0 : noise_in_motion(trace_.velocity);
     const double noise = std::max({search_.noise, steps_.velocity, moving});
-    jumps_ = find_lost_samples(trace_, search_, disc_, noise, motion_.step);
+    jumps_ = find_lost_samples(trace_, search_, disc_, noise, motion_.step, threads_);
   }
   // What was lost of slips is missing in the way of the block.
   if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
@@ -39,7 +39,7 @@ void MotionStages::undo_distortions() {
 void MotionStages::undo_zero_drift() {
   const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !spoilt_->any();
   if (!asked || !is_block() || !search_.sticks || !speed_is_constant()) return;
-  positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_);
+  positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
   zero_drift_ = find_zero_drift(trace_, search_, positions_, steps_.velocity);
   if (zero_drift_.value == 0) return;
   const double middle = 0.5 * (trace_.time.front() + trace_.time.back());
@@ -54,7 +54,7 @@ void MotionStages::undo_zero_drift() {
 void MotionStages::find_zero() {
   if (motion_.high_pass > 0 || spoilt_->any()) return;
   if (is_block() && search_.sticks) {
-    if (positions_.time.empty()) positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_);
+    if (positions_.time.empty()) positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
     zero_ = kinematics::find_zero(search_, disc_, positions_, steps_.velocity);
   }
   const bool rests_nowhere = trace_.velocity_kind == VelocityKind::relative && !search_.sticks;

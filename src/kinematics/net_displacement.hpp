@@ -29,7 +29,7 @@ struct BlockPositions {
 
 /// Cost: one pass.
 BlockPositions positions_in_plateaus(std::span<const double> time, std::span<const double> velocity,
-                                     const PlateauSearch& search);
+                                     const PlateauSearch& search, int threads = 1);
 
 /// Slope of the positions at the middles of the plateaus over time [m/s]. Cost: one pass.
 Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search);

@@ -199,20 +199,20 @@ RangeEnds range_ends(const Trace& trace, const ChannelOutlines& channels, int th
   const ChannelOutline &friction = channels.friction, &velocity = channels.velocity;
   RangeEnds out;
   out.largest_velocity = std::max(std::abs(velocity.values.whole.low), std::abs(velocity.values.whole.high));
-  const auto look_at_friction = [&] {
+  const auto find_friction_ends = [&] {
     out.friction = ends_of(friction, true);
     const bool shows_rest = recorded && trace.velocity_kind == VelocityKind::block && friction.turns_often();
     for (std::size_t k = 0; k < 2 && shows_rest; ++k) {
       // Friction crowds at break-away too, where it is the same every time: the block slips there already.
       if (out.friction[k].count == 0) out.friction[k].pile = find_levelling(friction, velocity.x, k == 1);
     }
-    if (recorded) out.friction_slew = find_slew_limit(friction);
   };
-  const auto look_at_velocity = [&] {
-    out.velocity = ends_of(velocity, false);
-    if (recorded) out.velocity_slew = find_slew_limit(velocity);
-  };
-  run_tasks(2, threads, [&](std::size_t k) { k == 0 ? look_at_friction() : look_at_velocity(); });
+  run_tasks(4, threads, [&](std::size_t k) {
+    if (k == 0) find_friction_ends();
+    if (k == 1) out.velocity = ends_of(velocity, false);
+    if (k == 2 && recorded) out.friction_slew = find_slew_limit(friction);
+    if (k == 3 && recorded) out.velocity_slew = find_slew_limit(velocity);
+  });
   return out;
 }
 

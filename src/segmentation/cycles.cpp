@@ -290,7 +290,7 @@ double rms_block_velocity(const Motion& motion) {
   return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
 }
 
-void summarise(Segmentation& result) {
+void summarise(int threads, Segmentation& result) {
   std::vector<double> peaks, sticks, slips, periods, branches;
   for (const Cycle& c : result.cycles) {
     // A slip that the record or a reversal begins may have had its peak before.
@@ -304,10 +304,9 @@ void summarise(Segmentation& result) {
     for (const Cycle& c : result.cycles) peaks.push_back(c.peak_velocity);
   }
   result.frequency = segmentation::frequency_of(periods);
-  result.amplitude = mean_with_error(std::move(peaks));
-  result.stick_time = mean_with_error(std::move(sticks));
-  result.branch_difference = mean_with_error(std::move(branches));
-  result.slip_time = mean_with_error(std::move(slips));
+  std::vector<double>* const values[] = {&peaks, &sticks, &branches, &slips};
+  Estimate* const means[] = {&result.amplitude, &result.stick_time, &result.branch_difference, &result.slip_time};
+  run_tasks(std::size(values), threads, [&](std::size_t k) { *means[k] = mean_with_error(std::move(*values[k])); });
 }
 
 void add_notes(Segmentation& result) {
@@ -343,7 +342,7 @@ Segmentation slips_of_points(const Motion& motion) {
     if (slip.samples.size() > 0) result.cycles.push_back(blank_cycle(slip));
   }
   measure(motion, 1, result.cycles);
-  summarise(result);
+  summarise(1, result);
   return result;
 }
 
@@ -375,7 +374,7 @@ Segmentation find_cycles(const Motion& motion, int threads) {
     result.kind = MotionKind::always_sticking;
     return result;
   }
-  const Thresholds t = segmentation::thresholds_of(motion);
+  const Thresholds t = segmentation::thresholds_of(motion, threads);
   result.slip_threshold = t.slip;
   result.stick_threshold = t.stick;
   result.rms_velocity = rms_block_velocity(motion);
@@ -391,7 +390,7 @@ Segmentation find_cycles(const Motion& motion, int threads) {
   if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
   measure(motion, threads, result.cycles);
   result.left_out = segmentation::spoilt_stretches(motion);
-  summarise(result);
+  summarise(threads, result);
   add_notes(result);
   if (rests_only) result.notes.back() = "the record rests and slides, with too few break-aways for stick-slip";
   return result;

@@ -6,6 +6,7 @@
 #include "kinematics/limits.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
@@ -18,16 +19,16 @@ using kinematics::kSlipsOverError;
 using kinematics::kSlipsOverFastest;
 
 // Peak that is typical of the record: median of the largest excursions of its parts that have one.
-double typical_peak(const Motion& motion) {
+double typical_peak(const Motion& motion, int threads = 1) {
   constexpr std::size_t parts = kPartsOfRecord;
   const std::size_t n = motion.size(), length = std::max<std::size_t>(1, (n + parts - 1) / parts);
-  std::vector<double> peaks;
+  std::vector<double> peaks((n + length - 1) / length);
   const double plateau = motion.plateau_velocity;
   const std::span<const double> velocity(motion.relative_velocity);
-  for (std::size_t begin = 0; begin < n; begin += length) {
-    const auto [low, high] = extremes(velocity.subspan(begin, std::min(length, n - begin)));
-    peaks.push_back(std::max(high - plateau, plateau - low));
-  }
+  run_tasks(peaks.size(), threads, [&](std::size_t k) {
+    const auto [low, high] = extremes(velocity.subspan(k * length, std::min(length, n - k * length)));
+    peaks[k] = std::max(high - plateau, plateau - low);
+  });
   std::sort(peaks.begin(), peaks.end());
   // One lone outlier must not set the scale: the largest only counts when the next ones come near it.
   const double largest = peaks[peaks.size() - 1 - std::min(kOutlyingPeaks, (peaks.size() - 1) / kPartsPerOutlier)];
@@ -84,11 +85,11 @@ void drop_chatter(std::vector<RawSlip>& slips, double peak) {
 
 }  // namespace
 
-Thresholds thresholds_of(const Motion& motion) {
+Thresholds thresholds_of(const Motion& motion, int threads) {
   Thresholds t;
   if (motion.size() == 0) return t;
   const double noise = motion.velocity_noise;
-  const double peak = typical_peak(motion);
+  const double peak = typical_peak(motion, threads);
   // Rounding of omega r - v_b is no motion.
   double fastest = std::abs(motion.plateau_velocity);
   for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));

@@ -17,7 +17,7 @@ struct Thresholds {
 
 /// Thresholds from the noise (8 and 5 standard deviations) and the typical peak (6 and 3 %), whichever is larger.
 /// Noise that is really ringing of the contact cannot push them beyond 15 and 7.5 % of the peak.
-Thresholds thresholds_of(const Motion& motion);
+Thresholds thresholds_of(const Motion& motion, int threads = 1);
 
 /// A slip as the thresholds see it.
 struct RawSlip {

@@ -47,6 +47,19 @@ std::vector<double> prewhitened(const std::vector<double>& d, double r) {
   return w;
 }
 
+/// cos and sin of an angle that turns by the same step again and again: a tenth of the time of the functions, and
+/// wrong by a rounding for each step.
+struct TurningAngle {
+  double cosine, sine, cosine_of_step, sine_of_step;
+  TurningAngle(double begin, double step)
+      : cosine(std::cos(begin)), sine(std::sin(begin)), cosine_of_step(std::cos(step)), sine_of_step(std::sin(step)) {}
+  void turn() {
+    const double before = cosine;
+    cosine = before * cosine_of_step - sine * sine_of_step;
+    sine = before * sine_of_step + sine * cosine_of_step;
+  }
+};
+
 /// A sine in a series.
 struct SeriesLine {
   double frequency = 0;  ///< per value
@@ -59,15 +72,14 @@ struct SineFit {
   double squares = 0;
 };
 SineFit sine_in(const std::vector<double>& d, double frequency) {
-  const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * frequency);
-  std::complex<double> z{1, 0};
+  TurningAngle z(0, 2 * std::numbers::pi * frequency);
   // Normal equations of cos, sin and a constant; the constant takes their means off.
   double cc = 0, ss = 0, cs = 0, c = 0, s = 0, xc = 0, xs = 0;
   for (const double x : d) {
-    c += z.real(), s += z.imag();
-    cc += z.real() * z.real(), ss += z.imag() * z.imag(), cs += z.real() * z.imag();
-    xc += x * z.real(), xs += x * z.imag();
-    z *= turn;
+    c += z.cosine, s += z.sine;
+    cc += z.cosine * z.cosine, ss += z.sine * z.sine, cs += z.cosine * z.sine;
+    xc += x * z.cosine, xs += x * z.sine;
+    z.turn();
   }
   const auto n = static_cast<double>(d.size());
   cc -= c * c / n, ss -= s * s / n, cs -= c * s / n;
@@ -97,18 +109,17 @@ std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
   if (n < kFewestOfLine) return std::nullopt;
   const std::size_t bins = fast_length(2 * n);  // half as wide as the record resolves, or a little less
   const std::vector<double> power = periodogram(prewhitened(d, first_autocorrelation(d)), bins);
+  std::vector<double> up_to(power.size() + 1, 0.0);  // sums of the power below each bin
+  for (std::size_t k = 0; k < power.size(); ++k) up_to[k + 1] = up_to[k] + power[k];
   std::size_t peak = 0;
   double least = kChanceOfPeriod / static_cast<double>(n);
   for (std::size_t k = kSlowestBinOfLine; k + 1 < power.size(); ++k) {
     if (power[k] < power[k - 1] || power[k] < power[k + 1]) continue;
     // The neighbourhood: an octave to either side, the line itself left out.
     const std::size_t first = std::max<std::size_t>(1, k / 2), last = std::min(power.size() - 1, 2 * k + 2 * kLeak);
-    double sum = 0, count = 0;
-    for (std::size_t i = first; i <= last; ++i) {
-      if (i + kLeak > k && i < k + kLeak) continue;
-      sum += power[i];
-      count += 1;
-    }
+    const std::size_t low = std::max(first, k + 1 - std::min(k + 1, kLeak)), high = std::min(last + 1, k + kLeak);
+    const double sum = up_to[low] - up_to[first] + up_to[last + 1] - up_to[high];
+    const auto count = static_cast<double>(low - first + last + 1 - high);
     const double independent = count * static_cast<double>(n) / static_cast<double>(bins);
     if (!(independent >= 4)) continue;
     const double chance = sum > 0 ? std::pow(1 + 2 * power[k] / sum, -independent) : 0;
@@ -121,11 +132,10 @@ std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
 }
 
 void take_out(const SeriesLine& line, std::vector<double>& d) {
-  const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * line.frequency);
-  std::complex<double> z{1, 0};
+  TurningAngle z(0, 2 * std::numbers::pi * line.frequency);
   for (double& x : d) {
-    x -= line.amplitude.real() * z.real() + line.amplitude.imag() * z.imag();
-    z *= turn;
+    x -= line.amplitude.real() * z.cosine + line.amplitude.imag() * z.sine;
+    z.turn();
   }
   centre(d);
 }
@@ -143,8 +153,10 @@ double lowest_cosines(const std::vector<double>& w, int count) {
   double sum = 0;
   for (int j = 1; j <= count; ++j) {
     double projection = 0;
-    for (std::size_t i = 0; i < w.size(); ++i) {
-      projection += w[i] * std::cos(std::numbers::pi * j * (static_cast<double>(i) + 0.5) / n);
+    TurningAngle z(0.5 * std::numbers::pi * j / n, std::numbers::pi * j / n);
+    for (const double x : w) {
+      projection += x * z.cosine;
+      z.turn();
     }
     sum += 2 / n * projection * projection;
   }
