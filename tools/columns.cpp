@@ -85,27 +85,6 @@ std::string table_and_facts(const ColumnListing& listing, const std::string& pat
   return text;
 }
 
-/// How the columns make a trace.
-struct Trial {
-  std::string obstacle;       ///< what keeps them from it; empty where nothing does
-  bool needs_radius = false;  ///< it is not stated in the file
-};
-
-Trial try_columns(const ColumnListing& listing, const std::string& path, double radius) {
-  ReadOptions options;
-  options.columns = listing.selected;
-  if (radius > 0) options.conditions.radius = {radius, "command line"};
-  try {
-    const Trace trace = read_trace(path, options);
-    const bool stated =
-        trace.conditions.radius.known() || std::any_of(trace.steps.begin(), trace.steps.end(),
-                                                       [](const Step& step) { return step.conditions.radius.known(); });
-    return {"", radius > 0 || (!stated && trace.velocity_kind != VelocityKind::relative)};
-  } catch (const InputError& error) {
-    return {error.problem() + "; " + error.advice(), true};
-  }
-}
-
 std::string missing_columns(const ColumnListing& listing) {
   const std::map<std::string, std::string> needs = {{"time", "time (or the rate of sampling: --rate 20kHz)"},
                                                     {"friction", "friction (mu, force or torque)"},
@@ -128,18 +107,16 @@ std::string missing_columns(const ColumnListing& listing) {
 }
 
 /// The command that fits the trace, or what keeps it from being one.
-std::string next_step(const ColumnListing& listing, const std::string& path) {
+std::string next_step(const TriedColumns& tried, const std::string& path) {
+  const ColumnListing& listing = tried.listing;
   if (!listing.missing.empty()) return missing_columns(listing);
-  constexpr double kExample = 0.015;
-  Trial trial = try_columns(listing, path, 0);
-  if (!trial.obstacle.empty()) trial = try_columns(listing, path, kExample);
-  if (!trial.obstacle.empty()) return "\nThese columns make no trace yet: " + printable(trial.obstacle) + "\n";
+  if (!tried.obstacle.empty()) return "\nThese columns make no trace yet: " + printable(tried.obstacle) + "\n";
   std::vector<std::string> examples;
-  if (trial.needs_radius) examples.emplace_back("15mm for the friction radius of your machine");
+  if (tried.needs_radius) examples.emplace_back("15mm for the friction radius of your machine");
   for (const std::string& unit : listing.assumed) examples.push_back(unit + ", whose unit the file does not state");
   return fmt::format("\nNext{}:\n  identify{} --columns {} {}\n",
                      examples.empty() ? "" : " (check " + listed(examples) + ")",
-                     trial.needs_radius ? " --radius 15mm" : "", shell_quoted(listing.selection), shell_quoted(path));
+                     tried.needs_radius ? " --radius 15mm" : "", shell_quoted(listing.selection), shell_quoted(path));
 }
 
 }  // namespace
@@ -151,8 +128,8 @@ void add_columns(const Command& app) {
   verb.add_option("FILE", *file, "File of a trace").required();
   verb.on_run([file, verb] {
     verb.refuse_empty_values();
-    const ColumnListing listing = list_columns(*file);
-    print(table_and_facts(listing, *file) + next_step(listing, *file));
+    const TriedColumns tried = try_columns(*file);
+    print(table_and_facts(tried.listing, *file) + next_step(tried, *file));
     return ExitStatus::done;
   });
 }

@@ -258,7 +258,10 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
 }  // namespace
 
 FileRecord read_recording(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
-  RawTable table = read_table(path, readers);
+  return read_recording(read_table(path, readers), path, options);
+}
+
+FileRecord read_recording(RawTable table, const std::string& path, const ReadOptions& options) {
   FileRecord file;
   file.path = path;
   file.column_names = table.names();

@@ -41,4 +41,13 @@ struct ColumnListing {
 /// Lists what a file holds; `options` as for read_trace. Throws InputError for a file that cannot be read at all.
 ColumnListing list_columns(const std::string& path, const ReadOptions& options = {});
 
+/// A listing, and whether the columns that it selects make a trace.
+struct TriedColumns {
+  ColumnListing listing;
+  std::string obstacle;       ///< what keeps them from it; empty where nothing does, or where some are missing
+  bool needs_radius = false;  ///< of the contact, which the file does not state
+};
+/// The same, and tries the columns. Cost: one reading of the file, two where a trace is not made without a radius.
+TriedColumns try_columns(const std::string& path, const ReadOptions& options = {});
+
 }  // namespace tribofit
