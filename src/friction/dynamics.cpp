@@ -51,8 +51,9 @@ struct OneSample {
 
 double modulated(const FrictionModel& model, const double* p, const SlidingState<double>& at, double mu) {
   for_each_effect(model, p, [&]<class E>(const E& effect, const double* q) {
-    if constexpr (hooks::Modulates<E, double>) mu = effect.modulate(q, at, mu);
-    if constexpr (hooks::ModulatesAll<E, double>) {
+    if constexpr (hooks::Modulates<E, double>) {
+      mu = effect.modulate(q, at, mu);
+    } else if constexpr (hooks::ModulatesAll<E, double>) {
       const OneSample one(at);
       effect.modulate_all(q, one.slip, std::span<const double>(&one.velocity, 1), std::span<double>(&mu, 1));
     }

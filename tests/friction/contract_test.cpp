@@ -263,6 +263,31 @@ TEST_P(EveryEffect, IsTheSameInARecordAndInAFit) {
   EXPECT_GE(slips, 3);
 }
 
+TEST_P(EveryEffect, SaysTheSameOfAWholeSlipAsOfEverySample) {
+  // Slow turns, a sample that is far on, and turns as fast as samples show.
+  std::vector<double> time, velocity, angle;
+  for (int i = 0; i < 6000; ++i) {
+    time.push_back(1e-4 * i);
+    velocity.push_back(0.05 + 0.04 * std::sin(0.01 * i));
+    angle.push_back(0.7 + (i < 3000 ? 1e-3 * i : i < 4000 ? 40 + 0.02 * i : 200 - 0.9 * i));
+  }
+  Slip slip;
+  slip.time = time, slip.velocity = velocity, slip.angle = angle;
+  slip.mean_load = 50;
+  const std::vector<double> p = example();
+  std::vector<double> whole(time.size(), 0.4), each = whole;
+  bool has_both = false;
+  for_each_effect(model_, p.data(), [&]<class E>(const E& effect, const double* q) {
+    if constexpr (hooks::Modulates<E, double> && hooks::ModulatesAll<E, double>) {
+      has_both = true;
+      effect.modulate_all(q, slip, slip.velocity, std::span<double>(whole));
+      for (std::size_t i = 0; i < each.size(); ++i) each[i] = effect.modulate(q, slip.at(i, velocity[i]), each[i]);
+    }
+  });
+  if (!has_both) GTEST_SKIP() << "it has one of the two at most";
+  for (std::size_t i = 0; i < each.size(); ++i) ASSERT_NEAR(whole[i], each[i], 1e-12) << i;
+}
+
 TEST(Catalogue, HasOneEffectForWhatOthersAskFor) {
   for (bool EffectInfo::*property : {&EffectInfo::proportional_to_speed, &EffectInfo::creeps_like_sag}) {
     const auto catalogue = effect_catalogue();

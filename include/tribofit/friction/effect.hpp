@@ -51,7 +51,7 @@ struct Motion;
 ///   T modulate(p, const SlidingState<T>&, const T& mu)
 ///        signed friction, after any memory
 ///   void modulate_all(p, const Slip&, std::span<const T> velocity, std::span<T> mu)
-///        the same, a whole slip at a time
+///        the same, a whole slip at a time; an effect that has both says the same by either, and is the faster by this
 ///   T add_to_reading(p, const SlidingState<T>&, const T& mu)
 ///        what the sensor adds to it
 ///   void filter_reading(p, const Slip&, const T& level, std::span<T> mu)

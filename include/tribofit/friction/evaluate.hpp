@@ -272,8 +272,9 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   const LawValues<T> law = law_for(model, p, slip);
   T mu = slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Modulates<E, T>) mu = effect.modulate(q, at, mu);
-    if constexpr (hooks::ModulatesAll<E, T>) {
+    if constexpr (hooks::Modulates<E, T>) {
+      mu = effect.modulate(q, at, mu);
+    } else if constexpr (hooks::ModulatesAll<E, T>) {
       effect.modulate_all(q, first, std::span<const T>(&at.velocity, 1), std::span<T>(&mu, 1));
     }
     if (!sensed) return;
@@ -329,10 +330,11 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
     for (std::size_t i = 0; i < n; ++i) mu[i] = T(-mu[i]);
   }
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Modulates<E, T>) {
+    if constexpr (hooks::ModulatesAll<E, T>) {
+      if (n > 0) effect.modulate_all(q, slip, velocity, mu);
+    } else if constexpr (hooks::Modulates<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.modulate(q, slip.at(i, velocity[i]), mu[i]);
     }
-    if constexpr (hooks::ModulatesAll<E, T>) effect.modulate_all(q, slip, velocity, mu);
     if constexpr (hooks::AddsToReading<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.add_to_reading(q, slip.at(i, velocity[i]), mu[i]);
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/wave_along_slip.hpp"
 
 namespace tribofit {
 
@@ -55,6 +56,11 @@ struct DiscPattern {
   T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::cos;
     return mu * (1.0 + p[0] * cos(2 * x.angle + p[1]) + p[2] * cos(3 * x.angle + p[3]));
+  }
+  template <class T>
+  void modulate_all(const T* p, const Slip& slip, std::span<const T> /*velocity*/, std::span<T> mu) const {
+    WaveAlongSlip<T> two(2, slip, p[1]), three(3, slip, p[3]);
+    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] * (1.0 + p[0] * two.at(i) + p[2] * three.at(i));
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tribofit/friction/effects/drift.hpp"
+#include "tribofit/friction/wave_along_slip.hpp"
 
 namespace tribofit {
 
@@ -40,6 +41,11 @@ struct Runout {
   T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::cos;
     return mu * (1.0 + p[0] * cos(x.angle + p[1]));
+  }
+  template <class T>
+  void modulate_all(const T* p, const Slip& slip, std::span<const T> /*velocity*/, std::span<T> mu) const {
+    WaveAlongSlip<T> wave(1, slip, p[1]);
+    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] * (1.0 + p[0] * wave.at(i));
   }
 };
 
