@@ -204,13 +204,16 @@ bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSea
 
 std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind) {
   if (kind != VelocityKind::block || disc.varying.empty() || search.disc.mean.empty()) return std::nullopt;
+  // Of a disc that turns forth and back the size: its mean is nothing that a plateau could be compared with.
   const auto recorded_in = [&](const Plateaus& plateaus) {
-    double sum = 0;
+    double sum = 0, size = 0;
     std::size_t count = 0;
     for (const StickPlateau& run : plateaus.runs) {
-      for (std::size_t b = run.begin; b < run.end; ++b) sum += search.disc.mean[b], ++count;
+      for (std::size_t b = run.begin; b < run.end; ++b)
+        sum += search.disc.mean[b], size += std::abs(search.disc.mean[b]), ++count;
     }
-    return sum / static_cast<double>(std::max<std::size_t>(1, count));
+    const bool one_way = std::abs(sum) > 0.5 * size;
+    return (one_way ? sum : size) / static_cast<double>(std::max<std::size_t>(1, count));
   };
   std::optional<RecordedPlateau> following;
   if (search.sticks) {
