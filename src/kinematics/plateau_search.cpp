@@ -204,22 +204,24 @@ bool points_the_other_way(const Trace& trace, const Disc& disc, const PlateauSea
 
 std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind) {
   if (kind != VelocityKind::block || disc.varying.empty() || search.disc.mean.empty()) return std::nullopt;
-  // Of a disc that turns forth and back the size: its mean is nothing that a plateau could be compared with.
-  const auto recorded_in = [&](const Plateaus& plateaus) {
-    double sum = 0, size = 0;
-    std::size_t count = 0;
+  // Of a disc that turns forth and back both are taken the way that it turns: its mean is nothing to compare with.
+  const auto both_in = [&](const Plateaus& plateaus) {
+    double turned = 0, size = 0, along = 0;
+    std::size_t blocks = 0;
     for (const StickPlateau& run : plateaus.runs) {
-      for (std::size_t b = run.begin; b < run.end; ++b)
-        sum += search.disc.mean[b], size += std::abs(search.disc.mean[b]), ++count;
+      for (std::size_t b = run.begin; b < run.end; ++b) {
+        const double speed = search.disc.mean[b], block = search.blocks.mean[b];
+        turned += speed, size += std::abs(speed), along += speed < 0 ? -block : block, ++blocks;
+      }
     }
-    const bool one_way = std::abs(sum) > 0.5 * size;
-    return (one_way ? sum : size) / static_cast<double>(std::max<std::size_t>(1, count));
+    const auto n = static_cast<double>(std::max<std::size_t>(1, blocks));
+    if (std::abs(turned) > 0.5 * size) return RecordedPlateau{turned / n + plateaus.level, turned / n};
+    return RecordedPlateau{along / n, size / n};
   };
   std::optional<RecordedPlateau> following;
   if (search.sticks) {
-    const double recorded = recorded_in(search.plateaus);
-    following = {recorded + search.plateaus.level, recorded};
-    if (std::abs(search.plateaus.level) <= kFarFromDisc * std::abs(recorded)) return following;
+    following = both_in(search.plateaus);
+    if (std::abs(following->block - following->disc) <= kFarFromDisc * std::abs(following->disc)) return following;
   }
   const std::span<const double> v(search.blocks.mean);
   const Extremes range = extremes(v);
@@ -231,7 +233,7 @@ std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, con
   for (const StickPlateau& run : alone.runs) resting += run.size();
   const bool has_plateau = static_cast<double>(resting) > kPlateausOfBlock * static_cast<double>(v.size()) &&
                            std::abs(alone.level) > kRestNoise * search.noise;
-  return has_plateau ? RecordedPlateau{alone.level, recorded_in(alone)} : following;
+  return has_plateau ? RecordedPlateau{alone.level, both_in(alone).disc} : following;
 }
 
 std::vector<double> disc_slopes(const PlateauSearch& s) {

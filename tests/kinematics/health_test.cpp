@@ -15,6 +15,8 @@
 
 #include "stick_slip_truth.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/oscillator/presets.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 namespace {
@@ -346,6 +348,30 @@ TEST(Health, ARecordedSpeedIsComparedWithThePlateau) {
   EXPECT_EQ(with_column(0.95).status, Status::warning) << with_column(0.95).message;
   for (double factor : {2.0, -1.0, 0.0, 0.1, 30.0}) {
     EXPECT_EQ(with_column(factor).status, Status::problem) << factor << ": " << with_column(factor).message;
+  }
+}
+
+TEST(Health, ADiscThatTurnsForthAndBackHasNoMeanToBeComparedWith) {
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
+  for (const double turns : {2.0, 3.0, 3.1, 6.0}) {
+    for (const double speed_error : {1.0, 1.1}) {
+      SimulationOptions options;
+      options.duration = 20;
+      options.rate = 5000;
+      const Drive drive{.speed = reversing_speed(2 * test.speed, turns / options.duration),
+                        .radius = test.radius,
+                        .mean_load = test.load};
+      Sensors sensors;
+      sensors.friction_noise = 0.003;
+      sensors.velocity_noise = 2e-5;
+      Trace trace =
+          simulate_recording(FrictionModel(ExponentialLaw{}), test.friction, test.rig, drive, options, sensors)
+              .recording.trace;
+      ASSERT_EQ(trace.disc_speed.size(), trace.size());
+      for (double& speed : trace.disc_speed) speed *= speed_error;
+      const HealthItem found = item(compute_motion(std::move(trace)), "plateau-speed");
+      EXPECT_EQ(found.status == Status::ok, speed_error == 1) << turns << " " << speed_error << ": " << found.message;
+    }
   }
 }
 
