@@ -34,7 +34,7 @@ Trial fit_beside(const DiagnosisContext& context, const Law& law, const std::vec
 /// The trial with one effect more, searched for as a diagnosis does: among means over more samples where that shows it.
 Searched search_effect(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
                        const Candidate& effect) {
-  if (effect.info.needs_full_resolution) return try_with(context, context.fine, top, effect);
+  if (effect.info.needs_full_resolution || !coarse_top.usable) return try_with(context, context.fine, top, effect);
   Searched searched = try_with(context, context.coarse, coarse_top, effect);
   searched.trial = try_model(context, context.fine, searched.trial.model, searched.trial.p);
   return searched;

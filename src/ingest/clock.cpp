@@ -63,7 +63,7 @@ class Clock {
  private:
   /// Takes the start of the clock off the first rows, block by block, as long as there is nothing else to say of them.
   /// Returns the first row that is left; last: the clock of the row before it, as read. Most files are plain to their
-  /// end, and this takes a third of the time that it takes row by row.
+  /// end, and this takes half the time that it takes row by row.
   std::size_t shift_plain_rows(double shift, double& last) {
     if (!step_.empty() || !recording_.stated_steps.empty()) return 1;
     const double longest = any_rate_ ? std::numeric_limits<double>::infinity() : kGapInterval * interval_;

@@ -47,8 +47,8 @@ std::vector<double> prewhitened(const std::vector<double>& d, double r) {
   return w;
 }
 
-/// cos and sin of an angle that turns by the same step again and again: a tenth of the time of the functions, and
-/// wrong by a rounding for each step.
+/// cos and sin of an angle that turns by the same step again and again: less work than the functions, and wrong by a
+/// rounding for each step.
 struct TurningAngle {
   double cosine, sine, cosine_of_step, sine_of_step;
   TurningAngle(double begin, double step)

@@ -383,7 +383,9 @@ std::string investigations_tables(const std::vector<Investigation>& all) {
       "failures: "
       "{}.\n\n",
       all.size(), open.size(), static_cast<std::size_t>(hopeless), static_cast<std::size_t>(failures));
-  text += progress_table(planned, 6);
+  std::size_t most = 3;  // and as many at random as were made
+  for (const Investigation* one : planned) most = std::max(most, one->random.size());
+  text += progress_table(planned, most);
   text += fmt::format("\nWrong names: {} of the diagnoses after planned runs, {} after random ones.\n\n",
                       share_of(wrong, runs), share_of(wrong_random, random_runs));
   return text + calibration_table(planned) + "\n" + answers_table(open);

@@ -9,8 +9,8 @@
 namespace tribofit {
 
 /// cos(n theta + phase) at the samples of a slip, in order. The disc turns by little from one to the next, so each
-/// follows from the one before it by a rotation: a third of the time of the function, and wrong by one rounding more
-/// for every sample. n: waves a revolution; theta: angle of the disc [rad], 0 where it is not known.
+/// follows from the one before it by a rotation: less work than the function, and wrong by one rounding more for
+/// every sample. n: waves a revolution; theta: angle of the disc [rad], 0 where it is not known.
 template <class T>
 class WaveAlongSlip {
  public:
