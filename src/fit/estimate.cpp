@@ -200,7 +200,7 @@ Solution estimate_by_extremes(FitContext& context, Fit& fit) {
                                  some = some_slips(context.observations, kWholeSlips);
   const bool is_long = some.size() < all.size();  // the search leaves a step or two over all slips
   const std::vector<double> p = is_long ? context.solve(some, out.start, quick_search()).p : out.start;
-  SolverOptions last;
+  SolverOptions last;  // a tolerance of the cost ends it before its step, so that of the parameters has to
   if (is_long) last.relative_cost = 1e-13, last.relative_step = 1e-9, last.careful = false;
   out.result = context.solve(all, p, last);
   return out;

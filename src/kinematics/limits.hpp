@@ -42,6 +42,10 @@ inline constexpr double kRestNoise = 3, kRestDepth = 1e-3;
 inline constexpr std::size_t kFewestLoadings = kFewestForMedian;
 inline constexpr double kLeastLoading = 0.3;
 
+/// A disc turns one way where the mean of its recorded speed is more than this part of the mean of its size: that of a
+/// sine over whole turns is zero, and over one turn and a half a third.
+inline constexpr double kTurnsOneWay = 0.5;
+
 /// Windows in which noise is looked for before it is known where the record rests, and their samples, a quarter of the
 /// record at most: a parabola follows any motion over so few.
 inline constexpr std::size_t kNoiseWindows = 64, kShortestWindow = 16, kLongestWindowOfNoise = 64;
@@ -345,9 +349,10 @@ inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
 /// leaves as it entered it, each within a sample, over which so little of the jump is left, and of its range at least.
 inline constexpr std::size_t kWidestSpike = 2, kWidestExcursion = 64;
 inline constexpr double kExcursionQuiet = 0.25, kExcursionBack = 0.5, kExcursionDepth = 0.01;
-/// Part of the usual largest sliding speed from which on a velocity does not come to zero by itself within a sample, and
-/// scatters of friction by which it leaves its level at rest, of so many samples to either side. Smaller: a plug that is
-/// loose in noisy friction passes for rest; larger: a rest under nearly the friction of sliding passes for a loose plug.
+/// Part of the usual largest sliding speed from which on a velocity does not come to zero by itself within a sample,
+/// and scatters of friction by which it leaves its level at rest, of so many samples to either side. Smaller: a plug
+/// that is loose in noisy friction passes for rest; larger: a rest under nearly the friction of sliding passes for a
+/// loose plug.
 inline constexpr double kOfUsualSpeed = 0.25, kFrictionStays = 2;
 inline constexpr std::size_t kBesideZeros = 50;
 /// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so

@@ -215,7 +215,7 @@ std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, con
       }
     }
     const auto n = static_cast<double>(std::max<std::size_t>(1, blocks));
-    if (std::abs(turned) > 0.5 * size) return RecordedPlateau{turned / n + plateaus.level, turned / n};
+    if (std::abs(turned) > kTurnsOneWay * size) return RecordedPlateau{turned / n + plateaus.level, turned / n};
     return RecordedPlateau{along / n, size / n};
   };
   std::optional<RecordedPlateau> following;

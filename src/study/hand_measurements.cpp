@@ -56,12 +56,12 @@ double chance_of_shift(double shift, double error) {
   return shift != 0 ? chance_beyond(std::abs(shift) / error) : 0;
 }
 
-double chance_between(const OpenQuestion& question, const Shown& own, const Shown& other,
-                      const Experiment& experiment) {
-  if (experiment.lift) return chance_of_shift(own.zero - other.zero, error_of_zero(question));
+/// error: of what the measurement shows first, a zero or the place of an edge.
+double chance_between(const Shown& own, const Shown& other, const Experiment& experiment, double error) {
+  if (experiment.lift) return chance_of_shift(own.zero - other.zero, error);
   const double slow = 4 / (2 * std::numbers::pi * experiment.tap);
   const double by_filter = std::abs(own.filter - other.filter) / slow;
-  return std::max(chance_of_shift(own.shift - other.shift, error_of_edge(experiment)),
+  return std::max(chance_of_shift(own.shift - other.shift, error),
                   by_filter > 0 ? chance_of_slower((by_filter - 1) / kReadingOfSlope) : 0);
 }
 
@@ -69,9 +69,10 @@ double chance_between(const OpenQuestion& question, const Shown& own, const Show
 
 double chance_by_hand(const OpenQuestion& question, std::size_t truth, const Experiment& experiment) {
   const Shown own = shown_by(question, truth);
+  const double error = experiment.lift ? error_of_zero(question) : error_of_edge(experiment);
   double least = 1;
   for (std::size_t other = 0; other < question.models.size(); ++other) {
-    if (other != truth) least = std::min(least, chance_between(question, own, shown_by(question, other), experiment));
+    if (other != truth) least = std::min(least, chance_between(own, shown_by(question, other), experiment, error));
   }
   return least;
 }
