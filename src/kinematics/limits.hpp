@@ -41,10 +41,7 @@ inline constexpr double kRestNoise = 3, kRestDepth = 1e-3;
 /// and the rise of friction over them, over its range. In slow sliding friction stays or wanders.
 inline constexpr std::size_t kFewestLoadings = kFewestForMedian;
 inline constexpr double kLeastLoading = 0.3;
-
-/// A disc turns one way where the mean of its recorded speed is more than this part of the mean of its size: that of a
-/// sine over whole turns is zero, and over one turn and a half a third.
-inline constexpr double kTurnsOneWay = 0.5;
+inline constexpr double kTurnsOneWay = 0.5;  ///< mean speed of a disc over its mean size; 1/3 for 1.5 turns of a sine
 
 /// Windows in which noise is looked for before it is known where the record rests, and their samples, a quarter of the
 /// record at most: a parabola follows any motion over so few.
