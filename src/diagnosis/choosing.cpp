@@ -5,6 +5,7 @@
 #include "judging.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/parallel.hpp"
+#include "velocity_noise.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -92,6 +93,7 @@ class Standings {
     run_tasks(near.size(), context.threads, [&](std::size_t t) {
       const Trial& found = judged[near[t]].trial;
       trials[t] = try_model(context, *finest, found.model, found.p, context.threads_each(near.size()));
+      if (trials[t].usable) trials[t].held_out_squares -= squares_of_velocity_noise(*finest, trials[t]);
     });
     if (!std::all_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.usable; })) return;
     const auto least = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {

@@ -1,10 +1,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "limits.hpp"
 #include "record_evidence.hpp"
 #include "trial.hpp"
+#include "velocity_noise.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -36,7 +39,9 @@ const Level* DiagnosisContext::finest() const {
     if (!is_finer(most, fine_values(cycles))) return;
     finest_->observations = observe_all(records, fine.observations.noise, all_channels(records), most, noise);
     if (!is_finer(finest_->observations->size(), fine.observations.size())) return;
+    std::vector<double> left = quieten_velocity(records, *finest_->observations);
     finest_->level.emplace(*finest_->observations);
+    finest_->level->velocity_noise = std::move(left);
     finest_->level->known = fine.known;
   });
   return finest_->level ? &*finest_->level : nullptr;

@@ -11,11 +11,11 @@
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "hats.hpp"
+#include "judge_probe.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -62,47 +62,8 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
   };
 }
 
-/// Judges a probe and returns its coefficients.
-Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level, const Trial& trial,
-                            const Columns& columns, double places, Probe& probe) {
-  stop_point();
-  const Observations& observations = level.observations;
-  const std::vector<std::size_t> all = all_slips(observations);
-  ModelResiduals residuals(trial.model, observations, all);
-  if (trial.whitening.any()) residuals.whiten(trial.whitening);
-  Linearised wide;
-  wide.rows = residuals.white_rows(trial.p.data(), columns);
-  if (!wide.finite()) return {};
-  const auto width = static_cast<std::size_t>(wide.rows[0].cols() - 1), own = trial.p.size();
-  wide.free = trial.linear.free;
-  wide.free.resize(width, true);
-  wide.level = trial.linear.level;
-  wide.known_flicker = trial.linear.known_flicker;
-  const Eigen::VectorXd step = gauss_newton_step(wide);
-  const double before = sum(squares_after(trial.linear, gauss_newton_step(trial.linear)));
-  const double after = sum(squares_after(wide, step));
-  probe.fall = sum(held_out_squares(trial.linear, context.blocks)) - sum(held_out_squares(wide, context.blocks));
-  ModelResiduals plain(trial.model, observations, all);
-  Linearised flat;
-  flat.rows = plain.white_rows(trial.p.data(), columns);
-  flat.free = wide.free;
-  const double left = sum(squares_after(flat, gauss_newton_step(flat))) - trial.stick.rigid;
-  const double fall = trial.plain_squares - left;
-  probe.size = std::max(probe.fall / context.noise_squares(), fall / context.floor_squares(trial.whitening));
-  for (Eigen::MatrixXd& rows : wide.rows) rows.col(rows.cols() - 1) += rows.leftCols(rows.cols() - 1) * step;
-  const double noise = (after - trial.stick.left) / level.values;
-  double design = 1;
-  const SlowNoise slow = slow_noise_of(wide);
-  for (const DesignEffect& of_column : design_effects(wide, own, width - own, noise, slow)) {
-    design = std::max({design, of_column.of_cycles, of_column.of_slow});
-  }
-  const double freedom = few_frequencies(static_cast<double>(wide.rows.size()));
-  probe.p_value = std::min(1.0, places * fall_p_value(before - after, width - own, noise, design, freedom));
-  return step.tail(static_cast<Eigen::Index>(width - own));
-}
-
-Probe over_velocity(const DiagnosisContext& context, const Trial& trial) {
-  const Observations& o = context.coarse.observations;
+Probe over_velocity(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   const Hats hats(even_knots(0, o.fastest, 12));
   Probe probe;
   probe.variable = ResidualVariable::velocity;
@@ -111,14 +72,14 @@ Probe over_velocity(const DiagnosisContext& context, const Trial& trial) {
     const bool at_rest = range.begin + i == range.end;
     return hats(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
   };
-  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  const Eigen::VectorXd found = judge_probe(context, level, trial, columns_of(o, hats.count(), row), 1, probe);
   probe.at = hats.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
 
-Probe over_branch(const DiagnosisContext& context, const Trial& trial) {
-  const Observations& o = context.coarse.observations;
+Probe over_branch(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   const Hats hats(even_knots(0, o.fastest, 6));
   Probe probe;
   probe.variable = ResidualVariable::branch;
@@ -137,7 +98,7 @@ Probe over_branch(const DiagnosisContext& context, const Trial& trial) {
     const double sign = at < peak[k] ? 1 : -1;
     return Eigen::RowVectorXd(sign * hats(std::abs(o.velocity[at])));
   };
-  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  judge_probe(context, level, trial, columns_of(o, hats.count(), row), 1, probe);
   return probe;
 }
 
@@ -352,16 +313,26 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
   return probe;
 }
 
+/// A probe of what changes within a slip. Means over a good part of a slip are off themselves, by more than what is
+/// left where a memory changes faster than they follow: what they show is judged again over shorter ones.
+template <class Over>
+Probe in_detail(const Over& over, const DiagnosisContext& context, const Trial& coarse, const Trial& fine) {
+  Probe probe = over(context, context.coarse, coarse);
+  const bool matters = probe.fall > 0 && probe.size > limits::kLeastStructure;
+  return matters && !fine.model.effects().empty() ? over(context, context.fine, fine) : probe;
+}
+
 }  // namespace
 
 std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual) {
   const ProbeInputs inputs = probe_inputs(context.coarse.observations, coarse);
-  std::vector<std::function<std::optional<Probe>()>> all = {[&] { return over_velocity(context, coarse); },
+  const auto velocity = [&] { return in_detail(over_velocity, context, coarse, fine); };
+  std::vector<std::function<std::optional<Probe>()>> all = {velocity,
                                                             [&] { return over_load(context, coarse, inputs); }};
   if (!are_points(context.records)) {
-    all = {[&] { return over_velocity(context, coarse); },
-           [&] { return over_branch(context, coarse); },
+    all = {velocity,
+           [&] { return in_detail(over_branch, context, coarse, fine); },
            [&] { return over_time(context, coarse, inputs); },
            [&] { return over_angle(context, coarse, inputs); },
            [&] { return over_stick_time(context, coarse); },

@@ -46,9 +46,10 @@ struct Trial {
 /// The observations at one resolution.
 struct Level {
   const Observations& observations;
-  double values = 0;   ///< rows of friction, over which the noise of a row is taken
-  double samples = 0;  ///< behind them
-  std::vector<GivenParameter> known = {};  ///< bounds that the user gave
+  double values = 0;                        ///< rows of friction, over which the noise of a row is taken
+  double samples = 0;                       ///< behind them
+  std::vector<GivenParameter> known = {};   ///< bounds that the user gave
+  std::vector<double> velocity_noise = {};  ///< of each value, where it is known, see quieten_velocity() [m/s]
 
   explicit Level(const Observations& given);
   /// Of a model's parameters: those of the catalogue on the scale of the record, or the user's.

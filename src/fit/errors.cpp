@@ -107,7 +107,7 @@ ErrorsOfSlips errors_of(std::span<const Observations::SlipObservation> slips, co
     out.samples += good;
     double count = good;
     if (range.from_stick) {
-      const double r = range.break_away_friction - break_away_level(model, p.data(), slip);
+      const double r = range.read_at_break_away(model.acts_in_stick()) - break_away_level(model, p.data(), slip);
       const double weight = range.break_away_root_weight * range.break_away_root_weight;
       squares += weight * r * r;
       count += weight;

@@ -90,7 +90,8 @@ bool ModelResiduals::run(const Observations::SlipObservation& range, const T* p,
     rows[i] = root_weight * (observations_.friction[range.begin + i] - arrays.mu[i]);
   }
   if (range.from_stick) {
-    rows.push_back(range.break_away_root_weight * (range.break_away_friction - break_away_level(model_, p, slip)));
+    const double read = range.read_at_break_away(model_.acts_in_stick());
+    rows.push_back(range.break_away_root_weight * (read - break_away_level(model_, p, slip)));
   }
   if (options_.loss != Loss::squares) {
     for (std::size_t i = 0; i < rows.size(); ++i) {

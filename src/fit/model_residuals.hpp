@@ -60,6 +60,7 @@ class ModelResiduals final : public Residuals {
     std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
     double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
+    double stick = 1;                ///< to which the squares of stick are weakened
 
     bool any() const { return part > 0 || slow > 0; }
   };
@@ -104,6 +105,11 @@ class ModelResiduals final : public Residuals {
   };
   /// One for each slip; all zero where the model does not act in stick.
   std::vector<StickSquares> stick_squares(const double* p) const;
+
+  /// Takes the squares of stick for this part of what the noise of v_r makes of them.
+  void weaken_stick(double part) {
+    for (Eigen::MatrixXd& weights : weights_) weights *= std::sqrt(part);
+  }
 
   /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
   /// the whitening was made with.

@@ -125,6 +125,9 @@ void add_leads(const Motion& motion, const Segmentation& segmentation, Observati
       out.lead_velocity.push_back(mean_about(motion.relative_velocity, i, half));
     }
     slip->lead_end = out.lead_time.size();
+    const std::size_t last = slip->samples.begin - 1;
+    if (slip->lead_end > slip->lead_begin && !motion.has_fault(last, SampleFault::friction))
+      slip->creep_friction = slip->direction * motion.friction[last];
   }
 }
 

@@ -356,7 +356,8 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   const double decay = left_by_decay(some);
   const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
-  found.creeps = rise_in_stick(velocity, rest, fastest) > kKinkCreeps * std::max(found.at_restick, kKinkSeen) * fastest;
+  found.rise = rise_in_stick(velocity, rest, fastest) / fastest;
+  found.creeps = found.rise > kKinkCreeps * std::max(found.at_restick, kKinkSeen);
   // A second order goes beyond rest itself, by as much as it fits.
   const bool returns = filter.kind == Response::second_order ||
                        beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
@@ -378,8 +379,7 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
 LowPass find_low_pass(std::span<const double> velocity, double rest, double noise, double step, int threads) {
   std::vector<double> size = thinned(velocity, std::size_t{1} << 15);
   for (double& v : size) v = std::abs(v - rest);
-  if (size.empty()) return {};
-  const double fastest = quantile(std::move(size), 0.999);
+  const double fastest = size.empty() ? 0 : quantile(std::move(size), 0.999);
   if (!(fastest > 0)) return {};
   const Looked at{velocity, rest, noise, step, fastest, threads};
   Look look = look_at(at, kKinkFrom);

@@ -151,9 +151,10 @@ void MotionStages::undo_clock_drift() {
 }
 
 void MotionStages::find_friction_filter() {
-  // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps it is
-  // gradual.
-  const bool is_known = !low_pass_.creeps && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
+  // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps friction
+  // goes on to change as the contact does, however little that is.
+  const bool rests = low_pass_.rise < kKinkCreeps * kKinkSeen;
+  const bool is_known = rests && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step, threads_);
   friction_fall_ = found.fall;

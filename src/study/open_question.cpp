@@ -172,6 +172,7 @@ OpenQuestion open_question(const DiagnosedTraces& diagnosed, const PlanOptions& 
     question.models.back().fit.model = FrictionModel(question.law, question.beside, diagnosed.traces.size());
   }
   question.machines.resize(question.models.size());
+  question.draws.resize(question.models.size());
   run_tasks(question.models.size(), options.threads, [&](std::size_t k) {
     ModelInQuestion& model = question.models[k];
     model.fit = fit_answer(model.fit.model, diagnosed, options);
@@ -179,6 +180,9 @@ OpenQuestion open_question(const DiagnosedTraces& diagnosed, const PlanOptions& 
     const RigFit rig = rig_beside(own, trace.motion, trace.segmentation, options.instruments);
     question.machines[k] = identified_machine(own, rig, trace.motion, trace.segmentation);
     model.reason = question.machines[k].reason;
+    if (model.reason.empty()) {
+      question.draws[k] = PlausibleDraws(question.machines[k], {&trace.motion, &trace.segmentation});
+    }
   });
   for (const ModelInQuestion& model : question.models) {
     if (question.reason.empty()) question.reason = model.reason;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "plausible_draws.hpp"
 #include "simulated_run.hpp"
 #include "tribofit/study/identified.hpp"
 #include "tribofit/study/plan.hpp"
@@ -17,6 +18,7 @@ struct OpenQuestion {
   std::vector<Effect> asked;   ///< one of them is there; of QuestionKind::possible one, and that may be there or not
   std::vector<ModelInQuestion> models;      ///< for each asked; where one is possible, with it and without it
   std::vector<IdentifiedMachine> machines;  ///< for each model
+  std::vector<PlausibleDraws> draws;        ///< the same
   RecordToContinue record;
   std::size_t trace = 0;  ///< whose conditions the runs go on from
   std::string reason;     ///< why nothing can be simulated

@@ -59,13 +59,6 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   return (all - n + n * normal_tail_below(beyond)) / all;
 }
 
-/// A machine of the model, drawn from its posterior.
-Machine drawn_machine(const OpenQuestion& question, std::size_t model, std::uint64_t seed) {
-  const IdentifiedMachine& known = question.machines[model];
-  std::vector<Machine> drawn = draws_of(known.machine, known.covariance, 1, seed);
-  return drawn.empty() ? known.machine : std::move(drawn.front());
-}
-
 /// The records as they are, then the simulated ones.
 std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vector<SimulatedRun>& runs) {
   std::vector<Record> records = records_of(diagnosed);
@@ -82,7 +75,7 @@ std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment
   const std::uint64_t seed = options.seed * 1000003 + draw * 101 + truth;
   std::vector<SimulatedRun> out;
   try {
-    const Machine machine = drawn_machine(question, truth, seed);
+    const Machine machine = question.draws[truth].draw(seed);
     for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
       out.push_back(simulate_run(machine, experiment.runs[k], question.record, seed + 7919 * (k + 1)));
     }

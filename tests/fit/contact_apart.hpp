@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "tribofit/friction/state_evolution.hpp"
@@ -15,7 +16,8 @@ namespace tribofit::apart {
 
 /// Rate-and-state friction on a spring, written apart from the library: the unknowns are mu and theta themselves, the
 /// speed follows from mu = mu_0 + a ln(v/v0) + sum b_i ln(v0 theta_i/D_i), and the steps are those of Dormand and
-/// Prince (J. Comput. Appl. Math. 6 (1980) 19), ending at every sample. Tolerance 1e-10 of mu and of ln theta.
+/// Prince (J. Comput. Appl. Math. 6 (1980) 19), ending at every sample. Tolerance 1e-10 of mu and of ln theta. Throws
+/// std::runtime_error where sliding runs away.
 class Contact {
  public:
   using State = std::array<double, 1 + kMostStates>;
@@ -95,6 +97,8 @@ class Contact {
         y = at;
         t = last ? end : t + step;
       }
+      if (!last && step < 1e-13 * std::max(1.0, std::abs(t)))
+        throw std::runtime_error("the sliding of the truth runs away");
       const double factor = std::isfinite(error) ? 0.9 * std::pow(std::max(error, 1e-6), -0.2) : 0.2;
       if (!last || error > 1) h = step * std::clamp(factor, 0.2, 4.0);
     }

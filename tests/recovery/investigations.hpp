@@ -33,6 +33,7 @@ struct Investigation {
       answers;                      ///< of the first plan: how likely each was, and whether it is the truth
   std::vector<FurtherRun> planned;  ///< until the truth is named alone, or three
   std::vector<FurtherRun> random;   ///< the same, or `most_random`
+  std::vector<FurtherRun> tried;    ///< runs that the first plan thinks uncertain, each made by itself
   double seconds = 0;               ///< of one processor, for the first plan
   std::string failure;
 
@@ -44,7 +45,8 @@ struct InvestigationOptions {
   std::size_t count = 200;        ///< of investigations that are open after the first record
   std::size_t most_tried = 3000;  ///< first records that are diagnosed to find them
   std::size_t most_runs = 3, most_random = 6;
-  double effort = 0.5;  ///< see PlanOptions
+  std::size_t most_tried_alone = 0;  ///< runs of the first plan, stated 10 to 90 %, that are made for the calibration
+  double effort = 0.5;               ///< see PlanOptions
   std::uint64_t seed = 1;
   int threads = 0;
 };

@@ -34,7 +34,7 @@ std::string line(const Investigation& one) {
   };
   text += fmt::format("; planned in {:.1f} s{}", one.seconds, arm(one.planned));
   if (one.hopeless) text += "; hopeless";
-  return text + "\n    random" + arm(one.random);
+  return text + "\n    random" + arm(one.random) + "\n    by itself" + arm(one.tried);
 }
 
 }  // namespace
@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   app.add_option("--count", options.count, "Investigations that are open after the first record");
   app.add_option("--tried", options.most_tried, "First records that are diagnosed to find them");
   app.add_option("--random", options.most_random, "Runs at random beside the planned ones (0: none)");
+  app.add_option("--uncertain", options.most_tried_alone, "Uncertain runs of a first plan that are made by themselves");
   app.add_option("--effort", options.effort, "Records diagnosed in full for a plan, of the usual number");
   app.add_option("--seed", options.seed, "");
   app.add_option("--threads", options.threads, "Investigations at a time");

@@ -7,11 +7,15 @@
 #include <memory>
 
 #include "diagnosis/ruling.hpp"
+#include "fit/fit_laws.hpp"
+#include "fit/model_residuals.hpp"
+#include "study/plausible_draws.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/study/uncertainty.hpp"
 
 namespace tribofit {
 namespace {
@@ -150,6 +154,40 @@ TEST(Plan, NothingIsSettledWhereAnEffectIsFoundAlone) {
 TEST(Plan, SaysWhyNothingCanBePlanned) {
   DiagnosedTraces none;
   EXPECT_FALSE(plan_runs(none).reason.empty());
+}
+
+/// A run-in that this record hardly fixes: the covariance of its fit allows what the record does not.
+TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
+  const DiagnosedTraces diagnosed = diagnose({open_record("run-in", -0.08, 10, 10e3, 0.006)}, IdentifyOptions());
+  const Identification& trace = diagnosed.traces.front();
+  const Record record{&trace.motion, &trace.segmentation};
+  const FrictionModel model(ExponentialLaw{}, {make_effect("run-in")});
+  const Fit fit = fit_model(model, {&record, 1}, observations_for(model, {&record, 1}), {}, {});
+  const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation);
+  const IdentifiedMachine known = identified_machine(fit, rig, trace.motion, trace.segmentation);
+  ASSERT_EQ(known.reason, "");
+  const PlausibleDraws draws(known, record);
+  const Observations observations = observe(trace.motion, trace.segmentation, model.needs(), 40);
+  const ModelResiduals residuals(model, observations, all_slips(observations));
+  const auto squares_of = [&](const std::vector<double>& p) {
+    double sum = 0;
+    for (const double square : residuals.squares(p.data())) sum += square;
+    return sum;
+  };
+  const double least = squares_of(known.machine.parameters);
+  int taken_back = 0;
+  double spread = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Machine drawn = draws_of(known.machine, known.covariance, 1, seed).front(), machine = draws.draw(seed);
+    spread = std::max(spread, std::abs(machine.parameters[3] - known.machine.parameters[3]));
+    EXPECT_EQ(machine.parameters, draws.draw(seed).parameters);
+    if (machine.parameters == drawn.parameters) continue;
+    ++taken_back;
+    EXPECT_LT(squares_of(machine.parameters) - least, 0.3 * (squares_of(drawn.parameters) - least)) << seed;
+  }
+  EXPECT_GE(taken_back, 1);
+  EXPECT_LE(taken_back, 10);
+  EXPECT_GT(spread, 0.5 * fit.parameters[3].std_error);  // they differ
 }
 
 }  // namespace

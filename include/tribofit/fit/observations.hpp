@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -68,17 +70,23 @@ struct Observations {
   /// Where its beginning was not recorded, stick_time is the median of the others (NaN where none was); and it is
   /// without what its own break-away level made of it.
   struct SlipObservation : SlipFacts {
-    std::size_t begin = 0, end = 0;     ///< values of this slip
-    SampleRange samples;                ///< the same in samples of the Motion
-    std::size_t cycle = 0;              ///< unit of evidence it belongs to, from 0, in order of time
-    std::size_t segment = 0;            ///< index in Segmentation::cycles
-    double break_away_friction = 0;     ///< |mu| at break-away; NaN when there is none
+    std::size_t begin = 0, end = 0;  ///< values of this slip
+    SampleRange samples;             ///< the same in samples of the Motion
+    std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
+    std::size_t segment = 0;         ///< index in Segmentation::cycles
+    double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
+    double creep_friction = std::numeric_limits<double>::quiet_NaN();  ///< |mu| read where the lead ends; NaN: no lead
     double break_away_root_weight = 1;  ///< of its residual beside that of a sample: less where its time is not known
     double slow_variance = 0;           ///< of its level, by the 1/f noise that its record shows [1 or N squared]
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t strokes_begin = 0, strokes_end = 0;  ///< of earlier_strokes
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
     std::size_t stick = npos;                        ///< index in `sticks` of the stick before it; npos: none
+
+    /// What break_away_level() of a model is compared with. creeps: it acts in stick.
+    double read_at_break_away(bool creeps) const {
+      return creeps && std::isfinite(creep_friction) ? creep_friction : break_away_friction;
+    }
   };
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 

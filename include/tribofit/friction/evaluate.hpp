@@ -258,19 +258,50 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
+/// The first value of a slip in every channel.
+inline Slip first_value_of(const Slip& slip) {
+  Slip first = slip;
+  for (auto* channel : {&first.time, &first.velocity, &first.velocity_variance, &first.acceleration, &first.angle,
+                        &first.distance, &first.reversal_distance, &first.load, &first.temperature}) {
+    if (!channel->empty()) *channel = channel->first(1);
+  }
+  return first;
+}
+
+/// Signed friction where the lead before `slip` ends, of a contact that creeps there: no line leads to a break-away.
+template <class T>
+T friction_after_creep(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip) {
+  Slip last = first_value_of(slip);
+  const std::size_t before = slip.lead_time.size() - 1;
+  last.time = slip.lead_time.last(1);
+  last.velocity = slip.lead_velocity.last(1);
+  last.lead_time = slip.lead_time.first(before);
+  last.lead_velocity = slip.lead_velocity.first(before);
+  const T velocity = T(last.velocity[0] + 0.0 * p[0]);
+  T mu;
+  steady_friction(model, p, law, last, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
+  bool is_signed = false;
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Remembers<E, T>) {
+      const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
+      remember(effect, q, last, mu, steady_at, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
+      is_signed = hooks::ActsInStick<E>;
+    }
+  });
+  return is_signed ? mu : T(slip.direction * mu);
+}
+
 /// Signed friction at the break-away that begins `slip`; with `sensed`, as the sensor reads it.
 template <class T>
 T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sensed) {
-  Slip first = slip;
-  for (auto* channel : {&first.velocity, &first.acceleration, &first.angle, &first.distance, &first.reversal_distance,
-                        &first.load, &first.temperature}) {
-    if (!channel->empty()) *channel = channel->first(1);
-  }
+  Slip first = first_value_of(slip);
   first.time = {&slip.break_away_time, 1};
   SlidingState<T> at = first.at(0, T(0.0 * p[0]));
   at.acceleration = 0;
   const LawValues<T> law = law_for(model, p, slip);
-  T mu = slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at);
+  T mu = model.acts_in_stick() && !slip.lead_time.empty()
+             ? friction_after_creep(model, p, law, slip)
+             : T(slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) {
       mu = effect.modulate(q, at, mu);
@@ -292,6 +323,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
 }  // namespace detail
 
 /// |mu| that the model expects to be read at the break-away which begins `slip` [1], after every effect on the level.
+/// A contact that creeps has none: of it, friction where the lead ends.
 template <class T>
 T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
   if (model.has_values_of(slip.record)) {

@@ -39,7 +39,7 @@ struct ContactSpin {
                             .start = 2,
                             .neutral = 0,
                             .start_grid_points = 5}},
-            .needs = {.plateau = true},
+            .needs = {.lead = true, .plateau = true},
             .excitation = {.break_away = "before which the block could creep"},
             .creeps_like_sag = true,
             .sketch = {.view = SketchView::creep, .values = {4}},
